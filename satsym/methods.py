@@ -173,7 +173,7 @@ def refusal(name: str, asked: Asked) -> str:
     if method.constrained != bool(spec.path_constraints):
         what = "path constraints" if spec.path_constraints else "no path constraints"
         return f'solver.method: the model has {what}; use "{instead}"'
-    if spec.switching and not method.switching:
+    if spec.switching and not (method.switching or method.constrained):
         return (
             f'solver.method: the controls enter without a square and switch, which "{name}" cannot find; '
             f'use "{instead}"'

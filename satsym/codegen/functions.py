@@ -224,8 +224,21 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
 def _boundary_control(
     derivation: Derivation, found: list[path_constraints.Constraint], stated: dict[str, sp.Expr]
 ) -> Function:
-    """The law on boundaries, where it is written in closed form."""
-    laws = [[stated[f"{one.name}_{u.name}"] for u in symbols_of(derivation.model.controls)] for one in found]
+    """The law on boundaries, where it is written in closed form; beside the control that keeps to one others are 0."""
+    controls = symbols_of(derivation.model.controls)
+    if switching.switches(derivation):
+        bounds = (one for one in found if not one.order)
+        kept = [
+            (one.name, u, -one.rates[0] / sp.diff(one.rates[0], u))
+            for one in bounds
+            for u in controls
+            if one.rates[0].has(u)
+        ]
+        none = {f"{one.name}_{u.name}": sp.Integer(0) for one in found for u in controls}
+        stated = (
+            none | {f"{name}_{u.name}": tidy(value.xreplace({u: sp.Integer(0)})) for name, u, value in kept} | stated
+        )
+    laws = [[stated[f"{one.name}_{u.name}"] for u in controls] for one in found]
     summary = "The controls on the boundary of each, row by row."
     return _matrix("boundary_control", summary, "t x lam p bounds", sp.Matrix(laws))
 

@@ -28,6 +28,10 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     vanishing, last, own = of("path_vanishing", u=law), of("path_rates", u=law), of("path_constraints", u=law)
     wanted = np.where(second[:, None], last[:, 1], np.where(derived[:, None], last[:, 0], own))
     faint = FAINT * max(size(last).max(), size(own).max())
+    if of.kernels.spec.switching:
+        wanted, moved = own.copy(), np.abs(_effect(of)).argmax(axis=1)
+        wanted[derived] = np.take_along_axis(of("switching_function"), moved, axis=0)[derived]
+        faint = FAINT * max(size(vanishing).max(), size(wanted).max())
     yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, faint)
     for k, order in enumerate(orders):
         if order:
@@ -38,7 +42,14 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
 
 def _law(of: Evaluation) -> Array:
     """Without bounds; where the law is not in closed form any controls, as what is looked at holds for all of these."""
-    return of("control_law", bounds=_none(of)) if of.has("boundary_control") else np.asarray(of.at["u"])
+    closed = of.has("boundary_control") and not of.kernels.spec.switching
+    return of("control_law", bounds=_none(of)) if closed else np.asarray(of.at["u"])
+
+
+def _effect(of: Evaluation) -> Array:
+    """What controls do to the last rate of each constraint, shape (h, m, N)."""
+    first, second = np.moveaxis(of.slope("path_rates", "u"), 1, 0)
+    return np.where(np.any(second, axis=(1, 2), keepdims=True), second, first)
 
 
 def _none(of: Evaluation) -> Any:
@@ -53,6 +64,8 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
     eta, effect = of("path_multiplier")[which], of("path_effect", u=u)[which]
     kept, sizes = of("path_constraints", u=u)[which], np.abs(effect * u).sum(axis=0)
     yield Relation("boundary_control", "keeps the constraint", kept, np.zeros_like(kept), sizes)
+    if of.kernels.spec.switching:
+        return
     slope = of("stationarity", u=u)
     yield Relation("path_multiplier", "makes the control stationary", slope, -eta * effect, np.abs(slope))
 

@@ -29,9 +29,9 @@ from satsym.symbolic.principle import (
     stationary_controls,
     transversality,
 )
+from satsym.symbolic.switching import boundary, singular
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
-from satsym.symbolic.switching import singular
 from satsym.symbolic.time_limit import entering
 
 OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
@@ -87,6 +87,11 @@ SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     switching.switching_rate,
     singular.singular_arcs,
     singular.generalised_legendre_clebsch,
+    path_constraints.constraint_order,
+    boundary.boundary_control,
+    path_constraints.constraint_multiplier,
+    path_constraints.constrained_costates,
+    path_constraints.junction_conditions,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     switching_curve.switching_curve,
@@ -216,9 +221,10 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
         return LINEAR
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
-    if motion_derived.problem.path_constraints:  # no other has steps for them
+    if not switching.applies(motion_derived):
         return MINIMUM_PRINCIPLE
-    return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
+    boundary.refuse(motion_derived.problem)
+    return SWITCHING_PRINCIPLE
 
 
 def _taken(

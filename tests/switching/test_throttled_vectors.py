@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -120,6 +122,48 @@ def on_the_surface(y: np.ndarray) -> float:
     return -(by_h * v - by_v * (d / mass + 1.0 / h**2)) / (by_v / mass - 2.0 * by_mass)
 
 
+def on_the_boundary(y: np.ndarray) -> float:
+    """The thrust that keeps v^2 exp(-500 (h - 1)) as it is."""
+    h, v, mass = y
+    return mass * (250.0 * v**2 + 1.0 / h**2) + drag(h, v)
+
+
+def flown(
+    legs: Sequence[tuple[Any, Callable[[np.ndarray], float], tuple[float, float]]],
+) -> tuple[np.ndarray, list[float]]:
+    """Where legs lead, each until its event, and when that is."""
+    y, t, times = np.array([1.0, 0.0, 1.0]), 0.0, []
+    for rates, event, around in legs:
+
+        def at(end: float, rates: Any = rates, t: float = t, y: np.ndarray = y) -> np.ndarray:
+            return solve_ivp(rates, (t, end), y, **PRECISE).y[:, -1]
+
+        t = brentq(lambda end, at=at, event=event: event(at(end)), *around, xtol=1e-16)
+        y = at(t)
+        times.append(t)
+    return y, times
+
+
+def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_flies_along_the_singular_surface():
+    """Half the initial weight of drag, then the surface, 0.6 of the mass, and the top: nothing has to be iterated."""
+    legs = (
+        (rocket(3.5), lambda y: drag(y[0], y[1]) - 0.5, (0.01, 0.02)),
+        (rocket(on_the_boundary), surface, (0.06, 0.08)),
+        (rocket(on_the_surface), lambda y: y[2] - 0.6, (0.075, 0.08)),
+        (rocket(0.0), lambda y: y[1], (0.19, 0.21)),
+    )
+    y, times = flown(legs)
+    found = shipped("goddard-pressure")
+    assert found.status is Status.CONVERGED
+    assert -found.objective == pytest.approx(y[0], rel=1e-12)
+    assert (*found.switching_times[0], found.times[-1]) == pytest.approx(times, rel=1e-8)
+    assert [(one.kind, one.t) for one in found.events] == [
+        ("entry", pytest.approx(times[0], rel=1e-8)),
+        ("exit", pytest.approx(times[1], rel=1e-8)),
+    ]
+    assert failed(found) == ["no proof of a minimum along singular arcs: not convex"]
+
+
 def test_goddards_rocket_agrees_with_events_alone():
     """Full thrust up to the singular surface, along it until 0.6 of the mass is left, and a coast to the top."""
     legs = (
@@ -127,15 +171,7 @@ def test_goddards_rocket_agrees_with_events_alone():
         (rocket(on_the_surface), lambda y: y[2] - 0.6, (0.06, 0.08)),
         (rocket(0.0), lambda y: y[1], (0.19, 0.21)),
     )
-    y, t, times = np.array([1.0, 0.0, 1.0]), 0.0, []
-    for rates, event, around in legs:
-
-        def at(end: float, rates: object = rates, t: float = t, y: np.ndarray = y) -> np.ndarray:
-            return solve_ivp(rates, (t, end), y, **PRECISE).y[:, -1]
-
-        t = brentq(lambda end, at=at, event=event: event(at(end)), *around, xtol=1e-16)
-        y = at(t)
-        times.append(t)
+    y, times = flown(legs)
     found = shipped("goddard")
     assert found.status is Status.CONVERGED
     assert -found.objective == pytest.approx(y[0], rel=1e-11)

@@ -77,11 +77,11 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
 
         with np.errstate(all="ignore"):
             return chattering.certify(solution, solution.interval), None
-    if solution.method == "bang-bang":
+    if solution.method == "bang-bang" or solution.instance.model.spec.switching:
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution, compared), None
+            return switching.certify(solution, compared, seed), None
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 

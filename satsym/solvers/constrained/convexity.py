@@ -22,7 +22,8 @@ def convex(instance: Instance) -> bool:
 
     Second derivatives of such problems are the same everywhere, so that they are taken at the start.
     """
-    if not instance.model.spec.linear_quadratic or instance.tf is None or "reference" in instance.final.values():
+    spec = instance.model.spec
+    if spec.switching or not spec.linear_quadratic or instance.tf is None or "reference" in instance.final.values():
         return False
     t, x = np.array([instance.t0]), np.array(instance.initial)[:, None]
     u = np.zeros((len(instance.model.spec.controls), 1))

@@ -149,7 +149,8 @@ def _forces(program: Program, t: Array, x: Array, u: Array, y: Array) -> tuple[A
     """H_x and H_u at midpoints."""
     model, p = program.instance.model, program.p
     by_x = -np.asarray(model.costate_rate_batch(t, x, u, y, p))
-    by_u = np.asarray(model.stationarity_batch(t, x, u, y, p))
+    linear = model.spec.switching
+    by_u = np.asarray(model.switching_function_batch(t, x, y, p) if linear else model.stationarity_batch(t, x, u, y, p))
     return np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)
 
 

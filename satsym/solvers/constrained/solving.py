@@ -85,6 +85,10 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         If a constraint is violated where the motion is to start or to end.
     """
     refuse(instance)
+    if instance.model.spec.switching:
+        from satsym.solvers.constrained.levels import solving as levels
+
+        return levels.solve(instance, progress)
     began = time.perf_counter()
     relaxed = two_point.solve(instance, progress)
     if relaxed.status.answered and violation(relaxed) <= SLACK:

@@ -15,6 +15,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.boundaries import off_boundaries
 from satsym.solvers.switching.extremal_arcs import ROUGH
 from satsym.solvers.switching.newton import Equations, Refined, solve
 from satsym.solvers.switching.stops import stops
@@ -56,6 +57,7 @@ class Origin(Enum):
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
     GIVEN = "exact arcs in a given time"
+    PATH = "a regularised path"
     EASIER = "exact arcs of an easier problem"
 
 
@@ -89,18 +91,20 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
         start, end = instance.t0, found.at.end
         shortest, none = _shortest(found, start), NO_TIME * (end - start)
         if shortest is not None and shortest[0] < (none if found.stops else -none):
-            at = replace(_dropped(found, *shortest[1:]), course=at.course)
+            at = replace(_dropped(found, *shortest[1:]), course=at.course, bounded=at.bounded)
         else:
             exact = _collapsed(instance, found)
             if exact is None:
                 return None
             faults = violations(exact[1])
+            if first.bounded:
+                faults += off_boundaries(exact[1])
             if limits.watch:
                 limits.watch(exact[1].cost(instance), max((fault.amount for fault in faults), default=found.residual))
             if not faults:
                 return _plainer(instance, exact[0], at, limits) or Exact(*exact, iterations)
             worst = max(faults, key=lambda fault: fault.amount)
-            at = replace(_inserted(exact[0], exact[1], worst), course=at.course)
+            at = replace(_inserted(exact[0], exact[1], worst), course=at.course, bounded=at.bounded)
         if at.structure in met:
             return None
         met.add(at.structure)
@@ -113,7 +117,8 @@ def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> E
     for control, (row, own) in enumerate(zip(found.structure.levels, lengths, strict=True)):
         for arc in np.flatnonzero(own < FLEETING * lasting).tolist():
             if SINGULAR in row[max(arc - 1, 0) : arc + 2] and row[arc] != SINGULAR:
-                return attempt(instance, replace(_dropped(found, control, arc), course=at.course), limits)
+                less = replace(_dropped(found, control, arc), course=at.course, bounded=at.bounded)
+                return attempt(instance, less, limits)
     return None
 
 

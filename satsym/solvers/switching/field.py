@@ -30,7 +30,8 @@ class Field:
     instance
         Model, parameters and bounds.
     levels
-        One for each control. At most one of them is singular: it keeps the switching function at zero.
+        One for each control. At most one of them is singular: it keeps the switching function at zero. So does one on
+        the boundary of a path constraint; :attr:`kept` is whichever of both there is.
     """
 
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
@@ -41,6 +42,7 @@ class Field:
             for level, low, high in zip(levels, *instance.control_set.switching, strict=True)
         )
         self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
+        self.kept = next((i for i, level in enumerate(levels) if level >= SINGULAR), None)
         if self.singular is not None:
             low, high = instance.lower[self.singular], instance.upper[self.singular]
             self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)

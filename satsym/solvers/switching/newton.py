@@ -13,9 +13,10 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
+from satsym.solvers.switching.boundary import off_boundary
 from satsym.solvers.switching.extremal_arcs import ROUGH, TOLERANCE, Accuracy, Arc, Stop, Unknowns, extremal
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.structure import SINGULAR, Structure
+from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure
 
 MOST = 20
 NEAR = 1e-2
@@ -159,27 +160,29 @@ class Equations:
         return list(zip(gap.tolist(), slopes / self.sizes[:, None], strict=True))
 
     def _switch(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
-        """What must vanish at a switch: nothing where a singular arc ends."""
+        """What must vanish at a switch: nothing where a singular arc ends, or one on a boundary."""
         event = before.event
         assert event is not None
         levels = (before.field.levels[event.control], after.field.levels[event.control])
-        if levels[0] == SINGULAR:
-            return []
         switch = _Switch(before.field, before.end, before.after.tolist(), before.slopes, event.control, event.column)
-        rows = [switch.row(levels, self.sizes)]
+        rows = [switch.row(levels, self.sizes)] if levels[0] < SINGULAR else []
         if levels[1] == SINGULAR:
             rows.append(replace(switch, field=after.field, t=after.start).rate_row(self.sizes))
+        if levels[1] >= BOUNDARY:
+            rows.append(switch.boundary_row(levels[1], self.sizes))
         return rows
 
     def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
-        """What must vanish at the start of a singular arc that begins everything."""
-        if first.field.singular is None:
+        """What must vanish at the start of a singular arc that begins everything, or of one on a boundary."""
+        kept = first.field.kept
+        if kept is None:
             return []
         n = len(self.instance.initial)
         slopes = np.zeros((2 * n, first.slopes.shape[1]))
         slopes[n:, :n] = np.eye(n)
-        start = _Switch(first.field, first.start, first.before.tolist(), slopes, first.field.singular, None)
-        return [start.row((SINGULAR, SINGULAR), self.sizes), start.rate_row(self.sizes)]
+        start = _Switch(first.field, first.start, first.before.tolist(), slopes, kept, None)
+        rows = [start.row((SINGULAR, SINGULAR), self.sizes)]
+        return rows if first.field.singular is None else [*rows, start.rate_row(self.sizes)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,6 +219,13 @@ class _Switch:
         size = max(float(np.abs(gradient) @ sizes), 1e-300)
         return rate / size, self._moving(gradient, 0.0) / size
 
+    def boundary_row(self, level: int, sizes: Array) -> tuple[float, Array]:
+        """The same for the constraint on whose boundary the next arc is."""
+        value, gradient, by_time = off_boundary(self.field.instance, level, self.t, self.z)
+        size = max(float(np.abs(gradient) @ sizes), 1e-300)
+        rate = by_time + float(gradient @ np.array(self.field.rates(self.t, self.z)))
+        return value / size, self._moving(gradient, rate) / size
+
     def _moving(self, gradient: Array, rate: float) -> Array:
         """The derivative of a function of time and z whose time moves with an unknown, by all unknowns."""
         row = gradient @ self.slopes
@@ -228,7 +238,7 @@ class _Switch:
 def switching_value(field: Field, t: float, z: list[float], control: int, levels: tuple[int, int]) -> float:
     """What the switching function must be at a switch between two levels."""
     weight = field.weight(t, z, control)
-    if SINGULAR in levels or 0 not in levels:
+    if max(levels) >= SINGULAR or 0 not in levels:
         return 0.0
     return -weight if max(levels) > 0 else weight
 

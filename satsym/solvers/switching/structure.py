@@ -8,10 +8,16 @@ import numpy as np
 
 from satsym.arrays import Array
 
-LOWER, REST, UPPER, SINGULAR = -1, 0, 1, 2
-"""Levels: on a bound, at the admissible value of least magnitude, or as the singular condition has it."""
+LOWER, REST, UPPER, SINGULAR, BOUNDARY = -1, 0, 1, 2, 3
+"""Levels: on a bound, at the admissible value of least magnitude, as the singular condition has it, or as the first
+path constraint has it on its boundary; that of each further one is one more."""
 
 NAMES = {LOWER: "-", REST: "0", UPPER: "+", SINGULAR: "s"}
+
+
+def named(level: int) -> str:
+    """For messages; boundaries are numbered where there are several."""
+    return NAMES.get(level, f"b{level - BOUNDARY + 1 if level > BOUNDARY else ''}")
 
 
 @dataclass(frozen=True)
@@ -42,7 +48,7 @@ class Structure:
     @property
     def name(self) -> str:
         """For messages: ``+-`` or ``-0+ | +-``."""
-        return " | ".join("".join(NAMES[level] for level in row) for row in self.levels)
+        return " | ".join("".join(map(named, row)) for row in self.levels)
 
     def by_control(self, times: Array) -> list[Array]:
         """The times of each control, from those of all."""
@@ -116,3 +122,5 @@ class Guess:
     """The final time."""
     course: Course | None = None
     """Where it leads, if that is known better than by following it."""
+    bounded: bool = False
+    """Whether path constraints have to hold."""

@@ -12,7 +12,9 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.control_set import ControlSet, Row
 from satsym.instance import Instance
+from satsym.solvers.switching.boundary import BoundaryField
 from satsym.solvers.switching.field import NUDGE, Field
+from satsym.solvers.switching.structure import BOUNDARY
 
 NOTHING = 1e-300
 """A level that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
@@ -82,6 +84,8 @@ class ThrottledField(Field):
 
 def equations(instance: Instance, levels: tuple[int, ...]) -> Field:
     """The equations of an arc."""
+    if max(levels) >= BOUNDARY:
+        return BoundaryField(instance, levels)
     return (ThrottledField if instance.model.spec.throttled else Field)(instance, levels)
 
 

@@ -56,6 +56,19 @@ class Trajectory:
         z = leap(lambda t, y: field.along(t, y)[1], start, values[:, step], times - start, columns)
         return z, field.along(times, z)[0]
 
+    @property
+    def looked_at(self) -> list[tuple[Array, Array]]:
+        """Of each arc times, shape (N,), and values (2n, N): Gauss points, ends, and what is next to these."""
+        tables = []
+        for which, (arc, (inside, _, values, _)) in enumerate(zip(self.arcs, self.points, strict=True)):
+            near = NEAR_ENDS * (arc.end - arc.start)
+            ends = np.concatenate([arc.start + near, arc.end - near[::-1]])
+            times = np.concatenate([[arc.start], inside, [arc.end], ends])
+            z = np.concatenate([arc.before[:, None], values, arc.after[:, None], self.at(which, ends)[0]], axis=1)
+            order = np.argsort(times, kind="stable")
+            tables.append((times[order], z[:, order]))
+        return tables
+
     def cost(self, instance: Instance) -> float:
         """The running cost, by Gauss's rule, and the terminal cost."""
         model, p, n = instance.model, instance.parameters, len(instance.initial)
@@ -110,22 +123,14 @@ class Violation:
 
 def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
     """All stretches on which a control is not at the level that minimises H, or beyond its bounds."""
-    tables = []
-    for which, (arc, (inside, _, values, _)) in enumerate(zip(trajectory.arcs, trajectory.points, strict=True)):
-        near = NEAR_ENDS * (arc.end - arc.start)
-        ends = np.concatenate([arc.start + near, arc.end - near[::-1]])
-        times = np.concatenate([[arc.start], inside, [arc.end], ends])
-        z = np.concatenate([arc.before[:, None], values, arc.after[:, None], trajectory.at(which, ends)[0]], axis=1)
-        order = np.argsort(times, kind="stable")
-        times, z = times[order], z[:, order]
-        tables.append((times, z, *signs(arc.field.instance, times, z[: arc.field.n], z[arc.field.n :])))
+    n, instance = trajectory.arcs[0].field.n, trajectory.arcs[0].field.instance
+    tables = [(times, z, *signs(instance, times, z[:n], z[n:])) for times, z in trajectory.looked_at]
     largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for *_, sigma, weight in tables], axis=0)
-    instance = trajectory.arcs[0].field.instance
     largest = np.maximum(largest, DECIDING * deciding(instance, largest))
     found: list[Violation] = []
     for which, (arc, (times, z, sigma, weight)) in enumerate(zip(trajectory.arcs, tables, strict=True)):
         for control, level in enumerate(arc.field.levels):
-            if level == SINGULAR:
+            if level >= SINGULAR:
                 wrong, amounts = _beyond(arc, times, z, control)
                 bad = amounts > slack
             else:

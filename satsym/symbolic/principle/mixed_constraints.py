@@ -30,6 +30,7 @@ from satsym.symbolic.principle.path_constraints import (
     motion_of,
     problem_of,
     stationary,
+    switching,
 )
 from satsym.symbolic.principle.pontryagin import costates
 
@@ -99,7 +100,9 @@ def mixed_costates(so_far: Derivation) -> Step | None:
 
 
 def constraints(so_far: Derivation) -> list[Constraint]:
-    """All that hold a control, of order zero; none where there are none."""
+    """All that hold a control, of order zero; none where there are none, of controls that switch their bounds."""
+    if switching(so_far):
+        return [Constraint(name, (g,)) for name, g in pn.mixed(problem_of(so_far)).items()]
     if STEP not in so_far:
         return []
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}

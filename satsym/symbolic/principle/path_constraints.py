@@ -34,6 +34,9 @@ STEP = "constraint_order"
 CONTROL_PARTS = "control_parts"
 """The step of derivations whose law is found set by set; see :mod:`satsym.symbolic.principle.product`."""
 
+SWITCHING = "switching_function"
+"""The step of derivations in which H is linear in the controls; see :mod:`satsym.symbolic.switching.boundary`."""
+
 
 @dataclass(frozen=True)
 class Constraint:
@@ -101,13 +104,14 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
             Equation(pn.vanishing_entry(found.name, k), pn.vanishing(found.name, k), e) for k, e in enumerate(vanishing)
         ]
         equations.append(Equation(f"{found.name}_eta", eta, value))
-        chain = (found.rates[-2], *vanishing, sp.Integer(0))
+        chain = (*(() if switching(so_far) else found.rates[-2:-1]), *vanishing, sp.Integer(0))
         checks.append(rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
         checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
-    rule, sources = (
-        worded("keep the law on the boundary", problem_of(so_far)),
-        (STEP, "control_law", "costate_equations"),
-    )
+    key, law_from = ("keep the law on the boundary", "control_law")
+    if switching(so_far):
+        key, law_from = ("keep the switching function on the boundary", SWITCHING)
+    sources = (STEP, law_from, "costate_equations")
+    rule = worded(key, problem_of(so_far))
     return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
 
 
@@ -166,7 +170,7 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         ]
         equations.append(Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), jump_of_h))
     check = identity("the control passes junctions unchanged", kept)
-    rule = worded("junctions", problem)
+    rule = worded("junctions between levels" if switching(so_far) else "junctions", problem)
     return Step("junction_conditions", rule, tuple(equations), (STEP, "control_law"), (check,))
 
 
@@ -188,7 +192,8 @@ def _moved_by_jump(
         factor = sign(problem_of(so_far)) * zeta
         return effects, [shift - factor * effect for shift, effect in zip(shifts, effects, strict=True)]
     if found.order > 1:
-        return [], [value.xreplace(before) - value for value in free_law(so_far).values()]
+        deciding = _vanishing(so_far, found)[:1] if switching(so_far) else free_law(so_far).values()
+        return [], [value.xreplace(before) - value for value in deciding]
     vanishing = _vanishing(so_far, found)[0]
     moved = sp.simplify((vanishing.xreplace(before) - vanishing) / zeta)
     return [moved], [sp.diff(moved, zeta)]
@@ -248,16 +253,45 @@ def stationary(so_far: Derivation) -> bool:
     return CONTROL_PARTS in so_far
 
 
+def switching(so_far: Derivation) -> bool:
+    """Whether H is linear in the controls, which are at bounds then, or kept where H does not depend on them."""
+    return SWITCHING in so_far
+
+
+def acting(so_far: Derivation, found: Constraint) -> sp.Symbol:
+    """The one control that moves the last rate of a constraint.
+
+    Raises
+    ------
+    DerivationError
+        If several do.
+    """
+    (first, *more) = [u for u in symbols_of(so_far.model.controls) if found.rates[-1].has(u)]
+    if more:
+        raise DerivationError(
+            f"{so_far.name}: path_constraints {found.name}: {', '.join(map(str, (first, *more)))} move it together, "
+            "and H is linear in the controls: which of them keeps to the boundary is not derived",
+            ("path_constraints",),
+        )
+    return first
+
+
 def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     """The control that minimises H, without bounds; nothing where the controls stay symbols."""
-    if stationary(so_far):
+    if stationary(so_far) or switching(so_far):
         return {}
     controls = symbols_of(so_far.model.controls)
     return {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
 
 
 def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
-    """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates."""
+    """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates.
+
+    Where H is linear in the controls, the switching function of the one that keeps to the boundary instead.
+    """
+    if switching(so_far):
+        steps = (SWITCHING, "switching_rate")[: found.order]
+        return tuple(so_far.equation(f"{step}.{acting(so_far, found).name}").rhs for step in steps)
     vanishing = [tidy(simplified(found.rates[-1].xreplace(free_law(so_far))))]
     moving = canonical(so_far, found)
     for _ in range(found.order - 1):

@@ -71,6 +71,8 @@ def _chain(so_far: Derivation) -> Chain | None:
     problem, model = so_far.problem, so_far.model
     if problem is None or len(model.states) != 2 or len(model.controls) != 1 or model.reference:
         return None
+    if problem.path_constraints:
+        return None
     constants = definitions_of(model)
     cost = sp.sympify(problem.running_cost).xreplace(constants)
     if problem.terminal_cost != 0 or problem.end_conditions or not cost.is_positive:

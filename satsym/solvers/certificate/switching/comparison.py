@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.comparison import COST_MARGIN, margin
 from satsym.solvers.certificate.switching import competitors as switching_competitors
@@ -36,21 +37,26 @@ class Comparison:
     """As in :class:`satsym.solution.Certificate`."""
 
 
-def allowed(instance: Instance) -> list[Kind]:
-    """Kinds of competitors that a problem has."""
+def allowed(instance: Instance, bounded: bool = False) -> list[Kind]:
+    """Kinds of competitors that a problem has; where path constraints decided, with those of these."""
     durations = [Kind.DURATIONS] if instance.tf is None else []
     if instance.model.spec.throttled:
         return durations or [Kind.STARTS]
+    if bounded:
+        return [Kind.NEIGHBOURS, Kind.SIGNS, Kind.ARCS, *durations]
     return [Kind.NEIGHBOURS, Kind.SIGNS, *durations, Kind.STARTS]
 
 
-def compared(solution: Solution, limits: Limits) -> Comparison:
+def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     """Compare a solution with all kinds; what the clock ends is not checked."""
     sources: tuple[Callable[[], Iterable[Competitors | None]], ...] = (
         lambda: [needles(solution, limits)],
         lambda: switching_competitors.compared(solution, limits),
         lambda: [_smoothed(solution, limits)],
     )
+    bounded = solution.method == BOUNDARY_ARCS
+    if bounded:  # others know nothing of path constraints
+        sources = (lambda: [_other_boundaries(solution, limits, seed)],)
     if solution.instance.model.spec.throttled:
         sources = (lambda: [_drawn(solution, limits)],)
     found: dict[Kind, Competitors] = {}
@@ -59,7 +65,7 @@ def compared(solution: Solution, limits: Limits) -> Comparison:
             for one in () if limits.late else source():
                 if one is not None and not limits.late:
                     found[one.kind] = _both(found[one.kind], one) if one.kind in found else one
-    kinds = allowed(solution.instance)
+    kinds = allowed(solution.instance, bounded)
     missing = tuple(kind for kind in kinds if kind not in found)
     checks = [_check(solution, one) for one in found.values()]
     if limits.late:
@@ -89,6 +95,17 @@ def _drawn(solution: Solution, limits: Limits) -> Competitors:
     costs = [exact.trajectory.cost(instance) for exact in found]
     kind = allowed(instance)[0]
     return Competitors(kind, len(by_throttle.AMPLITUDES), len(costs), min(costs, default=float("nan")))
+
+
+def _other_boundaries(solution: Solution, limits: Limits, seed: int) -> Competitors | None:
+    """Extremals to which paths within path constraints lead that are drawn; ``None`` where time is up before."""
+    from satsym.solvers.constrained.levels.solving import others
+
+    instance = solution.instance
+    if instance.tf is None:  # paths last as long as the solution does
+        instance = replace(instance, tf_guess=float(solution.times[-1]))
+    tried, costs, interrupted = others(instance, solution.objective, seed + 1, limits.deadline)
+    return None if interrupted else Competitors(Kind.ARCS, tried, len(costs), min(costs, default=float("nan")))
 
 
 def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:

@@ -11,6 +11,7 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.flow import Flow, typical
+from satsym.solvers.certificate.switching import boundaries
 from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
@@ -42,7 +43,7 @@ LATER = Check("not strict: the same switches later cost the same", 1.0, 0.0)
 """Why a second variation is not positive, where a shift in time is the whole reason."""
 
 
-def certify(solution: Solution, compare: bool = True) -> Certificate:
+def certify(solution: Solution, compare: bool = True, seed: int = 0) -> Certificate:
     """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`."""
     seconds = max(solution.instance.solver.max_seconds - solution.wall_s, 0.0)
     limits = Limits(MOST, time.perf_counter() + seconds)
@@ -61,7 +62,7 @@ def certify(solution: Solution, compare: bool = True) -> Certificate:
     second: list[Check] = []
     comparison = Comparison()
     if all(c.passed for c in first):
-        comparison = compared(solution, limits) if compare else Comparison()
+        comparison = compared(solution, limits, seed) if compare else Comparison()
         second = [*_sufficient(solution, again, limits), *comparison.checks]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compare)
     return Certificate(
@@ -103,8 +104,10 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("domain violation", float(not instance.model.in_domain(again.z[:n])), 0.0),
     ]
-    if any(piece.field.singular is not None for piece in again.pieces):
+    if any(piece.field.kept is not None for piece in again.pieces):
         checks.append(Check("switching function on singular arcs", _off_singular(solution, again), STATIONARY))
+    if instance.model.spec.path_constraints:
+        checks += boundaries.necessary(solution, again)
     if instance.model.spec.autonomous:
         checks.append(Check(conditions.HAMILTONIAN, _drift(solution, again), DRIFT))
     return checks
@@ -124,6 +127,8 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
         checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
+    elif boundaries.on_boundary(again):
+        checks += boundaries.sufficient(solution, again)
     elif solution.instance.model.spec.throttled:
         by = Integration(np.concatenate(typical(solution)), limits)
         flat = not curvature(solution, extended, by) > CURVED
@@ -191,9 +196,9 @@ def _off_singular(solution: Solution, again: Replay) -> float:
     sizes, _ = _along(again)
     worst, both = 0.0, np.concatenate(typical(solution))
     for piece in again.pieces:
-        control, field = piece.field.singular, piece.field
+        control, field = piece.field.kept, piece.field
         if control is not None:
-            if all(one.field.singular == control for one in again.pieces):
+            if all(one.field.kept == control for one in again.pieces):
                 sizes[control] = float(np.abs(field.gradient(piece.start, piece.before.tolist(), control)) @ both)
             inside = (again.times >= piece.start) & (again.times <= piece.end)
             x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
@@ -236,7 +241,7 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
     for k, piece in enumerate(pieces[:-1]):
         control = piece.switched
         assert control is not None
-        if free[control] or SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
+        if free[control] or max(piece.field.levels[control], pieces[k + 1].field.levels[control]) >= SINGULAR:
             continue
         for field in (piece.field, pieces[k + 1].field):
             _, rate = field.switching(piece.end, piece.after.tolist(), control)
@@ -265,8 +270,8 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
     sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
     singular = np.zeros(sigma.shape, bool)
     for piece in pieces:
-        if piece.field.singular is not None:
-            singular[piece.field.singular] |= (again.times >= piece.start) & (again.times <= piece.end)
+        if piece.field.kept is not None:
+            singular[piece.field.kept] |= (again.times >= piece.start) & (again.times <= piece.end)
     marks = []
     for i, (s, w) in enumerate(zip(sigma, weight, strict=True)):
         margin = np.abs(np.abs(s) - w)

@@ -46,7 +46,7 @@ def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int 
     """The level on the other side of the switch that a control is at; ``None`` where it is at none."""
     here, level = z.tolist(), field.levels[control]
     low, high = field.instance.control_set.switching
-    if level == SINGULAR or low[control] == high[control]:
+    if level >= SINGULAR or low[control] == high[control]:
         return None
     sigma, weight = field.switching(t, here, control)[0], field.weight(t, here, control)
     if abs(abs(sigma) - weight) > AT_SWITCH * size:

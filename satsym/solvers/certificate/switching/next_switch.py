@@ -155,7 +155,7 @@ def _marks(span: Span, settled: list[bool]) -> list[Mark]:
     field, marks = span.field, []
     low, high = field.instance.control_set.switching
     for i, level in enumerate(field.levels):
-        if settled[i] or level == SINGULAR or low[i] == high[i]:
+        if settled[i] or level >= SINGULAR or low[i] == high[i]:
             continue
         weighs = field.weight(span.start, span.z.tolist(), i) > 0.0
         marks += [Mark(field, i, side) for side in ((-1.0, 1.0) if weighs else (0.0,))]

@@ -163,7 +163,7 @@ class _Again:
         instance, found = self.instance, []
         resting = equations(instance, (REST,) * len(self.stated))
         for i, own in enumerate(self.stated):
-            if self.settled[i] or own[0][2] == SINGULAR:
+            if self.settled[i] or own[0][2] >= SINGULAR:
                 found.append(own[0][2])
                 continue
             sigma, rate = resting.switching(t, z.tolist(), i)
@@ -185,7 +185,8 @@ class _Again:
             (now[1], i, after[2])
             for i, row in enumerate(self.stated)
             for now, after in pairwise(row)
-            if (self.settled[i] or SINGULAR in (now[2], after[2])) and start + 1e-12 * span.lasting < now[1] <= span.end
+            if (self.settled[i] or max(now[2], after[2]) >= SINGULAR)
+            and start + 1e-12 * span.lasting < now[1] <= span.end
         ]
         until, switched, level = min(known, default=(span.end, None, None))
         met = next_switch(span.until(until), self.settled, self.by)

@@ -37,7 +37,7 @@ def restarts(solution: Solution, stated: Stated) -> list[tuple[float, Array]]:
         until
         for row in stated
         for start, until, level in row
-        if level == SINGULAR and until < end and any(start < time < until for time in inside)
+        if level >= SINGULAR and until < end and any(start < time < until for time in inside)
     }
     near = {int(np.abs(times - time).argmin()) for time in (*inside, *ends)}
     return [(float(times[k]), z[:, k]) for k in sorted(near)]

@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 
 from satsym.solution import Solution
+from satsym.solvers.switching.boundaries import acting
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.structure import BOUNDARY, LOWER, REST, SINGULAR, UPPER
 from satsym.solvers.switching.throttled import shown_by, signs, switched, weights
 from satsym.solvers.switching.trajectory import deciding
 
@@ -40,7 +41,18 @@ def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
         values = switched(instance, solution.u[:, inside])[control]
         on = {k: float((np.abs(values - v) <= OFF * (high - low)).mean()) for k, v in near.items() if len(values)}
         likeliest = max(on, key=lambda k: on[k], default=REST if resting else LOWER)
-        found.append((start, end, likeliest if resting or on.get(likeliest, 1.0) >= MOSTLY else SINGULAR))
+        level = likeliest if resting or on.get(likeliest, 1.0) >= MOSTLY else SINGULAR
+        found.append((start, end, _on_boundary(solution, control, (start + end) / 2.0) or level))
+    return found
+
+
+def _on_boundary(solution: Solution, control: int, time: float) -> int | None:
+    """The level of a control that keeps to a boundary then, as events say; ``None`` where it does to none."""
+    names, found = [one.name for one in solution.instance.model.spec.path_constraints], None
+    for event in solution.events:
+        constraint = names.index(event.name)
+        if event.t < time and acting(solution.instance, constraint) == control:
+            found = BOUNDARY + constraint if event.kind == "entry" else None
     return found
 
 
@@ -49,7 +61,7 @@ def decided_by_none(solution: Solution, control: int) -> bool:
     low, high = solution.instance.control_set.switching
     if low[control] == high[control]:
         return False
-    return undecided(solution, control) > 1.0 - MOSTLY and all(k != SINGULAR for *_, k in arcs(solution, control))
+    return undecided(solution, control) > 1.0 - MOSTLY and all(k < SINGULAR for *_, k in arcs(solution, control))
 
 
 def indifferent(solution: Solution, control: int) -> bool:

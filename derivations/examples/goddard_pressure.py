@@ -1,0 +1,70 @@
+"""Goddard's rocket with its dynamic pressure bounded: it throttles so as not to be torn apart where the air is dense.
+
+The rocket and its data are those of ``goddard`` (COPS 3.0, problem 10), drag being dynamic pressure times an area:
+with the defaults a pressure of 10 is a drag of half the initial weight. Full thrust, then the boundary, a singular
+arc, and a coast; how long each lasts, or whether it is there at all, follows from the bound (Seywald and Cliff,
+Goddard problem in presence of a dynamic pressure limit, Journal of Guidance, Control, and Dynamics 16, 1993).
+"""
+
+from sympy import exp
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("h", "h", meaning="distance from the centre", positive=True, typical=(1.0, 1.02)),
+    Variable("v", "v", meaning="velocity", typical=(0.01, 0.15)),
+    Variable("m", "m", meaning="mass", positive=True, typical=(0.6, 1.0)),
+)
+CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
+PARAMETERS = (
+    Variable("rho0", r"\rho_0", meaning="density of the air at the initial height", default=12400.0, positive=True),
+    Variable("area", "A", meaning="area that drag acts on", default=0.05, positive=True),
+    Variable("beta", r"\beta", meaning="how fast density falls with height", default=500.0, positive=True),
+    Variable("g0", "g_0", meaning="gravity at the initial height", default=1.0, positive=True),
+    Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
+    Variable("q_max", r"q_{\max}", meaning="largest dynamic pressure", default=10.0, positive=True),
+)
+h, v, m = symbols_of(STATES)
+(T,) = symbols_of(CONTROLS)
+rho0, area, beta, g0, c, q_max = symbols_of(PARAMETERS)
+
+pressure = rho0 / 2 * v**2 * exp(-beta * (h - 1))
+
+goddard_pressure = Problem(
+    name="goddard_pressure",
+    title="Ascent of a rocket to the maximum height with bounded dynamic pressure",
+    model=FirstOrder(
+        name="rocket_in_air",
+        title="A rocket in vertical flight through air",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={h: v, v: (T - area * pressure) / m - g0 / h**2, m: -T / c},
+    ),
+    running_cost=0,
+    terminal_cost=h,
+    maximise=True,
+    control_set="box",
+    path_constraints={"pressure": pressure - q_max},
+)
+
+TRANSLATIONS = {
+    "id": {
+        "Ascent of a rocket to the maximum height with bounded dynamic pressure": (
+            "Roket naik ke ketinggian maksimum dengan tekanan dinamik terbatas"
+        ),
+        "A rocket in vertical flight through air": "Roket yang bergerak vertikal melalui udara",
+        "distance from the centre": "jarak dari pusat",
+        "velocity": "kecepatan",
+        "mass": "massa",
+        "thrust": "gaya dorong",
+        "density of the air at the initial height": "rapat udara pada ketinggian awal",
+        "area that drag acts on": "luas yang dikenai gaya hambat",
+        "how fast density falls with height": "laju berkurangnya rapat udara terhadap ketinggian",
+        "gravity at the initial height": "gravitasi pada ketinggian awal",
+        "exhaust velocity": "kecepatan gas buang",
+        "largest dynamic pressure": "tekanan dinamik terbesar",
+    },
+}
+
+PROBLEMS = (goddard_pressure,)

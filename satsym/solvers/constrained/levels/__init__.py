@@ -1,0 +1,1 @@
+"""Path constraints where H is linear in the controls: levels at bounds, singular ones, and boundaries."""

@@ -1,0 +1,78 @@
+"""The levels that controls take along a regularised path: at bounds, on boundaries, and singular where neither holds.
+
+What is active has a multiplier that is larger, in its measure, than its slack is in its own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.control_set import bound_names
+from satsym.solvers.constrained.interior_point import Path
+from satsym.solvers.constrained.slopes import rooms
+from satsym.solvers.constrained.transcription import Program, middles
+from satsym.solvers.switching.boundaries import acting
+from satsym.solvers.switching.structure import BOUNDARY, LOWER, SINGULAR, UPPER, Course, Guess, Structure
+from satsym.solvers.switching.trajectory import runs
+
+BRIEF = 2
+"""Intervals of a singular arc that is none: a switch falls into one of them."""
+
+
+def recognised(program: Program, path: Path, shortest: int = BRIEF) -> Guess:
+    """The structure of a path, its times, and where it leads.
+
+    Parameters
+    ----------
+    shortest
+        Intervals up to which arcs between bounds are none.
+    """
+    instance, at = program.instance, path.at
+    edges = np.append(instance.t0, np.real(program.times(at.duration, False)))
+    rows, times = [], list[float]()
+    for control in range(len(at.u)):
+        levels = _without_brief(_levels(program, path, control), shortest)
+        switches = np.flatnonzero(np.diff(levels)) + 1
+        rows.append(tuple(int(level) for level in levels[np.append(0, switches)]))
+        times += edges[switches].tolist()
+    begin, end = (at.y[:, place] + (at.y[:, place] - at.y[:, beside]) / 2.0 for place, beside in ((0, 1), (-1, -2)))
+    lam = np.column_stack([begin, at.y, end])
+    x = np.column_stack([at.x[:, 0], middles(at.x), at.x[:, -1]])
+    places = np.concatenate([edges[:1], np.real(program.times(at.duration, True)), edges[-1:]])
+    course = Course(places, np.concatenate([x, lam]))
+    return Guess(Structure(tuple(rows)), np.array(times), begin, float(edges[-1]), course, bounded=True)
+
+
+def _levels(program: Program, path: Path, control: int) -> NDArray[np.int64]:
+    """The level of a control in each interval."""
+    instance, spec = program.instance, program.instance.model.spec
+    names = [one.name for one in spec.path_constraints]
+    active = _active(program, path)
+    low, high = (names.index(name) for name in bound_names(spec)[control])
+    found = np.where(active[low], LOWER, np.where(active[high], UPPER, SINGULAR))
+    for k, one in enumerate(spec.path_constraints):
+        if one.order and acting(instance, k) == control:
+            both = active[k].copy()
+            both[1:] &= active[k][:-1]
+            found[both & (found == SINGULAR)] = BOUNDARY + k
+    return found
+
+
+def _active(program: Program, path: Path) -> NDArray[np.bool_]:
+    """Whether each constraint is active, shape (h, N); of those on states at the end of each interval."""
+    s, z = path.at.s, path.at.z * program.kept
+    room = np.maximum(s.max(axis=1, keepdims=True), 1e-4 * rooms(program, path.at))
+    return np.asarray(z / np.maximum(z.max(axis=1, keepdims=True), 1e-300) > s / room)
+
+
+def _without_brief(levels: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:
+    """Without brief runs of no bound and no boundary: each half is taken for what is beside it."""
+    found = levels.copy()
+    for first, last in runs(levels == SINGULAR):
+        if last - first < shortest and last - first + 1 < len(levels):
+            before = levels[first - 1] if first else levels[last + 1]
+            after = levels[last + 1] if last + 1 < len(levels) else before
+            middle = (first + last + 1) // 2
+            found[first:middle], found[middle : last + 1] = before, after
+    return found

@@ -1,0 +1,138 @@
+"""From a cold start to exact arcs at bounds, singular ones, and arcs on the boundaries of path constraints."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.methods import BOUNDARY_ARCS
+from satsym.solution import Event, Progress, Solution
+from satsym.solvers.constrained.interior_point import regularised
+from satsym.solvers.constrained.levels.recognition import BRIEF, recognised
+from satsym.solvers.constrained.starts import drawn, first, straight
+from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.violation import VIOLATED, violation
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.iteration import Limits, Meter, watched
+from satsym.solvers.switching import solving
+from satsym.solvers.switching.answers import answered, without
+from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.cold_start.homotopy import Stopped
+from satsym.solvers.switching.structure import BOUNDARY, Guess
+from satsym.status import Status
+
+INTERVALS = (100, 250, 500)
+"""Of the regularised path: of more where no structure that it shows is an extremal."""
+
+DRAWN, COMPARED, WORK = 2, 2, 20_000
+"""Pairs of paths that are drawn by the solver and by the certificate, and columns for one of these."""
+
+SAME = 1e-6
+"""Relative difference of costs of regularised paths that are one."""
+
+LONGER = 5
+"""Intervals up to which a singular arc between bounds may as well be none."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve a switching problem with path constraints.
+
+    Parameters
+    ----------
+    instance
+        Of a model whose controls enter the Hamiltonian linearly, with both bounds for each.
+    progress
+        Called while the problem without constraints is solved.
+
+    Returns
+    -------
+    Solution
+        As :func:`satsym.solvers.switching.solving.solve` returns it; where no constraint is ever met, that one's.
+
+    Raises
+    ------
+    BadInput
+        If a bound is missing, or a constraint is violated where the motion is to start or to end.
+    """
+    began = time.perf_counter()
+    relaxed = solving.solve(instance, progress)
+    if relaxed.status.answered and violation(relaxed) <= VIOLATED:
+        return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
+    if relaxed.status is Status.INFEASIBLE:
+        return replace(relaxed, method=BOUNDARY_ARCS)
+    limits = replace(watched(instance, None)[0], deadline=began + instance.solver.max_seconds)
+    with np.errstate(all="ignore"):
+        found = _best(instance, relaxed, limits)
+        if isinstance(found, Stopped):
+            return replace(without(instance, found, relaxed.history, began), method=BOUNDARY_ARCS)
+        return _with_events(instance, found, answered(instance, found, relaxed.history, began))
+
+
+def others(instance: Instance, worth: float, seed: int, deadline: float) -> tuple[int, list[float], bool]:
+    """How many paths were tried, costs of the extremals they led to, and whether time was up before all of them.
+
+    See :func:`satsym.solvers.constrained.solving.others`.
+    """
+    program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline)
+    starts = drawn(program, straight(program), COMPARED, seed)
+    with np.errstate(all="ignore"):
+        found = list(_searched(program, starts, worth, replace(limits, work=WORK)))
+    return len(found), [one.trajectory.cost(instance) for one in found if one], len(found) < len(starts)
+
+
+def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stopped:
+    """The cheapest extremal to which regularised paths lead."""
+    worth = relaxed.objective if relaxed.status.answered and relaxed.objective else 1.0
+    for intervals in INTERVALS:
+        program = Program(instance, intervals)
+        begun = first(program, relaxed)
+        found = [one for one in _searched(program, [begun, *drawn(program, begun, DRAWN, 0)], worth, limits) if one]
+        if found:
+            return min(found, key=lambda one: one.trajectory.cost(instance))
+        if limits.late:
+            return Stopped(Status.TIME_LIMIT, "time was up before an extremal was found")
+    message = "no structure of bounds, singular arcs and boundaries that a regularised path shows is an extremal"
+    return Stopped(Status.NOT_CONVERGED, message)
+
+
+def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> Iterator[Exact | None]:
+    """To what each start leads within these limits; what leads to a known path leads to the same. Ends with time."""
+    known: list[tuple[float, Exact | None]] = []
+    for start in starts:
+        own = replace(limits, meter=Meter())
+        try:
+            path = regularised(program, start, worth, own)
+        except FAILURES:
+            yield None
+            continue
+        same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
+        if not same and path.solved:
+            guesses = (recognised(program, path, shortest) for shortest in (BRIEF, LONGER))
+            same = [next((one for guess in guesses if (one := _exact(program.instance, guess, own))), None)]
+            known.append((path.cost, same[0]))
+        if limits.late:
+            return
+        yield same[0] if same else None
+
+
+def _exact(instance: Instance, guess: Guess, limits: Limits) -> Exact | None:
+    found = attempt(instance, guess, limits)
+    return found and replace(found, origin=Origin.PATH)
+
+
+def _with_events(instance: Instance, exact: Exact, solution: Solution) -> Solution:
+    """With entries to boundaries and exits from them."""
+    names, events = [one.name for one in instance.model.spec.path_constraints], list[Event]()
+    structure, at = exact.refined.structure, exact.refined.at
+    for row, own in zip(structure.levels, structure.by_control(at.times), strict=True):
+        begins, ends = [instance.t0, *own.tolist()], [*own.tolist(), at.end]
+        for level, begin, end in zip(row, begins, ends, strict=True):
+            if level >= BOUNDARY:
+                name = names[level - BOUNDARY]
+                events += [Event("entry", name, begin)]
+                events += [Event("exit", name, end)] if end < at.end else []
+    return replace(solution, method=BOUNDARY_ARCS, events=tuple(sorted(events, key=lambda one: one.t)))

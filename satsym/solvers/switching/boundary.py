@@ -1,0 +1,83 @@
+"""The extremal equations while a control keeps to the boundary of a path constraint."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.control_set import Row
+from satsym.instance import Instance
+from satsym.solvers.switching.field import BEYOND, NUDGE, Field
+from satsym.solvers.switching.structure import BOUNDARY
+
+
+class BoundaryField(Field):
+    """Rates of states and costates while one control keeps to a boundary, and others their levels.
+
+    The multiplier of the constraint is what keeps the switching function of that control at zero.
+    """
+
+    def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
+        super().__init__(instance, levels)
+        (self.acting, *more) = [i for i, level in enumerate(levels) if level >= BOUNDARY]
+        if more or self.singular is not None:
+            raise ArithmeticError("no law is known for two controls that are off their bounds")
+        self.constraint = levels[self.acting] - BOUNDARY
+        low, high = instance.lower[self.acting], instance.upper[self.acting]
+        self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
+
+    def kept_at(self, t: float, z: list[float]) -> Row:
+        return self.instance.control_set.saturated(self.control(t, z)).arguments
+
+    def control(self, t: float, z: list[float]) -> tuple[float, ...]:
+        found = tuple(self.controls(np.array([t]), np.array(z)[:, None])[:, 0].tolist())
+        if not abs(found[self.acting] - self.middle) <= self.beyond:
+            raise ArithmeticError("the control on the boundary leaves its bounds for good")
+        return found
+
+    def controls(self, t: NDArray[Any], z: NDArray[Any]) -> NDArray[Any]:
+        """The controls at many points, shape (m, N)."""
+        x, lam = z[: self.n], z[self.n :]
+        table = self.model.boundary_control_batch(t, x, lam, self.p, self.instance.control_set.arguments)
+        u = np.empty((len(self.levels), len(t)), dtype=z.dtype)
+        u[:] = np.array(self.saturated)[:, None]
+        u[self.acting] = np.asarray(table)[self.constraint, self.acting]
+        return u
+
+    def multiplier(self, t: NDArray[Any], z: NDArray[Any]) -> NDArray[Any]:
+        """What keeps the switching function at zero, shape (N,)."""
+        x, lam, bounds = z[: self.n], z[self.n :], self.instance.control_set.arguments
+        found = np.asarray(self.model.path_multiplier_batch(t, x, self.controls(t, z), lam, self.p, bounds))
+        return np.broadcast_to(found[self.constraint], t.shape)
+
+    def rates(self, t: float, z: list[float]) -> list[float]:
+        self.control(t, z)
+        return self.along(np.array([t]), np.array(z)[:, None])[1][:, 0].tolist()
+
+    def along(self, t: NDArray[Any], z: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        x, lam, u = z[: self.n], z[self.n :], self.controls(t, z)
+        found = np.empty_like(z)
+        found[: self.n] = self.model.dynamics_batch(t, x, u, self.p)
+        found[self.n :] = self.model.costate_rate_batch(t, x, u, lam, self.p)
+        found[self.n :] -= self.multiplier(t, z) * self.model.path_gradient_batch(t, x, u, self.p)[self.constraint]
+        return u, found
+
+    def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
+        moved = np.array(z)[:, None] + 1j * NUDGE * np.eye(len(z))
+        slopes = self.along(np.full(len(z), t), moved)[1].imag / NUDGE
+        return np.array(self.rates(t, z)), slopes
+
+
+def off_boundary(instance: Instance, level: int, t: float, z: list[float]) -> tuple[float, Array, float]:
+    """A constraint where a control comes to keep to its boundary: value, derivatives by z, shape (2n,), and by time."""
+    n, which = len(instance.initial), level - BOUNDARY
+    rest, place = np.zeros((len(instance.model.spec.controls), 1)), np.array(z[:n])[:, None]
+    bounds = instance.control_set.arguments
+    ahead = instance.model.path_constraints_batch(np.array([t + 1j * NUDGE]), place, rest, instance.parameters, bounds)
+    slopes = instance.model.path_gradient_batch(np.array([t]), place, rest, instance.parameters)
+    value = np.asarray(ahead)[which, 0]
+    gradient = np.concatenate([np.asarray(slopes)[which, :, 0], np.zeros(n)])
+    return float(value.real), gradient, float(value.imag / NUDGE)

@@ -1,0 +1,54 @@
+"""Boundaries of path constraints where H is linear in the controls: what keeps to them, and what is refused.
+
+On the boundary a control is where the constraint keeps it, as a rule between its bounds; as it minimises H there, its
+switching function vanishes all along, and the multiplier of the constraint is what keeps it zero (Maurer, On optimal
+control problems with bounded state variables and control appearing linearly, SIAM Journal on Control and Optimization
+15, 1977). Order, multiplier, costates and junctions are those of :mod:`satsym.symbolic.principle.path_constraints`.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from satsym.symbolic.algebra import simplified, tidy
+from satsym.symbolic.checks import identity
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.model import Problem, symbols_of
+from satsym.symbolic.principle import path_notation as pn
+from satsym.symbolic.principle.path_constraints import STEP, acting, affine, constraints
+from satsym.symbolic.switching import notation as s
+
+
+def boundary_control(so_far: Derivation) -> Step | None:
+    """The control that keeps g^(q) = 0."""
+    if STEP not in so_far:
+        return None
+    controls, equations, checks = symbols_of(so_far.model.controls), list[Equation](), []
+    for found in constraints(so_far):
+        effect, rest = affine(so_far, found, controls)
+        u = acting(so_far, found)
+        if found.order > 1:
+            message = "its order is 2; where H is linear in the controls no extremals are found for more than one"
+            raise DerivationError(f"{so_far.name}: path_constraints {found.name}: {message}", ("path_constraints",))
+        law = tidy(simplified(-rest / effect[controls.index(u)]))
+        equations.append(Equation(f"{found.name}_{u.name}", pn.boundary_control(found.name, u), law))
+        checks.append(identity("keeps the constraint", [found.rates[-1].xreplace({u: law})]))
+    return Step("boundary_control", "stay on the boundary", tuple(equations), (STEP,), tuple(checks))
+
+
+def refuse(problem: Problem) -> None:
+    """Refuse what no boundary control is derived for, before anything is.
+
+    Raises
+    ------
+    DerivationError
+        If a constraint holds a control that switches, or magnitudes of controls cost something.
+    """
+    controls, what = symbols_of(problem.model.controls), f"{problem.name}: path_constraints"
+    held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
+    if held:
+        message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
+        raise DerivationError(f"{message}derived; state it as a bound of that control", ("path_constraints",))
+    if problem.path_constraints and any(sp.sympify(problem.running_cost).has(a) for a in s.magnitudes(controls)):
+        message = "beside a cost of |u| they are not derived; state a control for each sign, both from 0 on"
+        raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))

@@ -1,0 +1,146 @@
+"""Path constraints where H is linear in a control: boundary arcs between bounds, from a cold start, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import satsym
+from satsym.front.solution import Solution
+from satsym.solvers.certificate import certify
+from satsym.status import BadInput, Verdict
+from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.principle import path_constraints as steps
+from tests.support.derived import derived
+
+STATES, CONTROLS = tuple(Variable(name, name) for name in ("x", "v", "a")), (Variable("u", "u"),)
+PARAMETERS = tuple(Variable(name, name, default=1.0) for name in ("v_top", "a_top"))
+(x, v, a), (u,), (v_top, a_top) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+
+
+def line(rates: dict[sp.Symbol, Any], **more: Any) -> Problem:
+    """The least time of a motion along a line, by default."""
+    model = FirstOrder(
+        name="line", title="", states=STATES[: len(rates)], controls=CONTROLS, parameters=PARAMETERS, rates=rates
+    )
+    stated = {"name": "line", "title": "", "running_cost": 1, "control_set": "box"} | more
+    return Problem(model=model, **stated)
+
+
+CAR = line({x: v, v: u}, path_constraints={"limit": v - v_top})
+LIFT = line({x: v, v: a, a: u}, path_constraints={"push": a - a_top, "brake": -a - a_top})
+ACROSS = {"final": {"x": 3.0, "v": 0.0}, "initial": {"x": 0.0, "v": 0.0}, "tf": "free", "control": {"u": [-1.0, 1.0]}}
+
+
+def solved(of: Problem, **given: Any) -> Solution:
+    found = satsym.solve(satsym.Instance.of(of, **given))
+    assert found.status == "converged", found.message
+    assert all(one.passed for one in found.certificate.checks if one.name.startswith("path constraint"))
+    return found
+
+
+@pytest.mark.parametrize(("top", "braking"), [(0.3, 1.0), (1.0, 1.0), (1.2, 2.0), (0.5, 0.25)])
+def test_a_car_goes_as_fast_as_it_may_and_brakes(top: float, braking: float):
+    found = solved(CAR, **(ACROSS | {"control": {"u": [-braking, 1.0]}, "parameters": {"v_top": top}}))
+    begins, slowing = top, top / braking
+    cruise = (3.0 - top * (begins + slowing) / 2.0) / top
+    assert found.objective == pytest.approx(begins + cruise + slowing, rel=1e-12)
+    assert [(one.kind, one.name) for one in found.events] == [("entry", "limit"), ("exit", "limit")]
+    assert [one.t for one in found.events] == pytest.approx([begins, begins + cruise], rel=1e-10)
+
+
+def test_a_limit_that_is_never_met_changes_nothing():
+    found = solved(CAR, **(ACROSS | {"parameters": {"v_top": 2.0}}))
+    assert found.objective == pytest.approx(2.0 * np.sqrt(3.0), rel=1e-12)
+    assert "no path constraint is ever active" in found.message
+    assert found.certificate.verdict == "certified"
+
+
+@pytest.mark.parametrize(("top", "distance"), [(1.0, 10.0), (0.7, 4.0)])
+def test_a_lift_keeps_to_the_acceleration_that_its_passengers_bear(top: float, distance: float):
+    """Jerk one: up to the acceleration and down again twice, the second half mirrored."""
+    rest = {"x": 0.0, "v": 0.0, "a": 0.0}
+    given = ACROSS | {"initial": rest, "final": rest | {"x": distance}, "parameters": {"a_top": top}}
+    found = solved(LIFT, **given)
+    fastest = (-(top**2) + np.sqrt(top**4 + 4.0 * top * distance)) / 2.0
+    assert found.objective == pytest.approx(2.0 * (fastest / top + top), rel=1e-11)
+    assert [one.name for one in found.events] == ["push", "push", "brake", "brake"]
+
+
+def test_the_multiplier_keeps_the_switching_function_zero():
+    found = derived(CAR)
+    lam = sp.Symbol("lambda_x", real=True)
+    multiplier = {e.name: e.rhs for e in found.step("constraint_multiplier").equations}
+    assert multiplier == {"limit_vanishing": sp.Symbol("lambda_v", real=True), "limit_eta": -lam}
+    assert found.equation("boundary_control.limit_u").rhs == 0
+
+
+@pytest.mark.parametrize("convention", ["minimum", "maximum"])
+def test_costates_on_the_boundary_are_right_by_either_convention(convention: Any):
+    drag = line({x: v, v: u - v**2}, path_constraints={"limit": v * x - v_top}, convention=convention)
+    found = derived(drag)
+    eta, side = sp.Symbol("eta_limit", real=True), 1 if convention == "minimum" else -1
+    pushed = {e.name: e.rhs for e in found.step("constrained_costates").equations}["limit_lambda_x"]
+    assert sp.simplify(pushed + side * eta * v) == 0
+
+
+@pytest.mark.parametrize("wrong", ["sign", "rate"])
+def test_a_wrong_multiplier_fails_its_check(wrong: str, monkeypatch: pytest.MonkeyPatch):
+    if wrong == "sign":
+        true = steps.canonical
+        monkeypatch.setattr(steps, "canonical", lambda *of: {z: -rate for z, rate in true(*of).items()})
+    else:
+        true_rate = steps.total_derivative
+        monkeypatch.setattr(steps, "total_derivative", lambda e, rates: true_rate(e, rates) + v)
+    with pytest.raises(DerivationError, match="failed its check"):
+        derive(CAR)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"path_constraints": {"wall": x - 1}}, "wall: its order is 2"),
+        ({"path_constraints": {"mixed": u + v - 1}}, "mixed: H is linear in the controls, beside which a constraint"),
+        (
+            {"path_constraints": {"limit": v - 1}, "running_cost": sp.Abs(u)},
+            "beside a cost of .u. they are not derived",
+        ),
+    ],
+)
+def test_what_cannot_be_derived_is_refused(more: dict[str, Any], message: str):
+    with pytest.raises(DerivationError, match=message):
+        derive(line({x: v, v: u}, **more))
+
+
+def test_two_controls_that_move_a_constraint_together_are_refused():
+    controls = (Variable("u", "u"), Variable("w", "w"))
+    other = symbols_of(controls)[1]
+    model = FirstOrder(
+        name="pair", title="", states=STATES[:2], controls=controls, parameters=(), rates={x: v, v: u + other}
+    )
+    pair = Problem(
+        name="pair", title="", model=model, running_cost=1, control_set="box", path_constraints={"limit": v - 1}
+    )
+    with pytest.raises(DerivationError, match="u, w move it together"):
+        derive(pair)
+
+
+def test_a_start_beyond_the_limit_is_refused():
+    with pytest.raises(BadInput, match=r"initial: path constraint limit is 0\.5 there"):
+        satsym.solve(satsym.Instance.of(CAR, **(ACROSS | {"initial": {"x": 0.0, "v": 1.5}})))
+
+
+def test_a_certificate_sees_a_limit_that_is_broken_and_a_boundary_that_pulls():
+    """The answer of one limit held against a lower one, and against one whose motion would rather be faster still."""
+    found = solved(CAR, **ACROSS).found
+    model = found.instance
+    lower = replace(found, instance=replace(model, parameters=(0.9, 1.0)))
+    checks = {one.name: one.passed for one in certify(lower).checks}
+    assert not checks["path constraint violated"]
+    pulled = replace(found, lam=-found.lam)
+    assert certify(pulled).verdict is Verdict.FAILED
