@@ -6,8 +6,8 @@ from sphinx.application import Sphinx
 
 PUT_RIGHT = {
     '<p class="caption" role="heading">': '<p class="caption" role="heading" aria-level="2">',
-    "<h3>Navigation</h3>": '<p class="navigation">Navigation</p>',
-    '<div class="footer">': '<div class="footer" role="contentinfo">',
+    '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="Pages">',
+    '<aside class="toc-drawer': '<aside aria-label="On this page" class="toc-drawer',
     "<pre>": '<pre tabindex="0">',
 }
 

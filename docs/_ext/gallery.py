@@ -1,8 +1,8 @@
 """The shipped instances, each solved, with verdict and picture; kept until the solvers or the instance change."""
 
-import io
 import json
 import os
+import re
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from html import escape
@@ -11,6 +11,8 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
+COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\})"
+"""What a style sheet of a page begins with."""
 HEAD = """<!-- Written by `make docs`: do not edit. -->
 # Gallery
 
@@ -28,15 +30,13 @@ OTHERS = frozenset(
 def shown(name: str, folder: Path) -> dict[str, str]:
     """What the page says of an instance; its picture is written into the folder."""
     from satsym import instance, sources
-    from satsym.report import plots
     from satsym.report.display import number, unit_text
-    from satsym.report.look import Look
     from satsym.solution import Solution
     from satsym.solvers import simulate, solve
 
     case = instance.load(name)
-    code = sources.digest(["satsym.solvers", "satsym.report.plots"])
-    key, said, picture = f"{code} {sources.digest_of(case.path)}", folder / f"{name}.json", folder / f"{name}.png"
+    code = sources.digest(["satsym.solvers", "satsym.report.plots", "satsym.report.page"])
+    key, said, picture = f"{code} {sources.digest_of(case.path)}", folder / f"{name}.json", folder / f"{name}.svg"
     if said.is_file() and picture.is_file() and (known := json.loads(said.read_text("utf-8")))["key"] == key:
         return known
     found = solve(case) if case.model.spec.has_cost else simulate(case)
@@ -44,14 +44,30 @@ def shown(name: str, folder: Path) -> dict[str, str]:
     if isinstance(found, Solution) and found.status.answered:
         cost = f"J = {number(spec.objective(found.objective), 8)} {unit_text(spec.objective_unit)}".rstrip()
         verdict = f"{cost}, {found.certificate.verdict.value}" if found.certificate else cost
-    content = plots.pictures(found, Look(size="page", titled=False)).get("overview.png")
-    stream = io.BytesIO()
-    if content:
-        content(stream)
-    picture.write_bytes(stream.getvalue())
+    picture.write_text(drawn(found), "utf-8")
     known = {"key": key, "name": name, "title": case.title, "model": spec.name, "verdict": verdict}
     said.write_text(json.dumps(known), "utf-8")
     return known
+
+
+def drawn(found: object) -> str:
+    """The overview as SVG that is dark where its reader's pages are; nothing where there is no trajectory."""
+    from importlib.resources import files
+
+    from satsym.report.look import Look
+    from satsym.report.page.pictures import themed
+    from satsym.report.plots import pages, style
+    from satsym.report.plots.scene import Scene
+
+    with style.applied(Look(size="page", titled=False)):
+        page = pages.overview(Scene.of(found))
+        if page is None:
+            return ""
+        svg = style.rendered(style.finished(page), "svg").decode("utf-8")
+    sheets = [files("satsym.report").joinpath(name).read_text("utf-8") for name in ("html/page.css", "page/report.css")]
+    colours = "".join("".join(re.match(COLOURS, sheet, re.DOTALL).groups()) for sheet in sheets)
+    element, inside = themed(svg).split(">", 1)
+    return f"{element}><style>{colours}svg {{ fill: var(--ink); }}</style>{inside}"
 
 
 def page(folder: Path) -> Iterator[str]:
@@ -64,19 +80,16 @@ def page(folder: Path) -> Iterator[str]:
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
         every = list(pool.map(shown, names, [folder] * len(names)))
     yield HEAD
-    models: dict[str, list[dict[str, str]]] = {}
-    for known in every:
-        models.setdefault(known["model"], []).append(known)
-    for model in sorted(models):
-        yield f"\n## {model}\n\n```{{raw}} html\n<div class='gallery'>"
-        for known in models[model]:
-            title, name = escape(known["title"]), known["name"]
-            alt = f"Path, states and controls of {name}"
-            yield (
-                f"<figure><img src='_static/gallery/{name}.png' alt='{alt}' loading='lazy'>"
-                f"<figcaption><code>{name}</code>: {title}. <b>{escape(known['verdict'])}</b></figcaption></figure>"
-            )
-        yield "</div>\n```"
+    yield "```{raw} html\n<div class='gallery'>"
+    for known in sorted(every, key=lambda known: known["model"]):
+        name, model, title = known["name"], known["model"], escape(known["title"])
+        image = f"<img src='_static/gallery/{name}.svg' alt='Path, states and controls of {name}' loading='lazy'>"
+        yield (
+            f"<figure>{image if (folder / f'{name}.svg').stat().st_size else ''}"
+            f"<figcaption><code>{name}</code>, model <code>{model}</code>: {title}. "
+            f"<b>{escape(known['verdict'])}</b></figcaption></figure>"
+        )
+    yield "</div>\n```"
 
 
 def _write(app: Sphinx) -> None:

@@ -2,11 +2,24 @@
 
 import inspect
 import os
+from importlib import import_module
 from pathlib import Path
 
 import click
 from sphinx.application import Sphinx
 
+GROUPS = {
+    "Instances and answers": "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve",
+    "What an answer is worth": "solution.Certificate solution.Check solution.Competitors",
+    "Many instances": "study front.studies.Study solvers.repeated.repeated.Repeated",
+    "Linear systems and orbits": "analyse lqr front.analysing.Analysis front.analysing.Regulator",
+    "Derivations": "derive front.derivation.Derivation front.derivation.Equation audit front.auditing.Audit",
+    "Stating a model": "Variable FirstOrder Newton Problem Free Box Ball Annulus Angle",
+}
+"""Names in satsym, and in its modules, by what they are for."""
+SHOWN_WHOLE = list(GROUPS)[:-1]
+"""With methods and properties; what is stated is on a page of its own."""
+MEMBERS = "   :members:\n   :inherited-members: Mapping, Generic, ABC, NDArrayOperatorsMixin\n"
 HEAD = "<!-- Written by `make docs`: do not edit. -->\n"
 
 
@@ -25,25 +38,26 @@ def commands() -> str:
 
 
 def interface() -> str:
-    """Each public name with its signature and what its docstring says."""
+    """Each public name, and what it returns, with signature and docstring."""
     import satsym
 
+    if missing := set(satsym.__all__).difference(*(names.split() for names in GROUPS.values())):
+        raise ValueError(f"docs/_ext/reference.py: in no group: {sorted(missing)}")
     parts = [HEAD, "# In Python\n", "`import satsym` loads nothing; each name is loaded when it is first used.\n"]
-    for name in satsym.__all__:
-        value = getattr(satsym, name)
-        parts.append(f"## satsym.{name}\n\n{_block(_signature(name, value) + chr(10) + (inspect.getdoc(value) or ''))}")
-        for method, function in inspect.getmembers(value, inspect.isroutine) if inspect.isclass(value) else ():
-            if not method.startswith("_") and inspect.getdoc(function) and function.__module__.startswith("satsym"):
-                said = _signature(f"{name}.{method}", function) + "\n" + (inspect.getdoc(function) or "")
-                parts.append(f"### {name}.{method}\n\n{_block(said)}")
+    for title, names in GROUPS.items():
+        parts.append(f"## {title}\n\n```{{eval-rst}}")
+        for name in names.split():
+            value, path = _found(name)
+            kind = "class" if inspect.isclass(value) else "function"
+            parts.append(f".. auto{kind}:: {path}\n" + (MEMBERS if title in SHOWN_WHOLE and kind == "class" else ""))
+        parts.append("```\n")
     return "\n".join(parts)
 
 
-def _signature(name: str, value: object) -> str:
-    try:
-        return f"{name}{inspect.signature(value)}\n"
-    except (TypeError, ValueError):
-        return f"{name}\n"
+def _found(name: str) -> tuple[object, str]:
+    """What has a name, and the path that it is known by: those without a dot are satsym's own."""
+    module, _, last = f"satsym.{name}".rpartition(".")
+    return getattr(import_module(module), last), f"{module}.{last}"
 
 
 def _block(text: str) -> str:

@@ -16,10 +16,12 @@ from typing import Any, cast
 import click
 
 from satsym import __version__
-from satsym.cli.options import language_option
+from satsym.cli.help import Explained, wanted_language
+from satsym.cli.options import language_option, shared_options
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.stopping import comes_of_a_stop, stopped
-from satsym.report import said
+from satsym.report import said, texts
+from satsym.report.said import explained
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -83,12 +85,20 @@ class Commands(Mapping[str, click.Command]):
 
 @cache
 def _loaded(name: str) -> click.Command:
-    command: click.Command = getattr(import_module(f"satsym.cli.commands.{name}"), name)
-    return language_option(command)
+    command: Any = getattr(import_module(f"satsym.cli.commands.{name}"), name)
+    return shared_options(command)
 
 
-class Program(click.Group):
+class Program(Explained, click.Group):
     """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """What it may be told, and its commands."""
+        super().format_options(ctx, formatter)
+        with formatter.section(explained("Commands")):
+            widest = max(map(len, self.commands))
+            room = formatter.width - 6 - widest
+            formatter.write_dl([(name, self.commands[name].get_short_help_str(room)) for name in self.commands])
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)
@@ -108,6 +118,7 @@ class Program(click.Group):
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )
+@language_option
 @click.version_option(__version__, message="satsym %(version)s")
 def program() -> None:
     """Derive, solve, typeset and audit satellite optimal control."""
@@ -120,9 +131,10 @@ def run(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     try:
-        said.ask(said.language())
+        arguments = list(sys.argv[1:] if argv is None else argv)
+        said.ask(wanted_language(arguments, ("en", *texts.languages())) or said.language())
         with hearable():  # help and usage are written by click itself
-            outcome = program.main(None if argv is None else list(argv), prog_name="satsym", standalone_mode=False)
+            outcome = program.main(arguments, prog_name="satsym", standalone_mode=False)
     except click.ClickException as error:
         with unless_unwritable():
             error.show()

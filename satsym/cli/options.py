@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from satsym.cli import names
+from satsym.cli.output import VOICE, Voice
 from satsym.report import said, texts
 from satsym.report.look import FORMATS, SCREEN, SIZES, Look
 from satsym.status import BadInput
@@ -70,6 +71,39 @@ language_option = click.option(
     callback=_spoken,
     help=f"Language of what people read; by default that of {said.VARIABLE}, or English.",
 )
+
+
+def _voice(asked: Voice) -> Callable[[click.Context, click.Parameter, bool], None]:
+    def heard(_context: click.Context, _option: click.Parameter, value: bool) -> None:
+        if value:
+            VOICE.set(asked)
+
+    return heard
+
+
+_quiet = click.option(
+    "--quiet",
+    "-q",
+    is_flag=True,
+    expose_value=False,
+    callback=_voice(Voice.QUIET),
+    help="Say nothing but what goes wrong; results go into files, or are printed with --json.",
+)
+_verbose = click.option(
+    "--verbose",
+    "-v",
+    is_flag=True,
+    expose_value=False,
+    callback=_voice(Voice.VERBOSE),
+    help="Say what is done, line by line, on stderr.",
+)
+
+
+def shared_options(command: Any) -> Any:
+    """What every command may be told."""
+    return _quiet(_verbose(language_option(command)))
+
+
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))
 trajectory_option = place_option(

@@ -8,11 +8,24 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from enum import Enum
 from typing import Any, TextIO, cast
 
 from satsym import activity
 from satsym.report import said
 
+
+class Voice(Enum):
+    """How much is said."""
+
+    QUIET = "quiet"
+    NORMAL = "normal"
+    VERBOSE = "verbose"
+
+
+VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
+"""As it was asked for, in one run."""
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
 
@@ -28,6 +41,12 @@ def emit(text: str) -> None:
     _write(sys.stdout, text if text.endswith("\n") else text + "\n")
 
 
+def tell(text: str) -> None:
+    """The same for people alone, unless these want to hear nothing."""
+    if VOICE.get() is not Voice.QUIET:
+        emit(text)
+
+
 def emit_json(value: Mapping[str, Any]) -> None:
     """Write an object to stdout as JSON."""
     from satsym.report.results.files import to_json
@@ -36,10 +55,10 @@ def emit_json(value: Mapping[str, Any]) -> None:
 
 
 def answer(as_json: bool, value: Mapping[str, Any], text: Callable[[], str]) -> None:
-    """Write what a command found, for programs or for people."""
+    """Write what a command found, for programs or for people, unless these want to hear nothing."""
     if as_json:
         emit_json(value)
-    else:
+    elif VOICE.get() is not Voice.QUIET:  # nor need it be made
         emit(text())
 
 
@@ -112,10 +131,14 @@ def in_colour() -> bool:
 
 
 class Live:
-    """One line on stderr that is written over and over; nothing at all where stderr is no terminal."""
+    """One line on stderr that is written over and over; nothing at all where stderr is no terminal.
+
+    Who wants to hear everything has a line for each state, wherever stderr goes.
+    """
 
     def __init__(self) -> None:
-        self._shown = _is_terminal(sys.stderr)
+        self._kept = VOICE.get() is Voice.VERBOSE
+        self._shown = not self._kept and VOICE.get() is Voice.NORMAL and _is_terminal(sys.stderr)
         self._due = 0.0
 
     def show(self, text: str) -> None:
@@ -125,6 +148,10 @@ class Live:
 
     def replace(self, text: str) -> None:
         """Replace the line at once, for what is said now may stand for long."""
+        if self._kept:
+            self._due = time.monotonic() + INTERVAL
+            with unless_unwritable():
+                _write(sys.stderr, f"{text}\n")
         if self._shown:
             self._due = time.monotonic() + INTERVAL
             width = shutil.get_terminal_size().columns - 1

@@ -16,7 +16,7 @@ import pytest
 from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES = [DOCS / "start.md", *sorted((DOCS / "tutorials").glob("*.md"))]
+PAGES = [DOCS / "start.md", DOCS / "howto.md", *sorted((DOCS / "tutorials").glob("*.md"))]
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -26,13 +26,21 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
         yield from re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE)
 
 
+def files(text: str) -> Iterator[tuple[str, str]]:
+    """Each file that is shown whole, by the name that its first line says."""
+    yield from re.findall(r"```toml\n# (\w+\.toml)\n(.*?)```", text, re.DOTALL)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_commands_print_what_the_page_says(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    for command, printed in sessions(page.read_text(encoding="utf-8")):
+    text = page.read_text(encoding="utf-8")
+    for name, content in files(text):
+        Path(name).write_text(content, encoding="utf-8")
+    for command, printed in sessions(text):
         program, *arguments = shlex.split(command)
         assert program == "satsym"
         assert cli.main(arguments) == 0, command

@@ -15,7 +15,7 @@ import pytest
 
 from satsym import instance, kernels
 from satsym.cli.app import program
-from satsym.report.said import _groups
+from satsym.report.said import translations
 from satsym.report.texts import languages
 
 EXCEPT = re.compile(r"\((?:but|kecuali): ([^)]*)\)")
@@ -145,7 +145,7 @@ def test_typeset_texts_use_the_words_of_their_glossary(
 
 @pytest.mark.parametrize("language", [each for each in languages() if each != "en"])
 def test_translated_messages_use_the_words_of_their_glossary(language: str, glossaries: dict[str, str]) -> None:
-    texts = {english: text for each in _groups(language).values() for english, text in each.items()}
+    texts = translations(language)
     assert len(texts) > 300
     assert complaints(texts.items(), avoided(glossaries[language])) == []
 

@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 
 from satsym import instance, kernels
 from satsym.analysis.orbits.conic import Conic
+from satsym.cli.app import program
+from satsym.cli.help import texts
 from satsym.report import plots, said
 from satsym.report.said import counted, decimal, message, numbers, say, spoken, translations
 from satsym.solvers import simulate, solve
@@ -68,7 +70,11 @@ def test_every_text_that_is_looked_up_has_a_translation_with_the_same_places() -
 
 def test_nothing_is_translated_that_is_nowhere_said() -> None:
     known = {*AUTHORED, *written(), *(one.value for one in EVERY), *(anonymous(text) for text in COMPOSED)}
-    assert [text for text in INDONESIAN if anonymous(text) not in known] == []
+    helping = said.group("id", "help")
+    assert [text for text in INDONESIAN.keys() - helping.keys() if anonymous(text) not in known] == []
+    assert [
+        text for text in helping if not any(map(said._pattern(text).fullmatch, HELP | {*COMPOSED, *looked_up()}))
+    ] == []
 
 
 COMPOSED = (
@@ -76,8 +82,18 @@ COMPOSED = (
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
+    *(
+        "Usage",
+        "Options",
+        "Commands",
+        "[OPTIONS]",
+        "COMMAND [ARGS]...",
+        "Show this message and exit.",
+        "Show the version and exit.",
+    ),
 )
 """What stands nowhere as it is said."""
+HELP = {text for command in (program, *program.commands.values()) for text in texts(command)}
 EVERY: tuple[Enum, ...] = (*Status, *Verdict, *Conic)
 
 
@@ -87,7 +103,7 @@ def test_every_status_and_verdict_has_a_word(word: Enum) -> None:
         assert message(word.value) == INDONESIAN[word.value]
 
 
-@given(st.sampled_from(sorted(said._groups("id")["messages"])), st.text("abc xyz", min_size=1, max_size=6))
+@given(st.sampled_from(sorted(said.group("id", "messages"))), st.text("abc xyz", min_size=1, max_size=6))
 def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None:
     """Unless it is what another text says as well, filled in otherwise."""
     holes = {name: value if not name.startswith("said_") else "converged" for name in HOLE.findall(text)}
@@ -153,6 +169,16 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
     shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\] \w+|bukan TOML yang sah: [^;]*", "", other[2]))
     assert not ENGLISH.search(shown), other[2]
     assert other[2] != english[2]
+
+
+@pytest.mark.parametrize("command", ["", *program.commands])
+def test_the_help_is_indonesian_wherever_the_language_is_asked_for(run: Run, command: str) -> None:
+    _, shown, _ = run(*command.split(), "--help", "--lang", "id")
+    assert shown == run("--lang", "id", *command.split(), "--help")[1]
+    names = re.compile(r"--\S+|^ .*satsym .*?(?=  |$)|(?:initial|final|control)\.\S+|\b[A-Z_]{2,}\b", re.MULTILINE)
+    assert [line for line in NAMES.sub("", names.sub("", shown)).splitlines() if ENGLISH.search(line)] == []
+    with spoken("id"):
+        assert [text for text in HELP if text == said.explained(text)] == []
 
 
 def test_one_run_leaves_its_language_to_no_other(run: Run) -> None:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option, out_option, plot_options
-from satsym.cli.output import emit, emit_json, in_colour
+from satsym.cli.output import emit_json, in_colour, tell
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
@@ -31,7 +32,7 @@ Examples:
   satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr/analyse"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
 @json_option
 @out_option
@@ -61,7 +62,7 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
     if as_json:
         emit_json(result)
     else:
-        emit(with_files(_text(found, orbit, resting), saved))
+        tell(with_files(_text(found, orbit, resting), saved))
     return ExitCode.DONE
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option, place_option
 from satsym.cli.output import answer, live
 from satsym.report.said import language
@@ -22,7 +23,7 @@ Examples:
   satsym audit its_thesis --coverage --text thesis.txt   what of a text has no row"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("ledgers", metavar="[LEDGER]...", nargs=-1, shell_complete=names.completed(names.documents))
 @json_option
 @place_option("--html", metavar="FILE", help="Write a report as a page of its own, too.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import answer, live
 from satsym.status import ExitCode
@@ -20,7 +21,7 @@ Examples:
 Exit codes: 0 measured, 4 measured, but the instance has no answer."""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
 @click.option("--quick", is_flag=True, help="Half a second for each kind of step instead of five.")
 @json_option

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option, out_option, plot_options
 from satsym.cli.output import answer, complain, live
 from satsym.cli.saving import folder_for, save
@@ -29,7 +30,7 @@ FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Of the instance's damping and command, in a range."""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("subjects", metavar="X...", nargs=-1, required=True, shell_complete=names.completed(names.instances))
 @json_option
 @click.option("--range", "ranged", is_flag=True, help="Vary damping and command of the first instance's law.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 from click.shell_completion import get_completion_class
 
+from satsym.cli.help import command
 from satsym.cli.output import emit
 from satsym.status import ExitCode
 
@@ -17,7 +18,7 @@ Examples:
   satsym completion fish > ~/.config/fish/completions/satsym.fish"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("shell", metavar="SHELL", type=click.Choice(SHELLS))
 def completion(shell: str) -> ExitCode:
     """Print what lets a SHELL complete what one types: bash, zsh or fish.

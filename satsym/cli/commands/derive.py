@@ -9,9 +9,11 @@ from pathlib import Path
 import click
 
 from satsym.cli.derivations import checkout
+from satsym.cli.help import command
 from satsym.cli.options import place_option
-from satsym.cli.output import Live, complain, emit, live
+from satsym.cli.output import Live, complain, emit, live, tell
 from satsym.cli.requirements import refuse_other_versions
+from satsym.report.said import say
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -30,7 +32,7 @@ SIGNATURE = "Written by satsym from "
 """What the machine writes says so, and nothing else is ever removed."""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
@@ -67,15 +69,15 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
         renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh, max_seconds=max_seconds)
     changed = {name: text for name, text in renewed.items() if text is not None and not _holds(folder / name, text)}
     artefacts.write(changed, folder)
-    done = [f"{folder / name}  {'written' if name in changed else 'unchanged'}" for name in renewed]
+    done = [f"{folder / name}  {say('written' if name in changed else 'unchanged')}" for name in renewed]
     if whole:
         done += _leftovers_removed(folder, renewed)
-    emit("\n".join(done))
+    tell("\n".join(done))
     return ExitCode.DONE
 
 
 def _announcing(line: Live) -> Callable[[str], None]:
-    return lambda name: line.show(f"derived {name} ...")
+    return lambda name: line.show(say("derived <name> ...", name=name))
 
 
 def _checked_in(paths: Sequence[Path]) -> Path:
@@ -96,7 +98,7 @@ def _command(files: Sequence[str], out: Path | None) -> str:
 
 def _compare(differences: Sequence[str], folder: Path, command: str) -> ExitCode:
     if not differences:
-        emit(f"{folder} is what the derivations say")
+        tell(say("<folder> is what the derivations say", folder=folder))
         return ExitCode.DONE
     emit("".join(differences))
     complain(f"{folder} is not what the derivations say; run: {command}")
@@ -117,5 +119,10 @@ def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
             ours = SIGNATURE in path.read_text("utf-8", "replace")
             if ours:
                 path.unlink()
-            lines.append(f"{path}  {'removed' if ours else 'is not from satsym; remove it'}: no derivation leads to it")
+            said = (
+                "removed: no derivation leads to it"
+                if ours
+                else "no derivation leads to it, and satsym did not write it"
+            )
+            lines.append(f"{path}  {say(said)}")
     return lines

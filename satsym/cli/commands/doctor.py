@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import click
-
+from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import emit, emit_json, live
+from satsym.report.said import each, say
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -15,7 +15,7 @@ Example:
 Exit codes: 0 all that is required is here, 1 something required is broken."""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @json_option
 def doctor(as_json: bool) -> ExitCode:
     """Examine the installation.
@@ -26,11 +26,11 @@ def doctor(as_json: bool) -> ExitCode:
     from satsym.report.terminal.table import table
 
     with live() as line:
-        findings = examine(lambda name: line.show(f"examining {name} ..."))
+        findings = examine(lambda name: line.show(say("examining <name> ...", name=name)))
     healthy = not any(finding.broken for finding in findings)
     if as_json:
         emit_json({"healthy": healthy, "findings": [finding.as_object() for finding in findings]})
     else:
         rows = [(f.mark, f.name, f.value, f.note) for f in findings]
-        emit("\n".join(table([("", "what", "found", "note"), *rows], indent="")))
+        emit("\n".join(table([("", *each("what", "found", "note")), *rows], indent="")))
     return ExitCode.DONE if healthy else ExitCode.UNFORESEEN

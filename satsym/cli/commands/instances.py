@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import answer, emit, emit_json
 from satsym.status import ExitCode
@@ -19,7 +20,7 @@ The type is that of the transversality conditions: 1 final time and final state 
 3 final state free, 4 final time free and final state on the reference, 5 both free."""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("name", metavar="[X]", required=False)
 @click.option("--keys", is_flag=True, help="List what an instance file may say, key by key.")
 @click.option("--schema", is_flag=True, help="The same as JSON Schema.")

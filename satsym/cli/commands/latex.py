@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import place_option
 from satsym.cli.output import emit, live
 from satsym.report.said import language
@@ -23,7 +24,7 @@ Examples:
   satsym latex my_model.py:my_problem   one of several in a file"""
 
 
-@click.command(epilog=f"\b{EXAMPLES}")
+@command(epilog=f"\b{EXAMPLES}")
 @click.argument("name", shell_complete=names.completed(names.models, names.derivations))
 @place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option, out_option, plot_options, set_option
 from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
@@ -25,7 +26,7 @@ Examples:
   satsym lqr clohessy_wiltshire         a model: all inputs, all weights 1"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
 @set_option
 @json_option

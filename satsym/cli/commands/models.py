@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli import names
+from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import answer
 from satsym.status import ExitCode
@@ -18,7 +19,7 @@ Examples:
   satsym models DIR/my_model            one that `satsym derive my_model.py --out DIR` wrote"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("model", required=False, shell_complete=names.completed(names.models))
 @json_option
 def models(model: str | None, as_json: bool) -> ExitCode:

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import click
 
+from satsym.cli.help import command
 from satsym.cli.options import place_option
-from satsym.cli.output import emit
+from satsym.cli.output import tell
+from satsym.report.said import say
 from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
@@ -26,7 +28,7 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @click.argument("name")
 @click.option("--instance", "original", metavar="X", help="Copy this shipped instance instead, to NAME.toml.")
 @place_option("--out", metavar="DIR", help="Write there; without it a model goes into NAME/, an instance here.")
@@ -47,7 +49,8 @@ def new(name: str, original: str | None, out: Path | None) -> ExitCode:
     for path, (text, _) in texts.items():
         write_text(path, text)
     width = max(len(str(path)) for path in texts)
-    emit("\n".join([*(f"{path!s:{width}}  {what}" for path, (_, what) in texts.items()), "", "Next:", *following]))
+    made = (f"{path!s:{width}}  {what}" for path, (_, what) in texts.items())
+    tell("\n".join([*made, "", say("Next:"), *following]))
     return ExitCode.DONE
 
 
@@ -68,7 +71,7 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
     texts = {}
     for template, (pattern, what) in FILES.items():
         text = (TEMPLATES / template).read_text(encoding="utf-8").replace("$name", name)
-        texts[folder / pattern.format(name)] = (text, what)
+        texts[folder / pattern.format(name)] = (text, say(what))
     model, instance, test = texts
     return texts, [
         f"  satsym derive {model} --out {folder / 'generated'}",
@@ -90,4 +93,5 @@ def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str,
     source = files.locate(original)
     path = folder / f"{name}.toml"
     command = "solve" if instance.load(original).model.spec.has_cost else "analyse"
-    return {path: (source.read_text(encoding="utf-8"), f"a copy of {original}")}, [f"  satsym {command} {path} --plot"]
+    content = source.read_text(encoding="utf-8"), say("a copy of <name>", name=original)
+    return {path: content}, [f"  satsym {command} {path} --plot"]

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
+from satsym.cli.help import command
 from satsym.cli.options import json_option, look_options, place_option, subject_argument
-from satsym.cli.output import answer, emit, emit_json
+from satsym.cli.output import answer, emit_json, tell
 from satsym.cli.saving import saved_folder, split, study_folder
+from satsym.report.said import say
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -28,7 +28,7 @@ Examples:
   satsym plot soft-return --from run    of what `satsym solve soft-return --out run` wrote"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @subject_argument
 @place_option(
     "--from",
@@ -71,7 +71,7 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
         begins = head("plot", case.model.spec, case, result.status)
         emit_json(begins | {"pictures": [str(path) for path in saved]})
     else:
-        emit(with_files(case.title or case.name, saved) if saved else "there is no trajectory to draw")
+        tell(with_files(say(case.title) or case.name, saved) if saved else say("there is no trajectory to draw"))
     return ExitCode.DONE
 
 

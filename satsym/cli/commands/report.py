@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.cli.help import command
 from satsym.cli.options import place_option, subject_argument
-from satsym.cli.output import emit, live
+from satsym.cli.output import live, tell
 from satsym.report.said import language, message, say
 from satsym.status import BadInput, ExitCode, Verdict
 
@@ -23,7 +24,7 @@ Examples:
   satsym report my_case.toml --html my_case.html --derivation my_model.py"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
@@ -47,7 +48,7 @@ def report(subject: str, page: Path | None, stated: Path | None) -> ExitCode:
         line.show(say("drawing ..."))
         text = render(solution, derivation, subject, language(), str(stated or ""))
     write_text(page, text)
-    emit(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
+    tell(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER
     failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED

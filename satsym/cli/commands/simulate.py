@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.cli.help import command
 from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
 from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
@@ -28,7 +29,7 @@ Examples:
   satsym simulate lapan-minimum-time --feedback pulses       the same by a sensor of the position alone"""
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @subject_argument
 @click.option(
     "--feedback",

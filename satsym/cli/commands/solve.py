@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from satsym import methods
+from satsym.cli.help import command
 from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.report.look import Look
 
-METHODS = "\n".join(f"  {method.name:<14}{method.title}" for method in methods.METHODS.values())
+METHODS = "\n".join(f"  {method.name:<15}{method.title}" for method in methods.METHODS.values())
 
 EXAMPLES = f"""\b
 Methods, instead of the instance's (auto is the one that fits):
@@ -42,7 +43,7 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
     return value
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @subject_argument
 @json_option
 @trajectory_option

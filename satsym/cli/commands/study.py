@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from satsym.choices import Checked, Choice, Command, Sampling, TableFormat
+from satsym.cli.help import command
 from satsym.cli.options import json_option, place_option, plot_options, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
@@ -39,7 +40,7 @@ def _listed(choices: type[Choice]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-@click.command(epilog=EXAMPLES)
+@command(epilog=EXAMPLES)
 @subject_argument
 @click.option("--vary", multiple=True, metavar="KEY=LOW:HIGH:N", help="A grid of N values; log: of equal ratio.")
 @click.option("--sample", type=int, metavar="N", help="Draw N rows, instead of a grid.")

@@ -43,8 +43,13 @@ def pictures(solution: Solution, texts: Texts) -> list[Markup]:
     return found
 
 
+def themed(svg: str) -> str:
+    """The element ``svg`` alone, its colours being those that the style sheets of a page name."""
+    body = _ABOUT.sub("", _BEFORE.sub("", svg)).strip()
+    return _COLOUR.sub(lambda found: f"var(--{_COLOURS[found[0]]})", body)
+
+
 def _inline(svg: str, name: str, said: str) -> Markup:
     """The element alone, with names of its own, and with words for those who do not see it."""
-    body = _ABOUT.sub("", _BEFORE.sub("", svg)).strip()
-    body = _COLOUR.sub(lambda found: f"var(--{_COLOURS[found[0]]})", _NAMED.sub(rf"\g<1>{name}-", body))
+    body = _NAMED.sub(rf"\g<1>{name}-", themed(svg))
     return Markup(body.replace("<svg ", str(tag("svg", role="img", aria_label=said))[: -len("></svg>")] + " ", 1))

@@ -142,8 +142,9 @@ def applied(look: Look = SCREEN) -> Iterator[None]:
     """Draw in this style, whatever the user's matplotlibrc says; afterwards their settings are back."""
     import logging
 
-    # what it logs, such as fonts that it looks for, would else go to stderr where nobody listens
-    logging.getLogger("matplotlib").addHandler(logging.NullHandler())
+    # what they log, such as fonts that are looked for, would else go to stderr where nobody listens
+    for library in ("matplotlib", "fontTools"):
+        logging.getLogger(library).addHandler(logging.NullHandler())
     import matplotlib
 
     with matplotlib.rc_context(), warnings.catch_warnings():

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
+from pathlib import Path
 
 from satsym import wording
 from satsym.status import BadInput
@@ -109,6 +110,13 @@ def message(text: str) -> str:
     return text if found is None else found
 
 
+def explained(text: str) -> str:
+    """A text of the help; nothing else is read for it, since help is to be quick."""
+    asked = language()
+    known = {} if asked == "en" else group(asked, "help")
+    return known.get(text) or _filled_in(text, asked, "help") or text
+
+
 def _by_parts(parts: Sequence[str], asked: str) -> str | None:
     """The translation of clauses with what is between them; of as many together as there is one for."""
     for count in range(len(parts), 0, -2):
@@ -124,12 +132,15 @@ def _by_parts(parts: Sequence[str], asked: str) -> str | None:
     return None
 
 
-def _translated(text: str, asked: str, group: str = "messages") -> str | None:
+def _translated(text: str, asked: str, name: str = "messages") -> str | None:
     """The translation of a text, or of the one whose filled in form it is."""
     exact = translations(asked).get(text)
-    if exact is not None:
-        return exact
-    for pattern, translation in _patterns(asked, group):
+    return _filled_in(text, asked, name) if exact is None else exact
+
+
+def _filled_in(text: str, asked: str, name: str) -> str | None:
+    """The translation of the text whose filled in form it is."""
+    for pattern, translation in _patterns(asked, name):
         if found := pattern.fullmatch(text):
             parts = {
                 k: _inside(part, asked) if k.startswith(_TEXT_PLACE) else part for k, part in found.groupdict().items()
@@ -158,8 +169,8 @@ def _filled(text: str, fill: Mapping[str, object]) -> str:
 def translations(asked: str) -> Mapping[str, str]:
     """English -> that language; nothing where there is no file."""
     found = dict(_of_models(asked))
-    for texts in _groups(asked).values():
-        found |= texts
+    for file in (Path(__file__).parent / asked).glob("*.toml"):
+        found |= group(asked, file.stem)
     return found
 
 
@@ -177,26 +188,25 @@ def _of_models(asked: str) -> Iterator[tuple[str, str]]:
 
 
 @cache
-def _groups(asked: str) -> Mapping[str, Mapping[str, str]]:
-    """The same by file.
+def group(asked: str, name: str) -> Mapping[str, str]:
+    """The texts of one file; none where there is no such file.
 
     ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``messages`` is known again in
-    whatever way it is filled in, and so are ``items``, which lists in such texts consist of.
+    whatever way it is filled in, and so are ``items``, which lists in such texts consist of, and ``help``.
     """
     import tomllib  # nothing of this for English
-    from pathlib import Path
 
-    found = {}
-    for file in (Path(__file__).parent / asked).glob("*.toml"):
-        tables = tomllib.loads(file.read_text(encoding="utf-8")).values()
-        found[file.stem] = {english: text for table in tables for english, text in table.items()}
-    return found
+    try:
+        content = (Path(__file__).parent / asked / f"{name}.toml").read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return {}
+    return {english: text for table in tomllib.loads(content).values() for english, text in table.items()}
 
 
 @cache
-def _patterns(asked: str, group: str) -> list[tuple[re.Pattern[str], str]]:
+def _patterns(asked: str, name: str) -> list[tuple[re.Pattern[str], str]]:
     """Texts with places in them as patterns, what says most of itself first."""
-    phrases = _groups(asked).get(group, {})
+    phrases = group(asked, name)
     with_places = {english: text for english, text in phrases.items() if _HOLE.search(english)}
     by_length = sorted(with_places, key=lambda english: -len(_HOLE.sub("", english)))
     return [(_pattern(english), with_places[english]) for english in by_length]

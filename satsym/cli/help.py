@@ -1,0 +1,119 @@
+"""The help of commands, in the language that was asked for.
+
+It is written in English where a command is. Each paragraph of it, each remark beside an example and what is said of
+each option is a text of its own, whose translation is in ``help.toml`` of that language.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from inspect import cleandoc
+from itertools import pairwise
+from typing import Any
+
+import click
+
+from satsym.report.said import explained, language
+
+_AS_IT_IS = "\b\n"
+"""Begins paragraphs whose lines click leaves alone."""
+_ENTRY = re.compile(r"(  \s*\S.*?)(?:(\s{2,})(\S.*))?")
+"""A line with an example, and what is said of it."""
+
+
+def texts(command: click.Command) -> Iterator[str]:
+    """All that the help of a command says, text by text."""
+    for whole in (command.help, command.epilog):
+        for paragraph in _paragraphs(whole or ""):
+            entries = [_ENTRY.fullmatch(line) for line in paragraph.splitlines()]
+            if any(entries):
+                heads = (line for line, entry in zip(paragraph.splitlines(), entries, strict=True) if not entry)
+                yield from (line for line in heads if line != _AS_IT_IS.strip("\n"))
+                yield from (entry[3] for entry in entries if entry and entry[3])
+            else:
+                yield _joined(paragraph)
+    yield from (option.help for option in command.params if isinstance(option, click.Option) and option.help)
+
+
+def _paragraphs(text: str) -> list[str]:
+    return [part for part in re.split(r"\n\s*\n", cleandoc(text)) if part.strip()]
+
+
+def _joined(paragraph: str) -> str:
+    return " ".join(paragraph.removeprefix(_AS_IT_IS).split())
+
+
+def translated(text: str) -> str:
+    """A docstring or an epilog, in the language asked for."""
+    return cleandoc(text) if language() == "en" else "\n\n".join(map(_translated, _paragraphs(text)))
+
+
+def _translated(paragraph: str) -> str:
+    lines = paragraph.splitlines()
+    if any(map(_ENTRY.fullmatch, lines)):
+        return "\n".join(map(_line, lines))
+    return explained(_joined(paragraph))
+
+
+def _line(line: str) -> str:
+    entry = _ENTRY.fullmatch(line)
+    if entry is None:
+        return explained(line)
+    return f"{entry[1]}{entry[2]}{explained(entry[3])}" if entry[3] else line
+
+
+class Explained(click.Command):
+    """A command whose help is in the language asked for."""
+
+    def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """How it is called."""
+        pieces = (explained(piece) for piece in self.collect_usage_pieces(ctx))
+        formatter.write_usage(ctx.command_path, " ".join(pieces), f"{explained('Usage')}: ")
+
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """What it does."""
+        _write(formatter, self.help)
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """What it may be told."""
+        records = []
+        for option in self.get_params(ctx):
+            if isinstance(option, click.Option) and (record := option.get_help_record(ctx)) is not None:
+                said = option.help or ""
+                records.append((record[0], record[1].replace(said, explained(said)) if said else record[1]))
+        if records:
+            with formatter.section(explained("Options")):
+                formatter.write_dl(records)
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Examples, and what else there is to know."""
+        _write(formatter, self.epilog)
+
+    def get_short_help_str(self, limit: int = 45) -> str:
+        """What it does, in a line of the list of commands."""
+        if language() == "en":
+            return super().get_short_help_str(limit)
+        first = _translated(_paragraphs(self.help or "")[0]).rstrip(".")
+        return first if len(first) <= limit else first[: limit - 3].rsplit(" ", 1)[0] + "..."
+
+
+def _write(formatter: click.HelpFormatter, text: str | None) -> None:
+    if text:
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(translated(text))
+
+
+def command(epilog: str) -> Callable[[Callable[..., Any]], click.Command]:
+    """A command with such help; ``epilog`` has its examples."""
+    return click.command(cls=Explained, epilog=epilog)
+
+
+def wanted_language(arguments: list[str], known: tuple[str, ...]) -> str | None:
+    """The language that a command line asks for, wherever in it: help may be asked for before that."""
+    for before, after in pairwise([*arguments, ""]):
+        name = after if before == "--lang" else before.removeprefix("--lang=")
+        if name in known and name != before:
+            return name
+    return None
