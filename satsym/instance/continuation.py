@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from satsym.instance.numbers import Key, Table, known
+from satsym.instance.numbers import Key, Table, named
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
-from satsym.wording import printable, shown, suggestion
+from satsym.wording import printable, shown
 
 if TYPE_CHECKING:
     from satsym.instance.types import Instance
@@ -49,15 +49,14 @@ def varied(
     BadInput
         If there is no such number, or it is free, or both ends are the same.
     """
-    keys = {key.short: key for key in known(spec) if key.table is not Table.CONTROL}
     if table and not spec.has_cost:
         raise BadInput(f"[continuation]: the model {spec.name} has no cost, so there is nothing to solve; remove it")
-    found = []
+    found = list[Varied]()
     for name, ends in table.items():
         place = f"[continuation] {printable(name)}"
-        key = keys.get(name)
-        if key is None:
-            raise BadInput(f"{place}: no parameter, time or end of the model; {suggestion(name, keys)}")
+        key = named(name, given, place, without=Table.CONTROL)
+        if any(one.key == key for one in found):
+            raise BadInput(f"{place}: is there twice, as {key.short} and as {key.text}; remove one of the two")
         begin, end = (key.value(one, spec, place) for one in ends)
         if begin == end:
             raise BadInput(f"{place}: both values are {shown(ends[0])}; write where it begins and where it ends")

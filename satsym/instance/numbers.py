@@ -188,10 +188,7 @@ def find(text: str, instance: Instance) -> Key:
     BadInput
         If there is none, or the instance gives no number for it.
     """
-    names = {key.text: key for key in known(instance.model.spec)}
-    key = names.get(text)
-    if key is None:
-        raise BadInput(f"{printable(text)}: {printable(instance.name)} has no such number; {_instead(text, names)}")
+    key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
         raise BadInput(f"{key.text}: {printable(instance.name)} has a range for it, which is set in its file alone")
     if not key.given(instance):
@@ -199,10 +196,29 @@ def find(text: str, instance: Instance) -> Key:
     return key
 
 
-def _instead(text: str, names: dict[str, Key]) -> str:
-    """What to write; bare names, which tables have too, are found by their ends."""
-    ending = [name for name in names if name.partition(".")[2] == text]
-    return f'did you mean "{ending[0]}"?' if ending else suggestion(text, names)
+def named(text: str, instance: Instance, place: str, without: Table | None = None) -> Key:
+    """The key of a name, be it the whole one or the short one.
+
+    Parameters
+    ----------
+    place
+        Where messages say that it stands.
+    without
+        A table whose numbers are not meant.
+
+    Raises
+    ------
+    BadInput
+        If there is none.
+    """
+    keys = [key for key in known(instance.model.spec) if key.table is not without]
+    for key in keys:
+        if text in (key.text, key.short):
+            return key
+    # bare names, which tables have too, are found by their ends
+    names, ending = [key.text for key in keys], [key.text for key in keys if key.name == text]
+    instead = f'did you mean "{ending[0]}"?' if ending else suggestion(text, names)
+    raise BadInput(f"{place}: {printable(instance.name)} has no such number; {instead}")
 
 
 def changed(instance: Instance, values: Mapping[str, float]) -> Instance:

@@ -36,9 +36,9 @@ def design(asked: StudyTable, instance: Instance) -> Design:
         known = ", ".join(key.text for key in keys.known(instance.model.spec))
         raise BadInput(f"nothing varies; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
     seen: set[str] = set()
-    for key in (*(key for key, _ in vary), *(key for _, key, _ in drawn)):
-        if key in seen:
-            raise BadInput(f"{printable(key)}: varies twice; remove one of the two")
+    for name in (*(name for name, _ in vary), *(name for _, name, _ in drawn)):
+        if (key := keys.find(name, instance).text) in seen:
+            raise BadInput(f"{key}: varies twice; remove one of the two")
         seen.add(key)
     if vary:
         if unused := [name for name in ("method", "seed") if getattr(asked, name) is not None]:
@@ -139,5 +139,10 @@ def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
     BadInput
         If a key does not exist, or a value is not possible.
     """
-    pairs = [(keys.find(name, instance), text) for name, text in read_pairs(entries, "set").items()]
-    return {key.text: key.value(_number(text, key), instance.model.spec) for key, text in pairs}
+    found = dict[str, float]()
+    for name, text in read_pairs(entries, "set").items():
+        key = keys.find(name, instance)
+        if key.text in found:
+            raise BadInput(f"--set {key.text}: is there twice; remove one of the two")
+        found[key.text] = key.value(_number(text, key), instance.model.spec)
+    return found

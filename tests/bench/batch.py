@@ -297,7 +297,7 @@ def main() -> None:
     subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
     subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
     subjects |= {"8": lambda: [growth.growth()], "9": lambda: [two_processes()]}
-    subjects |= {"10": lambda: single.single(population(single.ROUNDS))}
+    subjects |= {"10": lambda: single.single(population(single.COUNT))}
     for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
         try:
             made = subject()

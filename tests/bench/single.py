@@ -1,6 +1,7 @@
 """One instance at a time: returns to the orbit from all around, their certificates, and CasADi with Ipopt.
 
-Each round has an instance of its own, which all are given shortly after one another.
+Each round has instances of its own, a few at a time as one solves again and again, which all are given shortly after
+one another.
 """
 
 from __future__ import annotations
@@ -8,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,8 @@ from ends import program
 from rows import Goal, Row, Table
 from timing import Samples, interleaved
 
-ROUNDS, CERTIFIED = 60, 20
-"""Instances that are solved, and those of them that are certified."""
+COUNT, CERTIFIED, BLOCK = 100, 20, 5
+"""Instances that are solved, those of them that are certified, and how many at a time."""
 
 
 def single(cases: Sequence[Any]) -> list[Table]:
@@ -34,7 +34,7 @@ def single(cases: Sequence[Any]) -> list[Table]:
             cold: lambda case: solve(case, examined=False),
             alone: lambda case: loop(np.array(case.initial)),
         },
-        cases[:ROUNDS],
+        cases,
     )
     goals = {
         warm: (Goal("milliseconds", found[warm].middle * 1e3, 1.0),),
@@ -44,7 +44,7 @@ def single(cases: Sequence[Any]) -> list[Table]:
         Row(name, one.least * 1e3, one.middle * 1e3, one.times(found[cold]), goals.get(name, ()))
         for name, one in found.items()
     ]
-    title = f"10. One instance at a time, {ROUNDS} returns to the orbit"
+    title = f"10. One instance at a time, {len(cases)} returns to the orbit"
     return [Table(title, "milliseconds", tuple(made)), _certified(cases[:CERTIFIED])]
 
 
@@ -56,11 +56,11 @@ def _certified(cases: Sequence[Any]) -> Table:
 
     answers = [solve(case, examined=False) for case in cases]
     answers = [one for one in answers if one.status.answered]
-    counts: list[int] = []
+    counts: set[int] = set()
 
     def compared(answer: Any) -> None:
         comparison = competitors.compared(answer, time.perf_counter() + 60.0)
-        counts.append(sum(kind.summary.tried for kind in comparison.kinds))
+        counts.add(sum(kind.summary.tried for kind in comparison.kinds))
 
     solving, measured, each = "all of solve", "conditions, Jacobi's and neighbours", "each competitor"
     found = _in_turn(
@@ -71,9 +71,7 @@ def _certified(cases: Sequence[Any]) -> Table:
         },
         answers,
     )
-    tried = counts[-len(answers) :]
-    shares = tuple(seconds / count for seconds, count in zip(found[each].seconds, tried, strict=True))
-    found[each] = Samples(shares)
+    found[each] = Samples(tuple(seconds / max(counts) for seconds in found[each].seconds))
     goals = {
         measured: (Goal("of a solution", found[measured].times(found[solving]), 5.0),),
         each: (Goal("of a solution", found[each].times(found[solving]), 1.5),),
@@ -86,11 +84,17 @@ def _certified(cases: Sequence[Any]) -> Table:
 
 
 def _in_turn(calls: dict[str, Callable[[Any], object]], given: Sequence[Any]) -> dict[str, Samples]:
-    """One round for each of what is given, after one that counts for nothing."""
+    """Seconds for one of what is given: rounds of so many at a time, after one call that counts for nothing."""
+    blocks = [given[at : at + BLOCK] for at in range(0, len(given), BLOCK)]
 
     def over(call: Callable[[Any], object]) -> Callable[[], object]:
         call(given[-1])
-        ahead = cycle(given)
-        return lambda: call(next(ahead))
+        ahead = iter(blocks)
+        return lambda: [call(one) for one in next(ahead)]
 
-    return interleaved({name: over(call) for name, call in calls.items()}, len(given), least=0.0)
+    found = interleaved({name: over(call) for name, call in calls.items()}, len(blocks), least=0.0)
+    sizes = [len(block) for block in blocks]
+    return {
+        name: Samples(tuple(seconds / size for seconds, size in zip(one.seconds, sizes, strict=True)))
+        for name, one in found.items()
+    }

@@ -176,7 +176,8 @@ def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: P
         assert stored["controls"].tolist() == ["u1", "u2"]
     with (tmp_path / "trajectory.csv").open(encoding="utf-8", newline="") as stream:
         header, *rows = csv.reader(stream)
-    assert header == ["t", *STATES, "u1", "u2", *(f"lambda_{name}" for name in STATES)]
+    assert [name.partition(" [")[0] for name in header] == ["t", *STATES, "u1", "u2", *(f"lambda_{s}" for s in STATES)]
+    assert {"t [s]", "r_dot [km/s]", "u2 [km/s**2]", "lambda_r [km/s**3]"} <= set(header)
     columns = np.array(rows, dtype=float).T
     np.testing.assert_array_equal(columns, np.vstack([solution.times, solution.x, solution.u, solution.lam]))
 

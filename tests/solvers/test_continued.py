@@ -100,14 +100,15 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert count > 1
     assert sorted(path.name for path in tmp_path.glob("step-*.csv")) == [f"step-{k:03d}.csv" for k in range(count)]
     first = (tmp_path / "step-000.csv").read_text().splitlines()
-    assert first[0].startswith("t,r,r_dot")
+    assert first[0].startswith("t [s],r [km],r_dot [km/s]")
     assert len(first) > 100
 
 
 @pytest.mark.parametrize(
     ("way", "message"),
     [
-        ({"b": [1, 2]}, r"\[continuation\] b: no parameter, time or end of the model"),
+        ({"b": [1, 2]}, r"\[continuation\] b: .*has no such number; did you mean"),
+        ({"a": [1, 2], "parameters.a": [1, 3]}, r"\[continuation\] parameters.a: is there twice, as a and as param"),
         ({"a": [1, 1]}, r"\[continuation\] a: both values are 1"),
         ({"a": 1}, r"\[continuation\] a: got 1; write where it begins and where it ends"),
         ({"tf": [1, -1]}, r"\[continuation\]: tf = -1 is not after t0 = 0"),
@@ -117,6 +118,12 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 def test_a_way_that_makes_no_sense_is_refused(way: dict[str, Any], message: str) -> None:
     with pytest.raises(BadInput, match=message):
         satsym.Instance.of(SOFT, initial={"x": 1.0}, tf=1.0, continuation=way)
+
+
+@pytest.mark.parametrize("name", ["a", "parameters.a"])
+def test_a_parameter_is_named_with_its_table_or_without(name: str) -> None:
+    (way,) = satsym.Instance.of(SOFT, initial={"x": 1.0}, tf=1.0, continuation={name: [1, 2]}).case.continuation
+    assert way.key.text == "parameters.a"
 
 
 @pytest.mark.parametrize("way", ["c1", "c1=1", "c1=1:2:3", "=1:2"])

@@ -141,6 +141,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
         ({"vary": {"initial.r": "1:1:2"}}, "LOW and HIGH must differ"),
         ({"vary": {"initial.r": "1:inf:2"}}, "not finite"),
         ({"vary": {"initial.r_dot": "log:0:1:3"}}, "no logarithm"),
+        ({"vary": {"parameters.c1": "1:2:3", "c1": "1:2:3"}}, "parameters.c1: varies twice"),
         ({"vary": {"initial": {"r": "1:2:3"}, "initial.r": "1:2:3"}}, "varies twice"),
         ({"vary": {"initial.r": "1:2:3", "initial.r_dot": "1:2:9999999"}}, "more than 10000000"),
         ({"vary": {"initial.r": "1:2:3"}, "sample": 3}, "not both"),

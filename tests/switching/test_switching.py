@@ -187,8 +187,8 @@ def test_the_table_of_the_trajectory_holds_both_sides_of_a_switch(tmp_path: Path
     found = solving.solve(case(TIME))
     sets.write(tmp_path, {}, trajectory.contents(found))
     with (tmp_path / "trajectory.csv").open() as stream:
-        rows = [row for row in csv.DictReader(stream) if float(row["t"]) == found.switching_times[0][0]]
-    assert [float(row["u1"]) for row in rows] == [-1.0, 1.0]
+        rows = [row for row in csv.DictReader(stream) if float(row["t [s]"]) == found.switching_times[0][0]]
+    assert [float(row["u1 [m/s**2]"]) for row in rows] == [-1.0, 1.0]
 
 
 def test_the_machinery_does_not_know_the_problem_by_its_name_or_its_states(tmp_path: Path) -> None:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+OUTER = (0.01, 0.99)
+"""Quantiles by which it is told what lies far out."""
+
 MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
 COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)
 
@@ -92,13 +95,29 @@ def _logarithmic(values: Array) -> bool:
 
 def _histogram(place: Axes, name: str, values: Array) -> None:
     finite = values[np.isfinite(values)]
-    place.hist(finite, bins=min(60, max(5, int(np.sqrt(len(finite))))), color=style.BLUE)
+    shown = _without_outliers(finite)
+    place.hist(shown, bins=min(60, max(5, int(np.sqrt(len(shown))))), color=style.BLUE)
     place.set_xlabel(display.plain(name))
     place.set_ylabel(say("rows"))
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
         said = numbers_said(display.number(float(one), 4) for one in (low, middle, high))
-        place.set_title(say("quantiles 5, 50 and 95 %: <values>", values=said))
+        title = say("quantiles 5, 50 and 95 %: <values>", values=said)
+        if beyond := len(finite) - len(shown):
+            ends = numbers_said(display.number(float(one), 4) for one in (finite.min(), finite.max()))
+            said = say(
+                "not shown: <count> of <rows> rows far out, to <ends>", count=beyond, rows=len(finite), ends=ends
+            )
+            title += f"\n{said}"
+        place.set_title(title)
+
+
+def _without_outliers(values: Array) -> Array:
+    """What lies within the quantiles of 1 and 99 % or as far from these as they are apart: else few bars hold all."""
+    if not len(values):
+        return values
+    low, high = np.quantile(values, OUTER)
+    return values[(values >= low - (high - low)) & (values <= high + (high - low))]
 
 
 def _failures(numbers: Numbers) -> Figure:

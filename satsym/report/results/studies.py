@@ -188,7 +188,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
 
 
 def distinguishing(quantities: Mapping[str, Array]) -> dict[str, Array]:
-    """The first of them that differ from row to row by more than rounding does; where none does, the first alone."""
+    """The first of them that differ, from row to row and from each other, by more than rounding; if none, the first."""
 
     def varies(name: str, values: Array) -> bool:
         known = values[np.isfinite(values)]
@@ -198,8 +198,17 @@ def distinguishing(quantities: Mapping[str, Array]) -> dict[str, Array]:
         size = float(np.abs(known).max()) + name.startswith("x_final")
         return bool(np.ptp(known) > ROUNDING * size)
 
-    found = [name for name, values in quantities.items() if varies(name, values)]
-    return {name: quantities[name] for name in (found or list(quantities))[: MOST_DRAWN if found else 1]}
+    found = dict[str, Array]()
+    for name, values in quantities.items():
+        if varies(name, values) and not any(_same(values, before) for before in found.values()):
+            found[name] = values
+    names = list(found or quantities)[: MOST_DRAWN if found else 1]
+    return {name: quantities[name] for name in names}
+
+
+def _same(values: Array, others: Array) -> bool:
+    """Whether two columns are one but for rounding, such as the duration and what it costs."""
+    return bool(np.allclose(values, others, rtol=ROUNDING, atol=0.0, equal_nan=True))
 
 
 def _case(study: Study, number: int, values: Sequence[float]) -> dict[str, Any]:

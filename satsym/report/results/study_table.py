@@ -18,7 +18,7 @@ from satsym.choices import TableFormat
 from satsym.instance.numbers import SIDES, Table
 from satsym.report.results import parquet
 from satsym.report.results.files import Content
-from satsym.report.results.unit_names import COST, per, units
+from satsym.report.results.unit_names import COST, per, units, with_units
 from satsym.spec import ProblemSpec
 from satsym.studies.rows import TEXTS, Column, Row, Scalar
 
@@ -85,9 +85,8 @@ def _as_csv(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
 
 
 def header(spec: ProblemSpec, names: Sequence[str]) -> list[str]:
-    """Names of columns with their units in brackets, but for plain numbers and words."""
-    known = dict(_units(spec))
-    return [f"{name} [{unit}]" if (unit := known.get(name)) and unit != "1" else name for name in names]
+    """Names of columns with their units."""
+    return with_units(names, dict(_units(spec)))
 
 
 def _units(spec: ProblemSpec) -> Iterator[tuple[str, str | None]]:

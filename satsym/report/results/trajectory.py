@@ -20,6 +20,7 @@ from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
+from satsym.report.results.unit_names import units, with_units
 from satsym.solution import CostInterval, Event, Invariant, Iteration, Simulation, Solution
 from satsym.status import BadInput, Status
 from satsym.wording import printable
@@ -85,8 +86,8 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
     The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), the names in
     ``states`` and ``controls``, and the ``status``; for a solution also ``history`` (2, K), cost and residual of each
     iteration, and ``switching`` (2, M), controls by their number from 0 and the times at which they meet or leave a
-    bound. The second has a header and a line for each node: time, states, controls, costates as ``lambda_STATE``; its
-    numbers read back exactly.
+    bound. The second has a header with units in brackets, as ``r [km]``, and a line for each node: time, states,
+    controls, costates as ``lambda_STATE``; its numbers read back exactly.
     """
     spec = found.instance.model.spec
     arrays: dict[str, Any] = {"times": found.times, "x": found.x, "u": found.u}
@@ -107,7 +108,7 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         more["switching"] = np.array(met, dtype=float).reshape(-1, 2).T
 
     def lines() -> Iterator[bytes]:
-        yield (",".join(header) + "\n").encode()
+        yield (",".join(with_units(header, units(spec))) + "\n").encode()
         for row in np.vstack(list(arrays.values())).T:
             yield (",".join(map(repr, row.tolist())) + "\n").encode()
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from satsym import units as expressions
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping, Sequence
 
     from satsym.spec import ProblemSpec
 
@@ -78,3 +78,8 @@ def units(spec: ProblemSpec) -> dict[str, str | None]:
         found |= {f"lambda_{v.symbol}": cost_per(v.unit, spec) for v in spec.states}
         found["objective"] = spec.objective_unit or COST
     return found
+
+
+def with_units(names: Sequence[str], known: Mapping[str, str | None]) -> list[str]:
+    """Names of columns with their units in brackets, but for plain numbers and what has none that is clear."""
+    return [f"{name} [{unit}]" if (unit := known.get(name)) and unit != "1" else name for name in names]

@@ -21,6 +21,9 @@ SHOWN_TIMES = 6
 """Switching times of one control that are listed."""
 
 _AT_BOUND = 1e-9
+ROUNDING = 1e-12
+"""Share of the largest value along the way at which nothing is shown."""
+
 _PARTLY = "final state free or partly so"
 _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final state on the reference", 5: _PARTLY}
 """By boundary type."""
@@ -214,7 +217,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
         each("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
     ]
     for i, state in enumerate(spec.states):
-        final = _last(x[i])
+        final = _without_rounding(_last(x[i]), x[i])
         off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i]), 3)
         rows.append(
             (
@@ -225,7 +228,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
                 "" if reference is None else figure(reference[i]),
                 off,
                 "" if state.unit == "1" else state.unit,
-                "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
+                "" if lam is None else figure(_without_rounding(_first(lam[i]), lam[i]), 10),
                 "" if lam is None or (by := cost_per(state.unit, spec)) == "1" else by,
             )
         )
@@ -305,6 +308,15 @@ def _events(solution: Solution, unit: str) -> list[str]:
         for one in solution.events
     ]
     return table([(say("path constraint"), "", ""), *rows]) if rows else []
+
+
+def _without_rounding(value: float, row: Array) -> float:
+    """A value along the way; zero where it is nothing beside the largest one."""
+    return 0.0 if abs(value) <= ROUNDING * np.abs(row).max(initial=0.0) else value
+
+
+def _first(row: Array) -> float:
+    return float(row[0]) if len(row) else math.nan
 
 
 def _last(row: Array) -> float:

@@ -74,7 +74,7 @@ class Arcs:
     def ends(self) -> Array:
         """Where the arcs end, shape (2n, N)."""
         if self._compiled:
-            return self._flight()[0].T / self.problem.scale.both
+            return self._flight(varied=False)[0].T / self.problem.scale.both
         values = self.nodes[:, :-1]
         for tau in self._beginnings():
             values = advance(self._slope, tau, values, self.widths)
@@ -86,7 +86,7 @@ class Arcs:
         The latter from the variational equations, by the same steps.
         """
         if self._compiled:
-            ends, _, transition = self._flight()
+            ends, _, transition = self._flight(varied=True)
             return ends.T / self.problem.scale.both, transition * self.problem.scale.ratio[:, :, 0]
         rows = len(self.nodes)
         values = np.zeros((rows, 1 + rows, len(self.widths)))
@@ -115,7 +115,7 @@ class Arcs:
     def cost(self) -> float:
         """The cost J, scaled, with its integral by the same method."""
         if self._compiled:
-            return self._flight()[1] / self.problem.scale.cost + self.terminal_cost
+            return self._flight(varied=False)[1] / self.problem.scale.cost + self.terminal_cost
         problem, theta, elapsed = self.problem, self.theta, self.problem.elapsed(self.theta)
         times, values = self.course
 
@@ -136,14 +136,16 @@ class Arcs:
     def _compiled(self) -> bool:
         return self.problem.instance.model.backend == "numba"
 
-    def _flight(self) -> Any:
-        """What compiled functions say: ends, cost and transition in the model's units."""
+    def _flight(self, varied: bool) -> Any:
+        """What compiled functions say: ends, cost and, if it is asked for, transition in the model's units."""
         from satsym.solvers.shooting.compiled import integrator
 
         problem, instance = self.problem, self.problem.instance
         times = instance.t0 + problem.elapsed(self.theta) * self.mesh
         nodes = np.ascontiguousarray((self.nodes * problem.scale.both).T)
-        return integrator(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
+        return integrator(instance.model, varied)(
+            times, nodes, self.steps, instance.parameters, problem.control_set.arguments
+        )
 
     def _slope(self, tau: Array, values: Array) -> Array:
         """Rates by tau, shape (2n, M)."""

@@ -27,16 +27,18 @@ LAST_DIGITS = 1e-15
 
 
 @lru_cache(maxsize=16)
-def integrator(model: Kernels) -> Compiled:
+def integrator(model: Kernels, varied: bool) -> Compiled:
     """``(times, nodes, steps, p, bounds) -> ends, cost, transition`` for a compiled model, compiled at its first call.
 
     All in the model's units: times and nodes, shapes (N+1,) and (N+1, 2n); where the arcs end, shape (N, 2n); the
-    integral of the running cost along all of them; and how the ends follow the starts, shape (N, 2n, 2n).
+    integral of the running cost along all of them; and, if that is asked for, how the ends follow the starts, shape
+    (N, 2n, 2n).
     """
     rows = 2 * len(model.spec.states)
-    width = 1 + rows
+    columns = rows if varied else 0
+    width = 1 + columns
     bounds_count, distance = _distance(model, width)
-    advanced, met = _stepper(model, rows), _meeting(model)
+    advanced, met = _stepper(model, columns), _meeting(model)
 
     # In w, states, costates and the integral of the running cost are the first column, variations the others.
     @njit()
@@ -66,16 +68,17 @@ def integrator(model: Kernels) -> Compiled:
     @njit()
     def arcs(times: Array, nodes: Array, steps: int, p: Numbers, bounds: Numbers) -> tuple[Array, float, Array]:
         count, cost = len(times) - 1, 0.0
-        ends, transition = np.empty((count, rows)), np.empty((count, rows, rows))
+        ends, transition = np.empty((count, rows)), np.empty((count, rows, columns))
         for i in range(count):
             w = np.zeros((rows + 1) * width)
             for j in range(rows):
                 w[j * width] = nodes[i, j]
-                w[j * width + 1 + j] = 1.0
+                if columns:
+                    w[j * width + 1 + j] = 1.0
             w = integrated(times[i], times[i + 1], steps, w, p, bounds)
             for j in range(rows):
                 ends[i, j] = w[j * width]
-                for k in range(rows):
+                for k in range(columns):
                     transition[i, j, k] = w[j * width + 1 + k]
             cost += w[rows * width]
         return ends, cost, transition

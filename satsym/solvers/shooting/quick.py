@@ -22,7 +22,13 @@ MOST = 12
 LOST = 30.0
 """Size of a correction that leads nowhere."""
 
-CLOSE = 1e-7
+NEAR = 1e-2
+"""Size of a correction down to which few steps do: their error is below what is left to correct."""
+
+FEWER = 4
+"""Times as few steps they are."""
+
+CLOSE = 3e-5
 """Size of a correction after which twice as many steps show the error: what is left to correct is about its square."""
 
 
@@ -41,7 +47,8 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
     arcs, error, iterations
         The last arcs, with twice as many steps; their estimated error, infinite where Newton failed; corrections.
     """
-    shown = False
+    enough, shown = arcs.steps, False
+    arcs = arcs.with_steps(max(enough // FEWER, 1))
     for iteration in range(1, MOST + 1):
         try:
             nodes, theta = _correction(arcs)
@@ -54,7 +61,10 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
             break
         if shown and error <= tolerance:
             return arcs, error, iteration
-        shown = size < CLOSE
+        if arcs.steps < enough and size < NEAR:
+            arcs = arcs.with_steps(enough)
+            continue
+        shown = arcs.steps >= enough and size < CLOSE
         if shown:
             arcs = arcs.with_steps(2 * arcs.steps)
     return arcs, float("inf"), iteration
@@ -93,7 +103,7 @@ def spread(model: Kernels, free_time: bool) -> Compiled:
     """
     n = len(model.spec.states)
     rows, last = 2 * n, n + free_time
-    arcs, vector, rates = integrator(model), packed(n), model.functions["canonical"]
+    arcs, vector, rates = integrator(model, True), packed(n), model.functions["canonical"]
 
     @njit()
     def field(

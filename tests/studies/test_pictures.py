@@ -1,0 +1,41 @@
+"""Pictures of studies show what there is to see: few rows far out do not hide the others, nothing is drawn twice."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from satsym.report.plots.studies import figures
+from satsym.report.results.studies import Numbers, distinguishing
+
+RNG = np.random.default_rng(0)
+
+
+def drawn(values: np.ndarray) -> tuple[float, str]:
+    """How far the bars of a histogram reach, and what stands above."""
+    numbers = Numbers("a study", {"r [km]": RNG.uniform(size=len(values))}, {"q": values}, ["converged"] * 500, None)
+    (place,) = figures(numbers)["overview"].axes
+    return max(abs(end) for end in place.get_xlim()), place.get_title()
+
+
+def test_rows_far_out_are_not_drawn_but_counted() -> None:
+    values = RNG.normal(size=500)
+    values[[3, 77]] = 1e9, -1e5
+    reach, title = drawn(values)
+    assert reach < 10.0
+    assert "not shown: 2 of 500 rows far out, to " in title
+
+
+@pytest.mark.parametrize(
+    "values", [RNG.normal(size=500), RNG.uniform(size=500), RNG.exponential(size=500), np.ones(500)]
+)
+def test_where_none_are_far_out_all_are_drawn(values: np.ndarray) -> None:
+    _, title = drawn(np.clip(values, -4.0, 6.0))
+    assert "not shown" not in title
+
+
+def test_a_duration_that_is_the_objective_is_drawn_once() -> None:
+    times = RNG.uniform(1.0, 2.0, 50)
+    columns = {"objective [s]": times, "t_final [s]": times * (1.0 + 1e-13), "x_final.r": RNG.uniform(size=50)}
+    assert list(distinguishing(columns)) == ["objective [s]", "x_final.r"]
+    assert list(distinguishing({**columns, "t_final [s]": times * (1.0 + 1e-6)})) == list(columns)
