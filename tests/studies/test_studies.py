@@ -341,4 +341,4 @@ def test_what_is_rounding_or_the_same_in_each_row_is_not_drawn() -> None:
     }
     assert list(distinguishing(given)) == ["objective"]
     assert list(distinguishing({"t_final": steady, "x_final.v": rounding})) == ["t_final"]
-    assert list(distinguishing({name: np.arange(3.0) for name in "abcd"})) == ["a", "b", "c"]
+    assert list(distinguishing({name: np.arange(3.0) ** k for k, name in enumerate("abcd", 1)})) == ["a", "b", "c"]
