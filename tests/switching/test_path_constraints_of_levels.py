@@ -12,6 +12,8 @@ import sympy as sp
 import satsym
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.switching.junction_times import reduced
+from satsym.solvers.certificate.switching.replay import replay
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError
@@ -50,6 +52,7 @@ def test_a_car_goes_as_fast_as_it_may_and_brakes(top: float, braking: float):
     begins, slowing = top, top / braking
     cruise = (3.0 - top * (begins + slowing) / 2.0) / top
     assert found.objective == pytest.approx(begins + cruise + slowing, rel=1e-12)
+    assert found.certificate.verdict == "certified"
     assert [(one.kind, one.name) for one in found.events] == [("entry", "limit"), ("exit", "limit")]
     assert [one.t for one in found.events] == pytest.approx([begins, begins + cruise], rel=1e-10)
 
@@ -70,6 +73,15 @@ def test_a_lift_keeps_to_the_acceleration_that_its_passengers_bear(top: float, d
     fastest = (-(top**2) + np.sqrt(top**4 + 4.0 * top * distance)) / 2.0
     assert found.objective == pytest.approx(2.0 * (fastest / top + top), rel=1e-11)
     assert [one.name for one in found.events] == ["push", "push", "brake", "brake"]
+
+
+def test_the_second_variation_is_that_of_the_top_where_all_else_is_given():
+    """Below a pressure of 8 no arc is singular: entry and fuel fix all times but the last, at which h'' = -1/h^2."""
+    case = satsym.load("goddard-pressure").with_(parameters={"q_max": 5.0})
+    found = satsym.solve(case)
+    assert found.certificate.verdict == "certified"
+    form, _ = reduced(found.found.instance, replay(found.found))
+    assert form == pytest.approx(np.array([[1.0 / found.found.x[0, -1] ** 2]]), rel=1e-6)
 
 
 def test_the_multiplier_keeps_the_switching_function_zero():

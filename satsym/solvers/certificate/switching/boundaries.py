@@ -1,13 +1,11 @@
-"""What the certificate of exact arcs says of path constraints: whether they hold and press, and whether that is least.
-
-Beside boundaries a minimum is proved where the problem is convex, or for least times of linear motions to a rest.
-"""
+"""What the certificate of exact arcs says of path constraints: whether they hold, and whether they press strictly."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from satsym.solution import Check, Solution
+from satsym.solvers.certificate.switching.junction_times import curvature
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.boundaries import values
 from satsym.solvers.switching.boundary import BoundaryField
@@ -16,6 +14,9 @@ from satsym.solvers.switching.structure import SINGULAR
 VIOLATED, PULLING, STRICT = 1e-9, 1e-8, 1e-6
 """Largest violation of a constraint relative to its size, largest multiplier of the wrong sign, and least share of the
 largest multiplier that is strict."""
+
+CURVED = 1e-7
+"""Least relative curvature in the switching times."""
 
 BESIDE = 0.05
 """Share of a boundary arc beside a singular one, next to which its multiplier may vanish."""
@@ -39,11 +40,11 @@ def necessary(solution: Solution, again: Replay) -> list[Check]:
 
 
 def sufficient(solution: Solution, again: Replay) -> list[Check]:
-    """Multipliers press strictly."""
-    pressed = _pressure(again, BESIDE)
+    """Multipliers press strictly, and the second variation in the times is positive."""
+    pressed, curved = _pressure(again, BESIDE), curvature(solution.instance, again)
     return [
         Check("multiplier vanishes on a boundary", float(not pressed > STRICT), 0.0),
-        Check("no proof of a minimum beside boundaries", 1.0, 0.0),
+        Check("second variation in the switching times", float(not curved > CURVED), 0.0),
     ]
 
 

@@ -101,11 +101,8 @@ def _other_boundaries(solution: Solution, limits: Limits, seed: int) -> Competit
     """Extremals to which paths within path constraints lead that are drawn; ``None`` where time is up before."""
     from satsym.solvers.constrained.levels.solving import others
 
-    instance = solution.instance
-    if instance.tf is None:  # paths last as long as the solution does
-        instance = replace(instance, tf_guess=float(solution.times[-1]))
-    tried, costs, interrupted = others(instance, solution.objective, seed + 1, limits.deadline)
-    return None if interrupted else Competitors(Kind.ARCS, tried, len(costs), min(costs, default=float("nan")))
+    tried, costs, interrupted = others(solution, seed + 1, limits.deadline)
+    return None if interrupted or not costs else Competitors(Kind.ARCS, tried, len(costs), min(costs))
 
 
 def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:

@@ -28,8 +28,8 @@ from satsym.status import Status
 INTERVALS = (100, 250, 500)
 """Of the regularised path: of more where no structure that it shows is an extremal."""
 
-DRAWN, COMPARED, WORK = 2, 2, 20_000
-"""Pairs of paths that are drawn by the solver and by the certificate, and columns for one of these."""
+DRAWN, WORK = 2, 20_000
+"""Pairs of paths that are drawn by the solver, and columns for one of the certificate's."""
 
 SAME = 1e-6
 """Relative difference of costs of regularised paths that are one."""
@@ -72,15 +72,23 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         return _with_events(instance, found, answered(instance, found, relaxed.history, began))
 
 
-def others(instance: Instance, worth: float, seed: int, deadline: float) -> tuple[int, list[float], bool]:
+def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[float], bool]:
     """How many paths were tried, costs of the extremals they led to, and whether time was up before all of them.
 
-    See :func:`satsym.solvers.constrained.solving.others`.
+    Parameters
+    ----------
+    solution
+        About which paths are drawn, and about the straight line.
+    seed
+        Of the paths.
+    deadline
+        On the clock of ``time.perf_counter``.
     """
+    instance = replace(solution.instance, tf_guess=float(solution.times[-1]))  # paths last as long as the solution does
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline)
-    starts = drawn(program, straight(program), COMPARED, seed)
+    starts = [one for about in (straight(program), first(program, solution)) for one in drawn(program, about, 1, seed)]
     with np.errstate(all="ignore"):
-        found = list(_searched(program, starts, worth, replace(limits, work=WORK)))
+        found = list(_searched(program, starts, solution.objective, replace(limits, work=WORK)))
     return len(found), [one.trajectory.cost(instance) for one in found if one], len(found) < len(starts)
 
 
