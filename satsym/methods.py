@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from satsym.spec import ProblemSpec
 
 BOUNDARY_ARCS = "boundary-arcs"
-"""The method for path constraints, whose answers have a certificate of their own."""
+"""The method for path constraints and points on the way, whose answers have a certificate of their own."""
 
 AUTO = "auto"
 """Instead of a method's name: the one that fits."""
@@ -61,7 +61,7 @@ class Method:
     switching
         Whether it is for controls that enter the Hamiltonian without a square, or else for those that do not.
     constrained
-        Whether it is for problems with path constraints, or else for those without.
+        Whether it is for problems with path constraints or points on the way, or else for those without.
     automatic
         Whether it is what ``"auto"`` begins with for such controls.
     certified
@@ -134,8 +134,8 @@ METHODS = {
         ),
         Method(
             BOUNDARY_ARCS,
-            "exact arcs and touch points, for path constraints",
-            "satsym.solvers.constrained.solving:solve",
+            "exact arcs and touch points, for path constraints and points on the way",
+            "satsym.solvers.by_arcs:solve",
             constrained=True,
             automatic=True,
         ),
@@ -156,7 +156,7 @@ def possible(name: str) -> list[Method]:
 
 def automatic(spec: ProblemSpec) -> Method:
     """The method that ``"auto"`` begins with."""
-    switches, constrained = spec.switching or spec.throttled, bool(spec.path_constraints)
+    switches, constrained = spec.switching or spec.throttled, spec.in_arcs
     fitting = (one for one in METHODS.values() if one.automatic and one.constrained == constrained)
     return next(method for method in fitting if constrained or method.switching == switches)
 
@@ -170,8 +170,8 @@ def refusal(name: str, asked: Asked) -> str:
         available = " or ".join(f'"{one}"' for one in names())
         return f'solver.method: "{name}" is not available; use {available}'
     method, instead = METHODS[name], automatic(spec).name
-    if method.constrained != bool(spec.path_constraints):
-        what = "path constraints" if spec.path_constraints else "no path constraints"
+    if method.constrained != spec.in_arcs:
+        what = "points on the way" if spec.interior else f"{'' if spec.in_arcs else 'no '}path constraints"
         return f'solver.method: the model has {what}; use "{instead}"'
     if spec.switching and not (method.switching or method.constrained):
         return (

@@ -39,12 +39,14 @@ Progress: TypeAlias = Callable[[Iteration], None]
 class Event:
     """What happens along the way: an arc on the boundary of a path constraint begins or ends, or it is touched.
 
+    Or a point is passed that must be.
+
     Attributes
     ----------
     kind
-        ``"entry"``, ``"exit"`` or ``"touch"``.
+        ``"entry"``, ``"exit"``, ``"touch"`` or ``"interior"``.
     name
-        Of the constraint.
+        Of the constraint, or the point.
     t
         When.
     """
@@ -79,6 +81,7 @@ class Kind(str, Enum):
     EARLIER = "earlier arrival"
     STARTS = "seeded starts"
     ARCS = "structure of boundary arcs"
+    TIMES = "other times of points on the way"
     ENDS = "other limits of the end"
     UNKNOWNS = "other values of what is free"
 

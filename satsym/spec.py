@@ -37,7 +37,7 @@ _OF_VARIABLES = (
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
-    *("chattering", "path_constraints", "linear_quadratic", "terminal_inequalities"),
+    *("chattering", "path_constraints", "linear_quadratic", "terminal_inequalities", "interior"),
 )
 
 
@@ -151,6 +151,22 @@ class PathConstraint:
 
 
 @dataclass(frozen=True)
+class InteriorPoint:
+    """A point on the way, passed at a free time.
+
+    Attributes
+    ----------
+    name
+        As the model states it.
+    conditions
+        How many there are.
+    """
+
+    name: str
+    conditions: int
+
+
+@dataclass(frozen=True)
 class ProblemSpec:
     """Names, units and kinds of one generated model or optimal control problem.
 
@@ -204,6 +220,8 @@ class ProblemSpec:
         Whether, with such constraints, all is linear or quadratic so that signs of matrices tell whether it is convex.
     terminal_inequalities
         Names of the last of `multipliers`, which belong to inequalities at the end.
+    interior
+        Points on the way, in order. May be empty.
     """
 
     name: str
@@ -239,10 +257,16 @@ class ProblemSpec:
     path_constraints: tuple[PathConstraint, ...] = ()
     linear_quadratic: bool = False
     terminal_inequalities: tuple[str, ...] = ()
+    interior: tuple[InteriorPoint, ...] = ()
 
     def objective(self, cost: float) -> float:
         """What the author calls the objective, where the cost is this; and the other way round."""
         return -cost if self.maximise else cost
+
+    @property
+    def in_arcs(self) -> bool:
+        """Whether its extremals consist of arcs between boundaries of path constraints, or points on the way."""
+        return bool(self.path_constraints or self.interior)
 
     @cached_property
     def directional(self) -> bool:
@@ -335,6 +359,7 @@ class ProblemSpec:
             stated["mode_groups"] = tuple(ModeGroup(**entry) for entry in stated.get("mode_groups", ()))
             stated["control_parts"] = tuple(ControlPart(**entry) for entry in stated.get("control_parts", ()))
             stated["path_constraints"] = tuple(PathConstraint(**entry) for entry in stated.get("path_constraints", ()))
+            stated["interior"] = tuple(InteriorPoint(**entry) for entry in stated.get("interior", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -350,7 +375,9 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | Condition | ModeGroup | ControlPart | PathConstraint | str) -> dict[str, Any] | str:
+def _stated(
+    variable: Variable | Condition | ModeGroup | ControlPart | PathConstraint | InteriorPoint | str,
+) -> dict[str, Any] | str:
     """The fields of one of these that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable

@@ -18,6 +18,7 @@ from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import (
     inequalities,
+    interior,
     mixed_constraints,
     path_constraints,
     path_notation,
@@ -180,6 +181,20 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
             derivation.rhs("costate_equations"),
         ),
         *_of_path_constraints(derivation),
+        *_of_interior(derivation),
+    ]
+
+
+def _of_interior(derivation: Derivation) -> list[Function]:
+    """Functions of points on the way, a row for each condition."""
+    if interior.STEP not in derivation or derivation.problem is None:
+        return []
+    stated = sp.Matrix(list(interior.named(derivation.problem).values()))
+    by_state = stated.jacobian(symbols_of(derivation.model.states))
+    return [
+        _vector("interior", "What vanishes at points on the way, those of the first one first.", "t x p", stated),
+        _matrix("interior_gradient", "Its derivatives by the states, row by row.", "t x p", by_state),
+        _vector("interior_drift", "Its derivatives by time.", "t x p", stated.diff(t)),
     ]
 
 

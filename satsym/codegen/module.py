@@ -17,7 +17,7 @@ from satsym.codegen.switching import switches
 from satsym.control_part import ControlPart
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
-from satsym.spec import PRODUCT, Condition, PathConstraint, ProblemSpec, Variable, names
+from satsym.spec import PRODUCT, Condition, InteriorPoint, PathConstraint, ProblemSpec, Variable, names
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
@@ -76,6 +76,9 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         has_reference=bool(model.reference),
         terminal_inequalities=tuple(problem.terminal_inequalities) if problem else (),
         path_constraints=tuple(PathConstraint(one.name, one.order) for one in inequalities.every(derivation)),
+        interior=tuple(InteriorPoint(name, len(stated)) for name, stated in problem.interior.items())
+        if problem
+        else (),
         linear_quadratic=inequalities.linear_quadratic(derivation),
         autonomous=not any(
             e.has(t) for e in (*derivation.rhs("first_order"), sp.sympify(problem.running_cost if problem else 0))

@@ -47,6 +47,8 @@ DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "canonical_drift": ("canonical", ("t",), 1.0),
     "path_gradient": ("path_constraints", ("x",), 1.0),
     "path_effect": ("path_constraints", ("u",), 1.0),
+    "interior_gradient": ("interior", ("x",), 1.0),
+    "interior_drift": ("interior", ("t",), 1.0),
     "boundary_jacobian": ("boundary", ("x", "lam", "nu", "t"), 1.0),
 }
 """Function -> (function it is a derivative of, or several below each other; by which arguments; factor)."""

@@ -49,7 +49,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Entries, exits and touch points of path constraints, in order of time."""
+        """Entries, exits and touch points of path constraints, and points on the way, in order of time."""
         return self.found.events
 
     @property

@@ -101,6 +101,13 @@ BOUNDARY_CONTROLS = {"boundary_control": _signature("t x lam p bounds", "hm")}
 """Where H is known to be quadratic in the controls. Elsewhere controls are where H_u vanishes, or that of H with a
 constraint that holds them, which Newton's method finds with its multiplier."""
 
+INTERIOR = {
+    "interior": _signature("t x p", "j"),
+    "interior_gradient": _signature("t x p", "jn"),
+    "interior_drift": _signature("t x p", "j"),
+}
+"""What a problem has besides that must pass points on the way, see :mod:`satsym.symbolic.principle.interior`."""
+
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
     "feedback_law": _signature("t x p bounds final", "m"),
@@ -133,7 +140,7 @@ Eigenvalues are rows of a real and an imaginary part.
 
 POINTWISE = {
     **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
-    **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | BOUNDARY_CONTROLS | CURVE | LINEAR),
+    **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | BOUNDARY_CONTROLS | INTERIOR | CURVE | LINEAR),
 }
 """All functions of one point in time that any model has."""
 
@@ -160,6 +167,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= THROTTLES if spec.throttled else {}
     found |= PATH_CONSTRAINTS if spec.path_constraints else {}
     found |= BOUNDARY_CONTROLS if spec.path_constraints and not spec.control_parts else {}
+    found |= INTERIOR if spec.interior else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
         found |= CURVE if spec.switching_curve else {}
@@ -179,7 +187,7 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
     and costates (z), residuals at the final time (e) and unknowns there (v); outputs (o), coefficients of the
     characteristic polynomial (g), parts of a complex number (w); position, velocity and gravitational parameter in
     space (s); quantities (a), balances with their rates (y); vectors that may be none (r),
-    constraints along the way (h).
+    constraints along the way (h), conditions at points on the way (j).
     """
     n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
@@ -187,6 +195,7 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
     counts["b"] += sum(part.bounds for part in spec.control_parts)
     counts["r"] = sum(part.branch in SWITCHED for part in spec.control_parts)
     counts["h"] = len(spec.path_constraints)
+    counts["j"] = sum(point.conditions for point in spec.interior)
     counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2, "s": 7}
     counts |= {"a": len(spec.quantities), "y": 2 * len(spec.balances)}
     return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}

@@ -32,6 +32,9 @@ def of_the_cost(of: Evaluation) -> Iterator[Relation]:
     yield from _of_ends(of, control)
     if of.kernels.spec.path_constraints:
         yield from of_path_constraints(of)
+    if of.kernels.spec.interior:
+        yield from derivative(of, "interior_gradient", "interior", ("x",))
+        yield from derivative(of, "interior_drift", "interior", ("t",))
 
 
 def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:

@@ -71,7 +71,7 @@ def goes_on(solution: Solution) -> bool:
 
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
-    constrained = bool(solution.instance.model.spec.path_constraints)  # of which descents know nothing
+    constrained = solution.instance.model.spec.in_arcs  # of which descents know nothing
     endless = None if constrained or solution.method == SWITCHED else fall(solution)
     advice = "weigh the control or time more, shorten the time, or bound the control"
     return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")

@@ -76,7 +76,7 @@ def rows_together(task: Task, solve: Together, single: Callable[[str, Instance],
 def plain(task: Task) -> bool:
     """Whether the problem is smooth, and nothing is asked of solvers besides."""
     spec = task.instance.model.spec
-    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
+    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.in_arcs)
     return smooth and _bare(task.instance) and redundant(task.instance) is None
 
 

@@ -13,8 +13,8 @@ from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
+from satsym.symbolic.principle import interior, path_notation
 from satsym.symbolic.principle import notation as principle_notation
-from satsym.symbolic.principle import path_notation
 from satsym.symbolic.principle.parts import limits_of, parts_of
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
@@ -57,6 +57,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     if problem:
         _refuse_inequalities(problem)
         _refuse_constraints(problem)
+        _refuse_interior(problem)
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 
@@ -90,6 +91,25 @@ def _refuse_constraints(problem: Problem) -> None:
             "leave out the control set, or state no constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
+
+
+def _refuse_interior(problem: Problem) -> None:
+    """Refuse points on the way that are stated otherwise than by name, or beside what excludes them."""
+    stated, what = problem.interior, f"{problem.name}: interior"
+    if not isinstance(stated, Mapping) or not all(isinstance(one, tuple) and one for one in stated.values()):
+        raise DerivationError(f'{what}: write a name for each and what vanishes there, {{"flyby": (x - a, y - b)}}')
+    for name, conditions in stated.items():
+        if not is_name(name) or "__" in name:
+            raise DerivationError(f"{what}: got {shown(name)}; a point's name is {NAMES}", ("interior",))
+        if len(conditions) > len(problem.model.states):
+            message = f"{name} has more conditions than there are states; state fewer"
+            raise DerivationError(f"{what}: {message}", ("interior",))
+    beside = [("path_constraints", bool(problem.path_constraints)), ("control_sets", bool(problem.control_sets))]
+    beside += [(f'control_set "{problem.control_set}"', problem.control_set == "ball")]
+    for other, there in beside if stated else ():
+        if there:
+            message = f"beside {other} they are not derived; leave one of the two out"
+            raise DerivationError(f"{what}: {message}", ("interior", other))
 
 
 def refuse_foreign_symbols(derivation: Derivation) -> None:
@@ -130,6 +150,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
             refuse(f"the terminal inequality {name}", [stated], motion, "terminal_inequalities")
         for name, stated in problem.path_constraints.items():
             refuse(f"the path constraint {name}", [stated], everything, "path_constraints")
+        for name, conditions in problem.interior.items():
+            refuse(f"the interior point {name}", conditions, motion, "interior")
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
@@ -189,6 +211,7 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
     notation |= switching_notation.names(problem) if problem else {}
     if problem:
         notation |= principle_notation.product_names(problem) | path_notation.names(problem)
+        notation |= interior.names(problem)
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"

@@ -28,8 +28,8 @@ from satsym.symbolic.dimension_algebra import (
 )
 from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
+from satsym.symbolic.principle import interior, path_notation
 from satsym.symbolic.principle import notation as pn
-from satsym.symbolic.principle import path_notation
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.switching import notation as switching_dimensions
 
@@ -142,6 +142,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     switching_dimensions.declare(known, problem, running)
     pn.declare_product(known, problem, running)
     path_notation.declare(known, problem, second, total, require)
+    interior.declare(known, problem, total, require)
     for a in problem.model.controls:
         for b in problem.model.controls:
             known[f"H_{a.symbol}_{b.symbol}"] = over(over(running, known[a.symbol]), known[b.symbol])

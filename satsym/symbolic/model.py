@@ -280,6 +280,9 @@ class Problem:
         Expressions psi(x, t, p) by name, none of which may be positive at the final time: ``{"above": r_min - r}``.
     path_constraints
         Expressions g(x, u, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
+    interior
+        Points on the way by name, in order, each with expressions N(x, t, p) that vanish there: ``{"flyby": (x - a,
+        y - b)}``. The times at which they are passed are free.
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
@@ -305,6 +308,7 @@ class Problem:
     terminal_constraints: tuple[sp.Expr, ...] = ()
     terminal_inequalities: Mapping[str, sp.Expr] = field(default_factory=dict)
     path_constraints: Mapping[str, sp.Expr] = field(default_factory=dict)
+    interior: Mapping[str, tuple[sp.Expr, ...]] = field(default_factory=dict)
     control_set: ControlSetKind = "free"
     control_sets: Mapping[str, AdmissibleSet] = field(default_factory=dict)
     convention: Convention = "minimum"

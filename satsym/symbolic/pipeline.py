@@ -21,6 +21,7 @@ from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import (
     effort,
+    interior,
     minimised,
     mixed_constraints,
     path_constraints,
@@ -57,6 +58,7 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.state_equations,
     pontryagin.costate_equations,
     *PATH_CONSTRAINTS,
+    interior.interior_conditions,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
@@ -219,6 +221,9 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
+    if motion_derived.problem.interior and (product.applies(motion_derived) or switching.applies(motion_derived)):
+        message = "interior: points on the way are derived where H is quadratic in the controls; weigh their squares"
+        raise DerivationError(f"{motion_derived.name}: {message}", ("interior",))
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
     if not switching.applies(motion_derived):

@@ -16,6 +16,7 @@ from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line, variables_of, with_origins
+from satsym.symbolic.principle.interior import condition, named
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path_notation import rate
@@ -32,7 +33,7 @@ class Part:
 def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     """The whole of it."""
     kinds = (
-        *(_cost, _control_set, _constraints, _path_constraints),
+        *(_cost, _control_set, _constraints, _path_constraints, _interior),
         *(_quantities, _assumed, _definitions),
         *(_motion, _outputs),
     )
@@ -132,6 +133,16 @@ def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter)
         for name, constraint in derivation.problem.path_constraints.items()
     ]
     return Part((f"{texts.get('statement', 'path_constraints')}\n{display(rows)}",))
+
+
+def _interior(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    if derivation.problem is None or not derivation.problem.interior:
+        return Part()
+    rows = [
+        Row(_address(derivation, name), typeset.terms(condition(name)), typeset.terms(stated), end="= 0")
+        for name, stated in named(derivation.problem).items()
+    ]
+    return Part((f"{texts.get('statement', 'interior')}\n{display(rows)}",))
 
 
 def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

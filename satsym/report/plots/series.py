@@ -63,7 +63,9 @@ class Series:
 
 
 def states(scene: Scene) -> list[Series]:
-    """The states, with the reference and the motion without control."""
+    """The states, with the reference, the motion without control, and when points on the way are passed."""
+    events = getattr(scene.result, "events", ())
+    passed = tuple(event.t / scene.time_factor for event in events if event.kind == "interior")
     return [
         Series(
             v.latex,
@@ -75,6 +77,8 @@ def states(scene: Scene) -> list[Series]:
             free=None if scene.free is None else scene.free[i],
             target=target(scene, i),
             angle=v.kind == "angle",
+            switching=passed,
+            said="points passed at <times>",
         )
         for i, v in enumerate(scene.spec.states)
     ]

@@ -302,12 +302,13 @@ def _switching(solution: Solution, unit: str) -> list[str]:
 
 
 def _events(solution: Solution, unit: str) -> list[str]:
-    """Where path constraints are met and left."""
+    """Where path constraints are met and left, and points on the way passed."""
+    head = say("point on the way") if solution.instance.model.spec.interior else say("path constraint")
     rows = [
         (message(one.kind), one.name, say("at <times>", times=f"{figure(one.t, 10)} {unit}".rstrip()))
         for one in solution.events
     ]
-    return table([(say("path constraint"), "", ""), *rows]) if rows else []
+    return table([(head, "", ""), *rows]) if rows else []
 
 
 def _without_rounding(value: float, row: Array) -> float:

@@ -80,7 +80,7 @@ def fits(solution: Solution) -> bool:
     """Whether a solution is of a kind that is certified here."""
     instance, spec = solution.instance, solution.instance.model.spec
     smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional)
-    smooth = smooth and not (spec.multipliers or spec.path_constraints)
+    smooth = smooth and not (spec.multipliers or spec.in_arcs)
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
     steps = instance.solver.steps
     divided = _divisor(steps, LEAPS) is not None and _divisor(steps, LOOKS) is not None

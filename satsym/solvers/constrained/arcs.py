@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,28 +88,53 @@ def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
 
 
 def gradient(instance: Instance, constraint: int, t: Array, x: Array, u: Array | None = None) -> Array:
-    """g_x of one constraint, shape (n, N); of one on states alone without controls."""
+    """g_x of one constraint, shape (n, N); of one on states alone without controls.
+
+    Conditions at points on the way are numbered after the constraints.
+    """
+    if (place := constraint - len(instance.model.spec.path_constraints)) >= 0:
+        return np.asarray(instance.model.interior_gradient_batch(t, x, instance.parameters))[place]
     u = np.zeros((len(instance.model.spec.controls), len(t))) if u is None else u
     return gradients(instance, t, x, u)[constraint]
 
 
 def gradients(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """g_x of all constraints, shape (h, n, N)."""
+    if not instance.model.spec.path_constraints:
+        return np.zeros((0, *x.shape))
     found = np.asarray(instance.model.path_gradient_batch(t, x, u, instance.parameters))
     return _row(found, len(instance.model.spec.path_constraints), len(t))
 
 
 def effects(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """g_u of all constraints, shape (h, m, N)."""
+    if not instance.model.spec.path_constraints:
+        return np.zeros((0, *u.shape))
     found = np.asarray(instance.model.path_effect_batch(t, x, u, instance.parameters))
     return _row(found, len(instance.model.spec.path_constraints), len(t))
 
 
 def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """All constraints, shape (h, N); bounds that are infinite are kept as if by the size of one."""
+    if not instance.model.spec.path_constraints:
+        return np.zeros((0, len(t)))
     found = instance.model.path_constraints_batch(t, x, u, instance.parameters, instance.control_set.arguments)
     found = np.broadcast_to(np.asarray(found), (len(instance.model.spec.path_constraints), len(t)))
     return np.where(np.isinf(found), -1.0, found)
+
+
+def conditions(instance: Instance) -> list[range]:
+    """Numbers of the conditions at each point, after those of the path constraints."""
+    spec = instance.model.spec
+    ends = np.cumsum([len(spec.path_constraints), *(point.conditions for point in spec.interior)]).tolist()
+    return [range(a, b) for a, b in pairwise(ends)]
+
+
+def missed(instance: Instance, which: Sequence[int], t: Array, x: Array) -> tuple[Array, Array]:
+    """Conditions at points on the way, by their numbers after the constraints, and their rates by time, (k, N) each."""
+    model, p, h = instance.model, instance.parameters, len(instance.model.spec.path_constraints)
+    places = [k - h for k in which]
+    return np.asarray(model.interior_batch(t, x, p))[places], np.asarray(model.interior_drift_batch(t, x, p))[places]
 
 
 def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
@@ -152,6 +179,8 @@ class Arcs:
     intervals: tuple[int, ...]
     """Of each arc."""
     unknown: Array
+    fixed_times: tuple[float, ...] | None = None
+    """Times of points on the way, and the final time where it is free, if they are to be these; else they are found."""
 
     @property
     def n(self) -> int:

@@ -15,7 +15,7 @@ from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.active import analytic, control, deciding, field, vanishing
-from satsym.solvers.constrained.arcs import Arcs, gradient, holds_control, values, without_bounds
+from satsym.solvers.constrained.arcs import Arcs, gradient, holds_control, missed, values, without_bounds
 from satsym.solvers.constrained.structure import Active, Event, Junction
 
 if TYPE_CHECKING:
@@ -130,7 +130,10 @@ class System:
             for place, constraint in enumerate(arcs.pressed):
                 lam = lam - v[d + rest.constraints + place] * gradient(one, constraint, t, z[:n])
             rows = at_end(one, arcs.active[-1], t, np.concatenate([z[:n], lam]), tuple(nu))
-            rows = rows if free else rows[:-1]
+            if not free:
+                rows = rows[:-1]
+            elif arcs.fixed_times is not None:
+                rows[-1] = t - arcs.fixed_times[-1]
             u = np.zeros((len(one.model.spec.controls), 1))
             met = [k for k in touched if k in arcs.pressed]
             return np.concatenate([rows, values(one, t, z[:n], u)[met]])
@@ -157,6 +160,8 @@ def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
     for (which, _), zeta in zip(junction.jumps, v[2 * d + 1 :], strict=True):
         gap[n:] = gap[n:] + zeta * gradient(instance, which, t, left[:n])
     found: list[NDArray[Any]] = [gap]
+    if junction.event is Event.INTERIOR:
+        return np.concatenate([gap, *_passed(arcs, junction, v)])
     if holds_control(instance, constraint):
         found.append(deciding(instance, junction.before, constraint, t, left)[None])
     elif junction.event is not Event.EXIT:
@@ -169,6 +174,28 @@ def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
         if which != constraint:
             found.append(vanishing(instance, junction.after, which, t, right)[1:])
     return np.concatenate(found)
+
+
+def _passed(arcs: Arcs, junction: Junction, v: Array) -> list[NDArray[Any]]:
+    """What vanishes where a point on the way is passed: its conditions, and the derivative of the cost by its time.
+
+    That is H(t-) - H(t+) + pi' N_t; where the time is fixed it is that the time is the given one.
+    """
+    instance, n, d = arcs.instance, arcs.n, 2 * arcs.n
+    left, right, t = v[:d], v[d : 2 * d], v[2 * d]
+    conditions, drift = missed(instance, [which for which, _ in junction.jumps], t, left[:n])
+    if arcs.fixed_times is not None:
+        return [conditions, (t - arcs.fixed_times[junction.constraint])[None]]
+    before, after = (
+        hamiltonian(instance, active, t, z) for active, z in ((junction.before, left), (junction.after, right))
+    )
+    return [conditions, (before - after + (v[2 * d + 1 :] * drift).sum(axis=0))[None]]
+
+
+def hamiltonian(instance: Instance, active: Active, t: Array, z: Array) -> Array:
+    """H under the control of an arc, shape (N,)."""
+    n, u = len(instance.initial), control(instance, active, t, z)
+    return np.asarray(instance.model.hamiltonian_batch(t, z[:n], u, z[n:], instance.parameters))
 
 
 def at_end(instance: Instance, active: Active, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:

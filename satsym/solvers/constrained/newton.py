@@ -59,11 +59,11 @@ def begun(instance: Instance, structure: Structure, near: tuple[Array, Array, Ar
 
 def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
     """The extremal of a structure, on meshes that are doubled until times and cost settle; ``None`` without one."""
-    found = _converged(arcs, limits)
+    found = converged(arcs, limits)
     for _ in range(MESHES):
         if found is None:
             return None
-        finer = _converged(_refined(found), limits)
+        finer = converged(_refined(found), limits)
         if finer is not None and _distance(found, finer) < SETTLED:
             return finer
         found = finer
@@ -127,7 +127,7 @@ def _places(intervals: int) -> Array:
     return np.append(((np.arange(intervals)[:, None] + own) / intervals).ravel(), 1.0)
 
 
-def _converged(arcs: Arcs, limits: Limits) -> Arcs | None:
+def converged(arcs: Arcs, limits: Limits) -> Arcs | None:
     """Newton's method, its steps halved until the next simplified one is shorter."""
     from scipy.sparse.linalg import splu
 
@@ -180,7 +180,7 @@ def _refined(arcs: Arcs) -> Arcs:
         a, b = arcs.times[k : k + 2]
         parts.append(arcs.at(k, a + (b - a) * _places(2 * count)).T.ravel())
     rest = arcs.unknown[arcs.places[-1] :]
-    return Arcs(arcs.instance, arcs.structure, tuple(2 * k for k in arcs.intervals), np.concatenate([*parts, rest]))
+    return replace(arcs, intervals=tuple(2 * k for k in arcs.intervals), unknown=np.concatenate([*parts, rest]))
 
 
 def _distance(one: Arcs, other: Arcs) -> float:

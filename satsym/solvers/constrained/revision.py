@@ -12,7 +12,7 @@ from satsym.arrays import Array
 from satsym.solvers.constrained.active import control, multipliers
 from satsym.solvers.constrained.arcs import Arcs, effects, gradient, values
 from satsym.solvers.constrained.arcs import sizes as measured
-from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure, ordered
+from satsym.solvers.constrained.structure import FREE, Contact, Event, Passage, Structure, ordered
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
@@ -43,6 +43,7 @@ def wrong(arcs: Arcs) -> tuple[str, list[Structure]]:
 def contacts(arcs: Arcs) -> list[Contact]:
     """The contacts of the structure, with the times and jumps that were found."""
     times, found = arcs.times, []
+    moved = {one.time: found.time for one, found in zip(arcs.structure.passages, passages(arcs), strict=True)}
     at = {(one.contact, one.event): k for k, one in enumerate(arcs.junctions)}
     left = {one.left: k for k, one in enumerate(arcs.junctions) if one.left is not None}
     for number, one in enumerate(arcs.structure.contacts):
@@ -55,12 +56,22 @@ def contacts(arcs: Arcs) -> list[Contact]:
             continue
         gone = left.get(number, gone)
         start, end = (float(times[d] if k is None else times[k + 1]) for k, d in ((entry, 0), (gone, -1)))
+        start, end = moved.get(one.start, start), moved.get(one.end, end)
         jumps = (
             0.0 if entry is None else arcs.jump(entry, one.constraint),
             pressed if gone is None else arcs.jump(gone, one.constraint),
         )
         found.append(replace(one, start=start, end=end, jumps=jumps))
     return found
+
+
+def passages(arcs: Arcs) -> tuple[Passage, ...]:
+    """The points on the way, with the times and jumps that were found."""
+    met = ((k, one) for k, one in enumerate(arcs.junctions) if one.event is Event.INTERIOR)
+    return tuple(
+        Passage(float(arcs.times[k + 1]), tuple((which, arcs.jump(k, which)) for which, _ in one.jumps))
+        for k, one in met
+    )
 
 
 def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
@@ -95,7 +106,8 @@ def _order(arcs: Arcs, constraint: int) -> int:
 def _instead(arcs: Arcs, places: int | Iterable[int], *others: Contact) -> Structure:
     """The structure with other contacts in place of one or some."""
     gone = {places} if isinstance(places, int) else set(places)
-    return ordered([*(one for k, one in enumerate(contacts(arcs)) if k not in gone), *others])
+    kept = (one for k, one in enumerate(contacts(arcs)) if k not in gone)
+    return ordered([*kept, *others], passages(arcs))
 
 
 def _ends_kept(one: Contact, *parts: Contact) -> list[Contact]:
@@ -118,7 +130,7 @@ def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             tries = [_instead(arcs, place, _touch(one))] if _order(arcs, one.constraint) > 1 else []
             return "an arc on a boundary has no length", [*tries, _instead(arcs, place)]
     if np.diff(arcs.times).min() < -ROUNDED * lasting:
-        sorted_ = ordered(known)
+        sorted_ = ordered(known, passages(arcs))
         tries = [sorted_] if _possible(arcs, sorted_) else []
         crossed = [(j, k) for j, k in combinations(range(len(known)), 2) if known[j].end >= known[k].start]
         joins = [_joined(arcs, j, k) for j, k in crossed]
@@ -159,7 +171,7 @@ def _joined(arcs: Arcs, one: int, other: int) -> Structure | None:
 def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Jumps with a negative multiplier."""
     known = contacts(arcs)
-    jumps = [(k, which, arcs.jump(k, which)) for k, one in enumerate(arcs.junctions) for which, _ in one.jumps]
+    jumps = _jumps(arcs)
     pressures = [abs(arcs.pressure(k)) for k in arcs.pressed]
     largest = max([*(abs(jump) for *_, jump in jumps), *pressures], default=0.0)
     costates = max(float(np.abs(arcs.nodes(k)[:, arcs.n :]).max()) for k in range(len(arcs.intervals)))
@@ -177,6 +189,12 @@ def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if which != arcs.junctions[k].constraint and jump < none(which, float(arcs.times[k + 1])):
             return "a multiplier at a junction is negative", []
     return None
+
+
+def _jumps(arcs: Arcs) -> list[tuple[int, int, float]]:
+    """Of all path constraints: at which junction, which, and its multiplier."""
+    met = ((k, one) for k, one in enumerate(arcs.junctions) if one.event is not Event.INTERIOR)
+    return [(k, which, arcs.jump(k, which)) for k, one in met for which, _ in one.jumps]
 
 
 def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
@@ -221,6 +239,8 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Constraints that are positive between contacts."""
     room, worst = sizes(arcs), None
+    if not len(room):
+        return None
     for arc, active in enumerate(arcs.active):
         times, g = constrained(arcs, arc)
         g = g / room[:, None]
@@ -244,7 +264,9 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
     if (within := _instead_of_active(arcs, constraint, start, end)) is not None:
         return reason, [within, *found]
-    own = Contact(constraint, start, end)
+    held = _order(arcs, constraint) == 0
+    begins, ends = held and start <= arcs.times[0], held and end >= arcs.times[-1]
+    own = Contact(constraint, start, end, opens=begins, closes=ends)
     added = [own] if _order(arcs, constraint) < 2 else [_touch(own), own]
     tries = [*found, *(_instead(arcs, (), each) for each in added)]
     return reason, [one for one in tries if _possible(arcs, one)]
@@ -338,6 +360,6 @@ def _pressure(arcs: Arcs) -> float:
     """What multipliers are measured by: the largest of them, or jumps over the duration."""
     arcs_of = [k for k, one in enumerate(contacts(arcs)) if not one.touches]
     along_arcs = [float(np.abs(multiplier(arcs, k)[1]).max()) for k in arcs_of]
-    jumps = [abs(arcs.jump(k, which)) for k, one in enumerate(arcs.junctions) for which, _ in one.jumps]
+    jumps = [abs(jump) for *_, jump in _jumps(arcs)]
     jumps += [abs(arcs.pressure(k)) for k in arcs.pressed]
     return max([*along_arcs, *(jump / (arcs.end - arcs.instance.t0) for jump in jumps), 1e-300])

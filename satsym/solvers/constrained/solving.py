@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -28,6 +29,7 @@ from satsym.solvers.constrained.recognition import recognised
 from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, wrong
 from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
+from satsym.solvers.constrained.structure import Event as Happening
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
@@ -46,6 +48,9 @@ WORK = 20_000
 
 SAME = 1e-6
 """Relative difference of costs of regularised paths that are one."""
+
+PATH = "a regularised path"
+"""Where arcs come from."""
 
 REVISED, AGAIN = 12, 2
 """Structures that are tried at most from one path, and times that one of them is, from other junctions."""
@@ -102,7 +107,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     if isinstance(found, Stopped):
         nothing = iteration.unsolved(instance, BOUNDARY_ARCS, time.perf_counter() - began)
         return replace(nothing, status=found.status, message=found.message, history=relaxed.history)
-    return _answered(instance, found, relaxed, time.perf_counter() - began)
+    return answered(instance, found, relaxed, time.perf_counter() - began, PATH)
 
 
 def cheaper(solution: Solution, deadline: float) -> Solution | None:
@@ -115,7 +120,7 @@ def cheaper(solution: Solution, deadline: float) -> Solution | None:
         found = tried(partial(_best, solution.instance, solution, limits))
     if not isinstance(found, Arcs) or not cost(found) < solution.objective:
         return None
-    return _answered(solution.instance, found, solution, time.perf_counter() - began)
+    return answered(solution.instance, found, solution, time.perf_counter() - began, PATH)
 
 
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
@@ -194,10 +199,24 @@ def _unsolved(program: Program, worth: float) -> Stopped:
 
 
 def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
-    """Exact arcs from a regularised path, the structure revised until nothing is wrong with it."""
-    instance = program.instance
-    first = recognised(program, path)
-    waiting: list[tuple[Structure, Arcs | None]] = [(first, None), (recognised(program, path, resting=True), None)]
+    """Exact arcs from a regularised path."""
+    first = [recognised(program, path, resting=resting) for resting in (False, True)]
+    return revised(first, partial(from_path, program, path.at), limits)
+
+
+def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: Limits) -> Arcs | Stopped:
+    """Exact arcs, the structure revised until nothing is wrong with it.
+
+    Parameters
+    ----------
+    first
+        Structures to begin with.
+    fresh
+        The unknowns of a structure near which no arcs are known.
+    limits
+        When to give up.
+    """
+    waiting: list[tuple[Structure, Arcs | None]] = [(one, None) for one in first]
     seen: Counter[tuple[object, ...]] = Counter()
     reason = "the equations of its arcs are not solved"
     while waiting and seen.total() < REVISED and not limits.expired:
@@ -205,10 +224,10 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
         if seen[structure.key] >= AGAIN:
             continue
         seen[structure.key] += 1
-        begun = from_path(program, path.at, structure) if before is None else from_arcs(before, structure)
-        found = solved(begun, limits)
+        begun = fresh(structure) if before is None else from_arcs(before, structure)
+        instance, found = begun.instance, solved(begun, limits)
         if found is None and before is not None:
-            found = solved(from_path(program, path.at, structure), limits)
+            found = solved(fresh(structure), limits)
         if found is None:
             waiting += [(other, before) for other in _variants(instance, structure)]
             continue
@@ -216,7 +235,8 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
         if not reason:
             return found
         waiting = [*((other, found) for other in others), *waiting]
-    return Stopped(Status.NOT_CONVERGED, f"no structure near ({first.name(instance)}) is an extremal: {reason}")
+    near = first[0].name(begun.instance)
+    return Stopped(Status.NOT_CONVERGED, f"no structure near ({near}) is an extremal: {reason}")
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:
@@ -226,7 +246,8 @@ def _variants(instance: Instance, structure: Structure) -> list[Structure]:
         second = instance.model.spec.path_constraints[one.constraint].order > 1
         if not one.touches:
             touch = Contact(one.constraint, one.middle, one.middle, (sum(one.jumps), 0.0))
-            found.append(ordered([*structure.contacts[:k], *([touch] if second else []), *structure.contacts[k + 1 :]]))
+            others = [*structure.contacts[:k], *([touch] if second else []), *structure.contacts[k + 1 :]]
+            found.append(ordered(others, structure.passages))
     return found
 
 
@@ -234,8 +255,14 @@ def _events(arcs: Arcs, times: Array) -> tuple[Event, ...]:
     """What happens at these times of arcs, where one boundary follows another the exit too."""
     instance, known = arcs.instance, arcs.structure.contacts
     names = [one.name for one in instance.model.spec.path_constraints]
+    points = [one.name for one in instance.model.spec.interior]
     found = [Event("entry", names[k], instance.t0) for k in arcs.structure.begun]
     for one, t in zip(arcs.junctions, times[1:-1].tolist(), strict=True):
+        if one.event is Happening.INTERIOR:
+            found += [Event("exit", names[k], t) for k in one.before if k not in one.after]
+            found.append(Event(one.event.value, points[one.constraint], t))
+            found += [Event("entry", names[k], t) for k in one.after if k not in one.before]
+            continue
         found += [] if one.left is None else [Event("exit", names[known[one.left].constraint], t)]
         found.append(Event(one.event.value, names[one.constraint], t))
     touched = (one.constraint for one in known if one.closes and one.touches)
@@ -252,8 +279,8 @@ def _at_nodes(arcs: Arcs, arc: int, times: Array) -> Array:
     return z
 
 
-def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) -> Solution:
-    """Exact arcs as a solution; junctions that come at once have one time."""
+def answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float, source: str) -> Solution:
+    """Exact arcs, from what the source says, as a solution; junctions that come at once have one time."""
     nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
     parts: list[tuple[Array, Array, Array]] = []
     brief = ROUNDED * (arcs.end - instance.t0)
@@ -276,7 +303,7 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         instance=instance,
         method=BOUNDARY_ARCS,
         status=status,
-        message=f"{message}, from a regularised path",
+        message=f"{message}, from {source}",
         objective=cost(arcs),
         times=times,
         x=z[:n],

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import Enum
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from satsym.instance import Instance
 from satsym.solution import Event as Happening
@@ -17,6 +18,7 @@ class Event(Enum):
     ENTRY = "entry"
     EXIT = "exit"
     TOUCH = "touch"
+    INTERIOR = "interior"
 
 
 Active = tuple[int, ...]
@@ -24,6 +26,10 @@ Active = tuple[int, ...]
 
 FREE: Active = ()
 """On no boundary."""
+
+
+ROUNDED = 1e-12
+"""Share of a time by which two that are the same may differ."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +58,21 @@ class Contact:
 
 
 @dataclass(frozen=True)
+class Passage:
+    """A point on the way that must be passed."""
+
+    time: float
+    jumps: tuple[tuple[int, float], ...]
+    """Its conditions, numbered after the path constraints, with multipliers to begin with."""
+
+
+@dataclass(frozen=True)
 class Junction:
     """Between two arcs."""
 
     event: Event
     contact: int
-    """Whose event it is, by its number."""
+    """Whose event it is, by its number; of a point on the way that of the point."""
     constraint: int
     time: float
     left: int | None
@@ -70,9 +85,13 @@ class Junction:
 
 @dataclass(frozen=True)
 class Structure:
-    """Contacts in order of their middles; those of different constraints may overlap."""
+    """Contacts in order of their middles; those of different constraints may overlap.
+
+    Controls may jump where a point on the way is passed, so that contacts end there, and others begin.
+    """
 
     contacts: tuple[Contact, ...]
+    passages: tuple[Passage, ...] = ()
 
     def junctions(self, instance: Instance) -> list[Junction]:
         """Where arcs meet, in order of time.
@@ -83,6 +102,13 @@ class Structure:
         orders = [one.order for one in instance.model.spec.path_constraints]
         known, found = set(self.begun), list[Junction]()
         for time, event, number in self._events():
+            if event is Event.INTERIOR:
+                before = tuple(sorted(known))
+                ended, started = self._changing(time)
+                known = (known - ended) | started
+                after, jumps = tuple(sorted(known)), list(self.passages[number].jumps)
+                found.append(Junction(event, number, number, time, None, before, after, tuple(jumps)))
+                continue
             one = self.contacts[number]
             left, before = self._followed(number) if event is Event.ENTRY else None, tuple(sorted(known))
             if event is Event.ENTRY:
@@ -102,19 +128,29 @@ class Structure:
 
     def _events(self) -> list[tuple[float, Event, int]]:
         """Times, kinds, and contacts of all junctions."""
-        found = list[tuple[float, Event, int]]()
+        found = [(one.time, Event.INTERIOR, number) for number, one in enumerate(self.passages)]
+        passed = {one.time for one in self.passages}
         for number, one in enumerate(self.contacts):
             if one.touches:
                 found += [] if one.closes else [(one.start, Event.TOUCH, number)]
                 continue
-            found += [] if one.opens else [(one.start, Event.ENTRY, number)]
-            found += [] if one.closes or self.joined(number) else [(one.end, Event.EXIT, number)]
+            found += [] if one.opens or one.start in passed else [(one.start, Event.ENTRY, number)]
+            lasts = one.closes or one.end in passed or self.joined(number)
+            found += [] if lasts else [(one.end, Event.EXIT, number)]
         return sorted(found, key=lambda each: each[0])
+
+    def _changing(self, time: float) -> tuple[set[int], set[int]]:
+        """Constraints whose contacts end where a point is passed, and those whose contacts begin there."""
+        lasting = [one for one in self.contacts if not one.touches]
+        ended, started = ({one.constraint for one in lasting if at(one) == time} for at in (_end, _start))
+        return ended, started
 
     def joined(self, contact: int) -> bool:
         """Whether another contact begins where this one ends: from one boundary directly to another."""
         one = self.contacts[contact]
-        return not one.touches and any(each.start == one.end and not each.touches for each in self.contacts)
+        if one.touches or any(each.time == one.end for each in self.passages):
+            return False
+        return any(each.start == one.end and not each.touches for each in self.contacts)
 
     def _followed(self, contact: int) -> int | None:
         """The contact that ends where this one begins."""
@@ -139,6 +175,7 @@ class Structure:
     def name(self, instance: Instance) -> str:
         """For messages: ``free, wall, free``; touch points in brackets, what is active at once with plus signs."""
         names = [one.name for one in instance.model.spec.path_constraints]
+        points = [one.name for one in instance.model.spec.interior]
 
         def said(active: Active) -> str:
             return " + ".join(names[k] for k in active) or "free"
@@ -146,6 +183,7 @@ class Structure:
         words = [said(self.begun)]
         for one in self.junctions(instance):
             words += [f"[{names[one.constraint]}]"] if one.event is Event.TOUCH else []
+            words += [f"[{points[one.constraint]}]"] if one.event is Event.INTERIOR else []
             words.append(said(one.after))
         words += [f"[{names[one.constraint]}]" for one in self.contacts if one.closes and one.touches]
         return ", ".join(words)
@@ -153,13 +191,41 @@ class Structure:
     @property
     def key(self) -> tuple[object, ...]:
         """What two of them have in common that differ in times only."""
-        events = ((event, self.contacts[k].constraint, self.joined(k)) for _, event, k in self._events())
+        events = (
+            (event, *map(frozenset, self._changing(time)))
+            if event is Event.INTERIOR
+            else (event, self.contacts[k].constraint, self.joined(k))
+            for time, event, k in self._events()
+        )
         return (self.begun, self.ended, *events)
 
 
-def ordered(contacts: list[Contact]) -> Structure:
-    """The structure of contacts in any order."""
-    return Structure(tuple(sorted(contacts, key=lambda one: one.middle)))
+def _start(contact: Contact) -> float:
+    return contact.start
+
+
+def _end(contact: Contact) -> float:
+    return contact.end
+
+
+def ordered(contacts: Iterable[Contact], passages: tuple[Passage, ...] = ()) -> Structure:
+    """The structure of contacts in any order, those cut within which a point on the way is passed."""
+    parts = [part for one in contacts for part in _cut(one, passages)]
+    return Structure(tuple(sorted(parts, key=lambda one: one.middle)), passages)
+
+
+def _cut(contact: Contact, passages: tuple[Passage, ...]) -> list[Contact]:
+    """A contact in parts between points on the way."""
+    times = [one.time for one in passages]
+    near = ROUNDED * (abs(contact.start) + abs(contact.end))
+    start, end = (next((t for t in times if abs(t - at) <= near), at) for at in (contact.start, contact.end))
+    edges = [start, *(t for t in times if start < t < end), end]
+    if len(edges) == 2:
+        return [replace(contact, start=start, end=end)]
+    return [
+        replace(contact, start=a, end=b, opens=contact.opens and a == start, closes=contact.closes and b == end)
+        for a, b in pairwise(edges)
+    ]
 
 
 def stated_arcs(solution: Solution) -> list[Active]:

@@ -12,6 +12,7 @@ from satsym.spec import names
 from satsym.status import BadInput
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.principle import interior
 from satsym.wording import shown, suggestion
 
 DECLARED = "declared"
@@ -110,6 +111,7 @@ def _declared(derivation: Derivation, name: str, address: str) -> Found:
         found |= {"L": problem.running_cost, "S": sp.sympify(problem.terminal_cost)}
         found |= {f"psi_{k}": value for k, value in enumerate(problem.end_conditions, start=1)}
         found |= {name: sp.sympify(value) for name, value in problem.path_constraints.items()}
+        found |= interior.named(problem)
     found |= {key: _column(value) if value.is_Matrix else value for key, value in model.declared().items()}
     if name not in found:
         raise BadInput(f"{shown(address)}: nothing declared is called so; {suggestion(name, found)}")

@@ -160,7 +160,7 @@ def _chain(so_far: Derivation) -> tuple[sp.Matrix, sp.Matrix, sp.Expr] | None:
     """A, B and the weight of u^2, where the motion is a chain of integrators under one control and only that costs."""
     problem, model = so_far.problem, so_far.model
     assert problem is not None
-    if len(model.controls) != 1 or problem.terminal_cost != 0:
+    if len(model.controls) != 1 or problem.terminal_cost != 0 or problem.interior:
         return None
     constants = definitions_of(model)
     states, (control,) = symbols_of(model.states), symbols_of(model.controls)

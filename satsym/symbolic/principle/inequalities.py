@@ -22,7 +22,7 @@ def linear_quadratic(so_far: Derivation) -> bool:
     What is left to make the problem convex are signs of matrices, which depend on the parameters.
     """
     problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
-    if problem is None or not found:
+    if problem is None or not found or problem.interior:  # times that are free make none convex
         return False
     moving = (*states, *symbols_of(so_far.model.controls))
 

@@ -16,7 +16,7 @@ def of_states(problem: Problem) -> dict[str, sp.Expr]:
 
 
 def mixed(problem: Problem) -> dict[str, sp.Expr]:
-    """What holds a control; beside path constraints the bounds of a box are among these, by their symbols."""
+    """What holds a control; beside path constraints, and points on the way, bounds of a box are among these."""
     found = {name: g for name, g in _declared(problem).items() if _holds_control(problem, g)}
     return found | {b.name: h for b, h in _bounds(problem).items()}
 
@@ -30,7 +30,7 @@ def _holds_control(problem: Problem, g: sp.Expr) -> bool:
 
 
 def _bounds(problem: Problem) -> dict[sp.Symbol, sp.Expr]:
-    if not problem.path_constraints:
+    if not (problem.path_constraints or problem.interior):
         return {}
     found: dict[sp.Symbol, sp.Expr] = {}
     for part in parts_of(problem):
@@ -92,13 +92,12 @@ def control_rate(name: str, control: sp.Symbol) -> sp.Symbol:
 
 def names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of all of them."""
-    if not problem.path_constraints:
+    if not (every := of_states(problem) | mixed(problem)):
         return {}
     found = {change(HAMILTONIAN).name: r"H(t^-) - H(t^+)"}
     for v in problem.model.states:
         lam = rf"\lambda_{{{v.latex}}}"
         found[change(costate_of(symbols_of((v,))[0])).name] = rf"{lam}(t^-) - {lam}(t^+)"
-    every = of_states(problem) | mixed(problem)
     for k, name in enumerate(every, start=1):
         several = len(every) > 1
         foot = f"_{{{k}}}" if several else ""

@@ -66,7 +66,7 @@ def applies(instance: Instance) -> bool:
     """Whether an instance asks for the least time to a state that is given wholly, within bounds on each control."""
     spec = instance.model.spec
     plain = spec.switching and spec.control_set == "box" and not (spec.throttled or spec.multipliers)
-    plain = plain and spec.autonomous and not spec.has_terminal_cost and not spec.path_constraints
+    plain = plain and spec.autonomous and not spec.has_terminal_cost and not spec.in_arcs
     bounded = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
     return bool(plain and bounded and instance.tf is None and len(instance.final) == len(instance.initial))
 

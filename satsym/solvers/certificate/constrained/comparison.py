@@ -1,4 +1,4 @@
-"""Competitors with other boundary arcs: extremals to which other paths lead."""
+"""Competitors with other boundary arcs, or other times of points on the way: to what other paths lead."""
 
 from __future__ import annotations
 
@@ -23,6 +23,12 @@ def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
     if convex(solution.instance):  # there are no others
         return Comparison((), ())
     instance = solution.instance
+    if instance.model.spec.interior:
+        from satsym.solvers.interior.solving import others as at_other_times
+
+        tried, costs, interrupted = at_other_times(solution, seed + 1, deadline)
+        found = summed(solution, Kind.TIMES, tried, costs, interrupted)
+        return Comparison((found,), () if costs and not interrupted else (Kind.TIMES,))
     if instance.tf is None:  # paths last as long as the solution does
         instance = replace(instance, tf_guess=float(solution.times[-1]))
     tried, costs, interrupted = others(instance, solution.objective, seed + 1, deadline)

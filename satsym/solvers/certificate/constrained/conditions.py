@@ -13,6 +13,7 @@ from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.comparison import Comparison
 from satsym.solvers.certificate.constrained import comparison
+from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
@@ -115,6 +116,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         Check("jump of costates off the constraint's gradient", again.off_gradient, DEFECT),
         Check("negative multiplier", _negative(solution, again), SIGN),
     ]
+    checks += passing(solution, again)
     drift = _drift(solution, again)
     return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
 
@@ -173,7 +175,7 @@ def _sizes(solution: Solution, again: Replay) -> Array:
 def _violated(solution: Solution, again: Replay) -> float:
     """Largest value of a constraint along the flow, relative to its size."""
     found = [values(solution.instance, *_controls(solution, p)).max(axis=1) for p in again.pieces]
-    return max(0.0, float((np.max(found, axis=0) / _sizes(solution, again)).max()))
+    return max(0.0, float((np.max(found, axis=0) / _sizes(solution, again)).max(initial=0.0)))
 
 
 def _off_boundary(solution: Solution, again: Replay) -> float:
@@ -195,6 +197,8 @@ def _off_tangency(solution: Solution, again: Replay) -> float:
     lasting = float(solution.times[-1] - solution.times[0])
     last = tuple(one for one in solution.events if one.t >= solution.times[-1])
     for group, piece in zip([*within(solution), last], again.pieces, strict=True):
+        if any(one.kind == "interior" for one in group):  # where controls may jump
+            continue
         begun = {one.name for one in group if one.kind != "exit"}
         for event in group:
             which, t, z = _number(solution, event.name), piece.times[-1:], piece.z[:, -1:]
@@ -288,7 +292,8 @@ def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[
     lasting, spec = float(solution.times[-1] - solution.times[0]), solution.instance.model.spec.path_constraints
     jumps = list[float]()
     for group, own in zip(within(solution), again.jumps, strict=True):
-        met = {_number(solution, event.name) for event in group}
+        met = {_number(solution, event.name) for event in group if event.kind != "interior"}
+        own = {k: zeta for k, zeta in own.items() if k < len(spec)}  # those of points on the way have any sign
         jumps += [zeta / lasting for k, zeta in own.items() if (k in met and spec[k].order > 1) or not strict]
     jumps += [zeta / lasting for zeta in again.pressed.values()]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
@@ -304,7 +309,7 @@ def _drift(solution: Solution, again: Replay) -> float | None:
     parts = [control(instance, one.active, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
     u = np.concatenate(parts, axis=1)
     moving: Any = t + 1e-30j
-    if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any():
+    if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any() or drifting(solution, again):
         return None
     h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)
     terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()

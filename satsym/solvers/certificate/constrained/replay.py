@@ -18,7 +18,7 @@ from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.active import control, field
-from satsym.solvers.constrained.arcs import gradient, gradients
+from satsym.solvers.constrained.arcs import conditions, gradient
 from satsym.solvers.constrained.structure import Active, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
@@ -137,8 +137,11 @@ def _joined(parts: list[Piece], nodes: slice) -> Piece:
 def jumping(solution: Solution, junction: int, before: Active, after: Active) -> list[int]:
     """Along whose gradients costates may jump where arcs meet: those of order two on whose boundaries it is."""
     spec = solution.instance.model.spec.path_constraints
-    names = [one.name for one in spec]
+    names, names_of = ([one.name for one in ones] for ones in (spec, solution.instance.model.spec.interior))
     met = within(solution)[junction]
+    passed = [names_of.index(one.name) for one in met if one.kind == "interior"]
+    if passed:
+        return list(conditions(solution.instance)[passed[0]])
     own = {names.index(one.name) for one in met if one.kind == "touch" or spec[names.index(one.name)].order > 1}
     return sorted(own.union(k for k in before if k in after and spec[k].order > 1))
 
@@ -147,7 +150,8 @@ def _jump(solution: Solution, along: list[int], node: int, sizes: Array) -> tupl
     """The multipliers of the solution's jump, and what of it they leave."""
     n, place = len(solution.x), slice(node, node + 1)
     change = solution.lam[:, node] - solution.lam[:, node + 1]
-    push = gradients(solution.instance, solution.times[place], solution.x[:, place], solution.u[:, place])[along, :, 0]
+    here = solution.times[place], solution.x[:, place], solution.u[:, place]
+    push = np.array([gradient(solution.instance, k, *here)[:, 0] for k in along])
     zeta = np.linalg.lstsq(push.T, change, rcond=None)[0] if along else np.zeros(0)
     left = float((np.abs(change - zeta @ push) / sizes[n:]).max())
     return dict(zip(along, zeta.tolist(), strict=True)), left

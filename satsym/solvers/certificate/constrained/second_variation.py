@@ -21,6 +21,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solution import Solution
+from satsym.solvers.certificate.constrained.moving_times import Moving
 from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
@@ -38,18 +39,28 @@ def curvature(solution: Solution, again: Replay) -> float:
     times, which, ends = _mesh(solution, again)
     middles, h = (times[1:] + times[:-1]) / 2, np.diff(times)
     z = _values(again, middles)
-    a, b, second, weight = _along(solution, middles, z, which)
-    moves, inputs = _transitions(a, b, h)
+    a, b, u, second, weight = _along(solution, middles, z, which)
+    moves, inputs, solved = _transitions(a, b, h)
     m, count = b.shape[2], len(h)
-    size = m * count + free_time
+    points = Moving(solution, again)
+    size = m * count + len(points.arcs) + free_time
+    moving = slice(m * count, m * count + len(points.arcs))
+    shift, pace = points.shifts(middles), np.diff(points.shifts(times), axis=1) / h
+    drives = points.drives(middles, z[:n], u, shift, pace)
+    mixed, twice = points.mixed(middles, z[:n], u, z[n:], shift, pace)
     form, pure = np.zeros((size, size)), np.zeros((size, size))
     state, ties, met = np.zeros((n, size)), [], dict(zip(ends, _met_at_ends(solution, again), strict=False))
     for k in range(count):
         moved = np.zeros((m, size))
         moved[:, m * k : m * (k + 1)] = np.eye(m)
         after = moves[k] @ state + inputs[k] @ moved
+        after[:, moving] += solved[k] @ drives[..., k].T
         both = np.vstack([(state + after) / 2, moved])
         form += h[k] * both.T @ second[k] @ both
+        beside = h[k] * mixed[..., k] @ both
+        form[moving] += beside
+        form[:, moving] += beside.T
+        form[moving, moving] += h[k] * twice[..., k]
         held = [each for each in which[k] if holds_control(instance, each)]
         ties += [_held(solution, which[k], each, middles[k : k + 1], z[:, k : k + 1]) @ both for each in held]
         pure += h[k] * moved.T @ weight[k] @ moved
@@ -60,6 +71,12 @@ def curvature(solution: Solution, again: Replay) -> float:
         for one in met.get(k + 1, ()):
             ties.append(one.gradient @ state)
             form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
+        for place, arc in enumerate(points.arcs):
+            if ends[arc] == k + 1:
+                kept, curved = points.passed(place)
+                total = np.vstack([state, np.eye(size)[moving.start + place]])
+                ties += list(kept @ total)
+                form += total.T @ curved @ total
     unit = unit_sizes(solution)
     after = np.column_stack([solution.lam[:, :-1], again.end[n:]])  # multipliers at the end are those after its jump
     end = end_form(replace(solution, lam=after), unit)
@@ -67,6 +84,7 @@ def curvature(solution: Solution, again: Replay) -> float:
     if free_time:
         scaled = np.vstack([scaled, np.eye(size)[-1]])
         pure[-1, -1] = unit[0] * unit[n]
+    pure[moving, moving] += np.eye(len(points.arcs)) * unit[0] * unit[n]
     form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
     ties += list(end.ties @ scaled)
     return _least(form, pure, np.array(ties).reshape(-1, size))
@@ -119,8 +137,8 @@ def _values(again: Replay, times: Array) -> Array:
 
 def _along(
     solution: Solution, t: Array, z: Array, which: list[Active]
-) -> tuple[Array, Array, list[Array], list[Array]]:
-    """Jacobians of the motion, second derivatives of H + eta g by state and control, and H_uu, at midpoints."""
+) -> tuple[Array, Array, Array, list[Array], list[Array]]:
+    """Jacobians of the motion, controls, second derivatives of H + eta g by state and control, and H_uu, in between."""
     instance, n = solution.instance, len(solution.x)
     model, p, x, lam = instance.model, instance.parameters, z[:n], z[n:]
     m, count = len(model.spec.controls), len(t)
@@ -147,18 +165,19 @@ def _along(
 
         table += _slopes(pushes, np.concatenate([x, u])) * eta[k]
     second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
-    return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
+    return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), u, second, [one[n:, n:] for one in second]
 
 
-def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array]]:
-    """The midpoint rule's step of the linearised motion."""
-    moves, inputs = [], []
+def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array], list[Array]]:
+    """The midpoint rule's step of the linearised motion: by states, by controls, and by what is added to rates."""
+    moves, inputs, solved = [], [], []
     for one, push, step in zip(a, b, h, strict=True):
         unit = np.eye(len(one))
         inverse = np.linalg.inv(unit - step / 2 * one)
         moves.append(inverse @ (unit + step / 2 * one))
         inputs.append(inverse @ (step * push))
-    return moves, inputs
+        solved.append(step * inverse)
+    return moves, inputs, solved
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +198,8 @@ def _met_at_ends(solution: Solution, again: Replay) -> list[list[Met]]:
     for group, piece, jumps in zip(within(solution), again.pieces, again.jumps, strict=False):
         at, touched = (piece.times[-1:], piece.z[:, -1:]), {e.name for e in group if e.kind == "touch"}
         # what holds a control is kept by its control alone
-        own = {names.index(event.name) for event in group} | jumps.keys()
+        own = {names.index(event.name) for event in group if event.kind != "interior"}
+        own |= {k for k in jumps if k < len(spec)}
         states = sorted(k for k in own if spec[k].order > 0)
         found.append([_met(instance, k, *at, jumps.get(k, 0.0), names[k] in touched) for k in states])
     end = again.pieces[-1].times[-1:], again.end[:, None]

@@ -1,0 +1,124 @@
+"""Points on the way that are passed at free times: N(x, t, p) = 0, by name, in order.
+
+At such a time the costs before and after it leave (lambda(t+) - lambda(t-))' dx + (H(t-) - H(t+)) dt in the first
+variation, which N, adjoined with multipliers pi of either sign, must balance for every dx and dt (Bryson and Ho,
+Applied Optimal Control, 3.5).
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import tidy
+from satsym.symbolic.checks import DIGITS, Point, compare, numeric
+from satsym.symbolic.convention import sign, worded
+from satsym.symbolic.derivation import Check, Derivation, Equation, Step
+from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.model import Problem, Requirement, symbols_of, t
+
+STEP = "interior_conditions"
+"""The step that only derivations of such problems have."""
+
+
+def entry(name: str, place: int, count: int) -> str:
+    """Name of one of the conditions at a point; of a single one the point's."""
+    return name if count == 1 else f"{name}_{place}"
+
+
+def named(problem: Problem) -> dict[str, sp.Expr]:
+    """Name -> each condition, those of the first point first."""
+    return {
+        entry(name, k, len(stated)): sp.sympify(condition)
+        for name, stated in problem.interior.items()
+        for k, condition in enumerate(stated, start=1)
+    }
+
+
+def condition(name: str) -> sp.Symbol:
+    """The symbol for what vanishes, by its name."""
+    return sp.Symbol(f"interior_{name}", real=True)
+
+
+def multiplier(name: str) -> sp.Symbol:
+    """The symbol for its multiplier."""
+    return sp.Symbol(f"pi_{name}", real=True)
+
+
+def change(of: sp.Symbol, point: str) -> sp.Symbol:
+    """The symbol for the value before a point less that after it."""
+    return sp.Symbol(f"change_of_{of.name}_at_{point}", real=True)
+
+
+def interior_conditions(so_far: Derivation) -> Step | None:
+    """By what costates and H jump at each point."""
+    problem = so_far.problem
+    if problem is None or not problem.interior:
+        return None
+    states, s = symbols_of(so_far.model.states), sign(problem)
+    equations, checks = list[Equation](), list[Check]()
+    for point, stated in problem.interior.items():
+        names = [entry(point, k, len(stated)) for k in range(1, len(stated) + 1)]
+        equations += [Equation(one, condition(one), sp.sympify(e)) for one, e in zip(names, stated, strict=True)]
+        adjoined = sum((multiplier(one) * e for one, e in zip(names, stated, strict=True)), sp.Integer(0))
+        jumps = [
+            Equation(f"{point}_{lam.name}", change(lam, point), tidy(s * sp.diff(adjoined, x)))
+            for x, lam in zip(states, map(n.costate_of, states), strict=True)
+        ]
+        jumps.append(Equation(f"{point}_H", change(n.HAMILTONIAN, point), tidy(-s * sp.diff(adjoined, t))))
+        checks.append(_first_variation(states, s * adjoined, jumps))
+        equations += jumps
+    rule = worded("pass a point", problem)
+    return Step(STEP, rule, tuple(equations), ("hamiltonian", "costate_equations"), tuple(checks))
+
+
+def _first_variation(states: tuple[sp.Symbol, ...], adjoined: sp.Expr, jumps: list[Equation]) -> Check:
+    """Hold the jumps against the change of what is adjoined along any dx and dt, by differences."""
+    found, value = numeric([one.rhs for one in jumps]), numeric([adjoined])
+    rng = random.Random("points")
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        *of_costates, of_h = found(point)
+        moves, dt = [rng.uniform(-1, 1) for _ in states], rng.uniform(-1, 1)
+        left = sum(jump * dx for jump, dx in zip(of_costates, moves, strict=True)) - of_h * dt
+        with mp.workdps(3 * DIGITS):
+            step = mp.mpf(10) ** -DIGITS
+            ends = [
+                {**point, t: point[t] + h * dt, **{x: point[x] + h * dx for x, dx in zip(states, moves, strict=True)}}
+                for h in (step, -step)
+            ]
+            change = (value(ends[0])[0] - value(ends[1])[0]) / (2 * step)
+        return [left], [change]
+
+    return compare("change where a point is passed", {*states, t} | adjoined.free_symbols, sides)
+
+
+def names(problem: Problem) -> dict[str, str]:
+    """Name -> LaTeX of all symbols."""
+    found: dict[str, str] = {}
+    for place, (point, stated) in enumerate(problem.interior.items(), start=1):
+        for k in range(1, len(stated) + 1):
+            one = entry(point, k, len(stated))
+            foot = f"{place}{k}" if len(stated) > 1 else f"{place}"
+            found |= {condition(one).name: f"N_{{{foot}}}", multiplier(one).name: rf"\pi_{{{foot}}}"}
+        for v, (x,) in ((v, symbols_of((v,))) for v in problem.model.states):
+            lam = rf"\lambda_{{{v.latex}}}"
+            found[change(n.costate_of(x), point).name] = rf"{lam}(t_{place}^-) - {lam}(t_{place}^+)"
+        found[change(n.HAMILTONIAN, point).name] = rf"H(t_{place}^-) - H(t_{place}^+)"
+    return found
+
+
+def declare(
+    known: dict[str, Dimension | None], problem: Problem, total: Dimension | None, require: Requirement
+) -> None:
+    """Enter the dimensions of all symbols, where `total` is that of the cost."""
+    for name, stated in named(problem).items():
+        known[condition(name).name] = found = require(f"the interior point {name}", stated)
+        known[multiplier(name).name] = over(total, found)
+    for point in problem.interior:
+        for of in (n.HAMILTONIAN, *map(n.costate_of, symbols_of(problem.model.states))):
+            known[change(of, point).name] = known[of.name]
