@@ -28,6 +28,8 @@ class Advance:
         Rows that are kept, those among them without an answer, and all.
     begun, seconds
         Rows that were kept before this run, and how long it has been going on.
+    compiling
+        Whether machine code may be being made just now.
     """
 
     done: int
@@ -35,6 +37,7 @@ class Advance:
     total: int
     begun: int
     seconds: float
+    compiling: bool = False
 
     @property
     def rate(self) -> float:
@@ -94,7 +97,8 @@ def run(
     under_way: dict[Future[list[Row]], tuple[Chunk, float]] = {}
 
     def report() -> None:
-        watch(Advance(parts.rows, parts.failures, total, before, time.monotonic() - began))
+        compiling = study.compiled and parts.rows == before
+        watch(Advance(parts.rows, parts.failures, total, before, time.monotonic() - began, compiling))
 
     report()
     while missing or again or under_way:

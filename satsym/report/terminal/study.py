@@ -19,6 +19,8 @@ def progress_line(advance: Advance) -> str:
         parts.append(f"{advance.rate:.3g}/s")
         parts.append(say("<time> left", time=_time(advance.left)))
     parts.append(say("<number> failed", number=advance.failures))
+    if advance.compiling:
+        parts.append(say("compiling first, once a model"))
     return ", ".join(parts)
 
 

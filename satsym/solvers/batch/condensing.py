@@ -43,7 +43,10 @@ class _Compiled:
     """By machine code."""
 
     def __init__(self, rows: int) -> None:
-        self._function = compiling.compiled(f"condensing_{rows}", text(rows))["many"]
+        name = f"condensing_{rows}"
+        self._function = compiling.compiled(name, text(rows))["many"]
+        with compiling.alone(name):  # made or read by a call with no problems
+            self(np.zeros((rows, rows, 1, 0)), np.zeros((rows, 1, 0)), None)
 
     def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
         rows, columns = start.shape[:2]

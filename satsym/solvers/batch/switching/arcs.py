@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solvers.batch.switching.planes import at, solved
+from satsym.solvers.batch.switching.planes import add, at, product, put, solved
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -52,9 +52,10 @@ def last_levels(costate: Array, rates: Array, box: Array) -> Array:
     """Controls at the end: where a switching function vanishes there, its rate decides."""
     n, m = len(costate), box.shape[1]
     found = np.zeros(m)
+    column, following = np.zeros(n), np.zeros(n)
     for c in range(m):
-        column = rates[:n, n + c].copy()
-        matrix = np.ascontiguousarray(rates[:n, :n])
+        for i in range(n):
+            column[i] = rates[i, n + c]
         for _ in range(n):
             sigma, size = 0.0, 0.0
             for i in range(n):
@@ -62,7 +63,9 @@ def last_levels(costate: Array, rates: Array, box: Array) -> Array:
                 size += abs(costate[i] * column[i])
             if abs(sigma) > 1e-12 * size:
                 break
-            column = matrix @ column
+            for i in range(n):
+                following[i] = product(column, rates[i])
+            put(column, following)
         found[c] = box[0, c] if sigma > 0.0 else box[1, c]
     return found
 
@@ -79,7 +82,8 @@ def outermost(costate: Array, rates: Array, table: Array) -> float:
 def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Array, count: int, final: Array) -> int:
     """With a switch of a single control next to the end at which its switching function is smaller; how many then."""
     if outermost(costate, rates, powers[0]) < outermost(costate, rates, whole):
-        times[1 : count + 1] = times[:count].copy()
+        for s in range(count, 0, -1):
+            times[s] = times[s - 1]
         times[0], final[0] = TINY, -1.0
     else:
         times[count] = 1.0 - TINY
@@ -101,8 +105,9 @@ def slopes(table: Array, rates: Array, column: int) -> Array:
 def begun(rates: Array, x: Array, u: Array) -> Array:
     """Rates of states, shape (n,)."""
     n = len(x)
-    found = rates[:, n + len(u)].copy()
+    found = np.zeros(n)
     for i in range(n):
+        found[i] = rates[i, n + len(u)]
         for c in range(len(u)):
             found[i] += rates[i, n + c] * u[c]
         for j in range(n):
@@ -130,8 +135,12 @@ def equations(
     The end is met, every switching function vanishes at its switches, and costates keep their size.
     """
     n, count, m = len(x), len(times), len(final)
-    matrix[:], right[:] = 0.0, 0.0
-    whole, level = at(rates, powers, length, duration), final.copy()
+    whole, level = at(rates, powers, length, duration), np.zeros(m)
+    put(level, final)
+    for i in range(len(right)):
+        right[i] = 0.0
+        for j in range(len(right)):
+            matrix[i, j] = 0.0
     for s in range(count):
         c, table = controls[s], at(rates, powers, length, times[s])
         jump = 2.0 * level[c] - box[0, c] - box[1, c]
@@ -178,6 +187,21 @@ def room(times: Array, controls: Places, duration: float, change: Array, longer:
     return share
 
 
+def magnitude(values: Array) -> float:
+    """The largest magnitude; not a number where one is none."""
+    found = 0.0
+    for value in values:
+        if found == found and not abs(value) <= found:
+            found = abs(value)
+    return found
+
+
+def scaled(values: Array, unit: float) -> None:
+    """In other units."""
+    for i in range(len(values)):
+        values[i] /= unit
+
+
 def exact(
     costate: Array,
     duration: float,
@@ -199,39 +223,44 @@ def exact(
     """
     n, m = len(x), box.shape[1]
     count = switches_of(costate, rates, powers, length, duration, times, controls)
-    side = np.ones(m)
+    side = np.zeros(m)
+    for c in range(m):
+        side[c] = 1.0
     if count == n - 2 and m == 1:
         count = missing(costate, rates, powers, at(rates, powers, length, duration), times, count, side)
         times[0 if side[0] < 0.0 else count - 1] *= duration
-        controls[:count] = 0
+        for s in range(count):
+            controls[s] = 0
     if count < n - 1:
         return -1, duration
     final, settled = last_levels(costate, rates, box), False
     for c in range(m):
         final[c] = final[c] if side[c] > 0.0 else box[0, c] + box[1, c] - final[c]
-    costate /= np.abs(costate).max()
+    scaled(costate, magnitude(costate))
     matrix, right = np.zeros((count + n + 1, count + n + 1)), np.zeros(count + n + 1)
+    change = np.zeros(count)
     own, which = times[:count], controls[:count]
     for _ in range(CORRECTIONS):
         equations(matrix, right, costate, duration, rates, powers, length, x, end, box, final, own, which)
         if not solved(matrix, right):
             return -1, duration
-        size = np.abs(right).max()
+        size = magnitude(right)
         if not size <= FAR:
             return -1, duration
-        change = right[:count] * duration
+        for s in range(count):
+            change[s] = right[s] * duration
         longer = right[count + n] * duration
         share = room(own, which, duration, change, longer)
-        own += share * change
-        costate += share * right[count : count + n]
+        add(own, share, change)
+        add(costate, share, right[count : count + n])
         duration += share * longer
         if duration > length * (len(powers) - 1):
             return -1, duration
         if settled:
             break
         settled = share == 1.0 and size <= SETTLED
-    falling = (costate * begun(rates, end, final)).sum()
+    falling = product(costate, begun(rates, end, final))
     if not settled or not falling < 0.0:  # else it is the last moment at which the end is reached, not the first
         return -1, duration
-    costate /= -falling
+    scaled(costate, -falling)
     return count, duration

@@ -4,7 +4,8 @@ Every motion is x' = A x + B u + d with low <= u <= high, from x(0) to a given e
 side, shape (n, n + m + 1). ``powers`` holds what k steps do, shape (count + 1, n, n + m + 1): to states, by controls
 held at one, by the drift. ``box`` has low and high as rows. Costates at the end are a plane, which shows that an end
 is not reached if all that is reached lies on its other side. This module imports nothing of ours but others such:
-compilers see nothing else, and without one its functions run as they stand.
+compilers see nothing else, and without one its functions run as they stand. Loops go over numbers throughout: arrays as
+a whole are no faster here, and take a compiler several times as long.
 """
 
 from __future__ import annotations
@@ -25,6 +26,26 @@ THERE = 1e-6
 
 DIP = 0.02
 """Share of the change from step to step by which a plane that comes nearest between two steps is too near."""
+
+
+def put(into: Array, values: Array) -> None:
+    """Values into the place of others."""
+    for i in range(len(into)):
+        into[i] = values[i]
+
+
+def add(into: Array, share: float, values: Array) -> None:
+    """A share of values to others."""
+    for i in range(len(into)):
+        into[i] += share * values[i]
+
+
+def product(one: Array, other: Array) -> float:
+    """The scalar product."""
+    found = 0.0
+    for i in range(len(one)):
+        found += one[i] * other[i]
+    return found
 
 
 def solved(matrix: Array, right: Array) -> bool:
@@ -56,7 +77,9 @@ def solved(matrix: Array, right: Array) -> bool:
 def after(rates: Array, start: Array, length: float) -> Array:
     """What is done after a short while, from what is done before it: the exponential series."""
     n, width = start.shape
-    found, term, following = start.copy(), np.zeros_like(start), np.zeros_like(start)
+    found, term, following = np.zeros((n, width)), np.zeros((n, width)), np.zeros((n, width))
+    for i in range(n):
+        put(found[i], start[i])
     for order in range(1, TERMS):
         largest = 0.0
         for i in range(n):
@@ -65,8 +88,8 @@ def after(rates: Array, start: Array, length: float) -> Array:
                 for k in range(n):
                     value += rates[i, k] * (start[k, j] if order == 1 else term[k, j])
                 following[i, j] = value * length / order
+                found[i, j] += following[i, j]
                 largest = max(largest, abs(following[i, j]))
-        found += following
         term, following = following, term
         if largest == 0.0:
             break
@@ -153,18 +176,20 @@ def nearest(powers: Array, steps: int, x: Array, end: Array, box: Array, tight: 
     lower = rounding(powers, steps, box)
     if not lower[0, 0] > 0.0:
         return -1.0
-    middle, moved = powers[steps, :, n + m] - end, np.zeros(n)
+    middle, moved, point, plane = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     for i in range(n):
+        middle[i] = powers[steps, i, n + m] - end[i]
         for j in range(n):
             middle[i] += powers[steps, i, j] * x[j]
         for c in range(m):
             middle[i] += 0.5 * (box[0, c] + box[1, c]) * powers[steps, i, n + c]
     corners, weights = np.zeros((n + 1, n)), np.zeros(n + 1)
     towards(lower, middle)
-    point, corners[0], weights[0], held, best = middle.copy(), middle, 1.0, 1, -np.inf
-    plane = np.zeros(n)
+    put(point, middle)
+    put(corners[0], middle)
+    weights[0], held, best = 1.0, min(1, n), -np.inf
     for _ in range(CORNERS):
-        size = np.sqrt((point * point).sum())
+        size = np.sqrt(product(point, point))
         if size <= THERE:
             break
         for i in range(n - 1, -1, -1):  # the direction in the coordinates of states
@@ -172,29 +197,32 @@ def nearest(powers: Array, steps: int, x: Array, end: Array, box: Array, tight: 
             for j in range(i + 1, n):
                 plane[i] -= lower[j, i] * plane[j]
             plane[i] /= lower[i, i]
-        moved[:] = 0.0
+        for i in range(n):
+            moved[i] = 0.0
         for k in range(steps):
             for c in range(m):
                 pushed = 0.0
                 for i in range(n):
                     pushed += plane[i] * (powers[k + 1, i, n + c] - powers[k, i, n + c])
-                half = -0.5 * (box[1, c] - box[0, c]) * np.sign(pushed)
+                half = 0.0 if pushed == 0.0 else 0.5 * (box[1, c] - box[0, c])
+                half = -half if pushed > 0.0 else half
                 for i in range(n):
                     moved[i] += half * (powers[k + 1, i, n + c] - powers[k, i, n + c])
         towards(lower, moved)
-        moved += middle
-        distance = (point * moved).sum() / size
+        add(moved, 1.0, middle)
+        distance = product(point, moved) / size
         if distance > best:
             best = distance
-            found[:] = plane
-        if best >= (1.0 - tight) * size or (point * (point - moved)).sum() <= 1e-13 * size * size:
+            put(found, plane)
+        if best >= (1.0 - tight) * size or size * (size - distance) <= 1e-13 * size * size:
             break
         held = joined(corners, weights, held, moved)
         if held < 0:
             break
-        point[:] = 0.0
+        for i in range(n):
+            point[i] = 0.0
         for k in range(held):
-            point += weights[k] * corners[k]
+            add(point, weights[k], corners[k])
     return best
 
 
@@ -237,11 +265,13 @@ def joined(corners: Array, weights: Array, held: int, new: Array) -> int:
     """The hull with one corner more, and without those that its nearest point does not need; -1 where that fails."""
     if held == len(corners):
         return -1
-    corners[held], weights[held] = new, 0.0
+    put(corners[held], new)
+    weights[held] = 0.0
     held += 1
     n = corners.shape[1]
     while True:
-        matrix, right, wanted = np.zeros((held - 1, held - 1)), np.zeros(held - 1), np.ones(held)
+        matrix, right, wanted = np.zeros((held - 1, held - 1)), np.zeros(held - 1), np.zeros(held)
+        wanted[0] = 1.0
         for i in range(held - 1):
             for j in range(held - 1):
                 for k in range(n):
@@ -262,5 +292,6 @@ def joined(corners: Array, weights: Array, held: int, new: Array) -> int:
         if leaving < 0:
             return held
         for i in range(leaving, held - 1):
-            corners[i], weights[i] = corners[i + 1], weights[i + 1]
+            put(corners[i], corners[i + 1])
+            weights[i] = weights[i + 1]
         held -= 1

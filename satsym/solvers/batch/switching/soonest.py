@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solvers.batch.switching.arcs import exact
-from satsym.solvers.batch.switching.planes import THERE, at, nearest, passed, powers_of
+from satsym.solvers.batch.switching.planes import THERE, at, nearest, passed, powers_of, put
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -67,7 +67,8 @@ def first_arrival(
         fastest = max(fastest, row)
     length = min(scale / SHOWN, SHORT / max(fastest, 1e-300))
     powers = powers_of(rates, length, 3 * SHOWN)
-    plane, trial = costate.copy(), costate.copy()
+    plane, trial = np.zeros(n), np.zeros(n)
+    put(plane, costate)
     for _ in range(ROUNDS):
         later = passed(plane, rates, powers, length, x, end, box, since)
         if later < 0.0:
@@ -90,13 +91,17 @@ def first_arrival(
         for back in range(BACK):
             if back and nearest(powers, steps - back, x, end, box, PRECISE, plane) <= 0.0:
                 break
-            trial[:] = plane
+            put(trial, plane)
             count, duration = exact(trial, since, rates, powers, length, x, end, box, times, controls)
             if count >= 0 and duration >= since * (1.0 - BEFORE):
                 bound = passed(trial, rates, powers, length, x, end, box, since)
                 if bound < 0.0 or bound >= duration * (1.0 - BEFORE):
-                    costate[:] = trial
-                    begin[:] = trial @ np.ascontiguousarray(at(rates, powers, length, duration)[:, :n])
+                    put(costate, trial)
+                    whole = at(rates, powers, length, duration)
+                    for i in range(n):
+                        begin[i] = 0.0
+                        for j in range(n):
+                            begin[i] += trial[j] * whole[j, i]
                     return count, duration
             if not back and nearest(powers, steps, x, end, box, TIGHT, plane) > THERE:
                 break
@@ -129,13 +134,13 @@ def many(
     begins, counts, durations, times, controls
         What is found: costates at the start, shape (M, n); shapes (M,), (M,), (M, SWITCHES), (M, SWITCHES).
     """
-    known = -1
+    known, guess = -1, np.zeros(x.shape[1])
     for k in range(len(x)):
-        guess = costates[k].copy()
+        put(guess, costates[k])
         counts[k] = -1
-        for near in (True, False):
+        for near in range(1, -1, -1):
             if counts[k] < 0 and (known >= 0 or not near):
-                costates[k] = costates[known] if near else guess
+                put(costates[k], costates[known] if near else guess)
                 counts[k], durations[k] = first_arrival(
                     costates[k],
                     begins[k],
