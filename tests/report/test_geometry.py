@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, isclose
+from math import atan2, cos, hypot, isclose, sin
 
 import pytest
+from sympy import symbols
 
 from satsym.report.latex.figure import figure
 from satsym.report.texts import load
 from satsym.symbolic import Model, Problem
-from satsym.symbolic.motion.geometry import Arrow
+from satsym.symbolic.motion.geometry import ROUND, Arrow
 from tests.support.derived import stated
 
 
@@ -64,6 +65,32 @@ def test_words_are_those_of_the_language() -> None:
     assert "gravitasi" in figure(model("polar_orbit"), load("id").with_own({"phrases": {"gravity": "gravitasi"}}))
 
 
-@pytest.mark.parametrize("name", ["van_der_pol", "two_body", "goddard", "gyrostat_linear"])
+@pytest.mark.parametrize("name", ["van_der_pol", "two_body", "goddard", "cart_pole"])
 def test_no_geometry_is_invented(name: str) -> None:
     assert figure(model(name), load("en")) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "angles"), [("gyrostat", (r"\phi", r"\psi", r"\theta")), ("roll_yaw", (r"\phi", r"\psi"))]
+)
+def test_a_body_in_space_has_its_axes_and_the_sense_of_each_angle_that_turns_it(
+    name: str, angles: tuple[str, ...]
+) -> None:
+    found = model(name).picture()
+    assert found
+    assert tuple(label for _, label in found.turns) == angles
+    assert [arrow.labels[0] for arrow in found.arrows] == ["x_0", "y_0", "z_0", "x", "y", "z"]
+
+
+def test_the_arrow_about_the_pitch_axis_turns_the_way_that_pitch_does() -> None:
+    found, bodies = model("gyrostat").picture(), model("gyrostat")
+    assert found
+    ((points, _),) = [turn for turn in found.turns if turn[1] == r"\theta"]
+    forward, towards_reader, down = (arrow.end for arrow in found.arrows[:3])
+    seen = [tuple((p - 1.1 * c) / 0.14 for p, c in zip(place, towards_reader, strict=True)) for place in points]
+    theta, rest = symbols("theta", real=True), dict.fromkeys(symbols("phi psi theta", real=True), 0)
+    assert tuple(bodies.attitude.subs(bodies.named).diff(theta).subs(rest)[:, 2]) == (1, 0, 0)  # down goes forward
+    at = {round(angle, 6): place for angle, place in zip(ROUND, seen, strict=True)}
+    assert isclose(at[-0.1][0] + at[0.1][0], 2 * cos(0.1) * down[0], abs_tol=1e-9)
+    assert isclose(at[-0.1][1] + at[0.1][1], 2 * cos(0.1) * down[1])
+    assert isclose(at[0.1][0] - at[-0.1][0], 2 * sin(0.1) * forward[0])

@@ -77,20 +77,30 @@ def test_nothing_is_translated_that_is_nowhere_said() -> None:
     ] == []
 
 
+MET_AT_NONE = ("after the start", "<when> that is given")
+WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
+TOO_EARLY = ("not after", "too far from")
+SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
+MISSHAPEN = ("it has <n> entries of the wrong number or mixed kinds", "row <i> has <n> numbers")
 COMPOSED = (
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
+    *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
+    *("<name> ends at its lower limit", "<name> ends at its upper limit"),
+    *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
+    "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",
+    "[control] <name>: this control enters without a square, so it needs both bounds; write <again> = [lower, upper]",
+    *(f"<place>: terminal inequality <name>: it is met at no final time {when}" for when in MET_AT_NONE),
+    *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
+    *(f"[time] <key>: <value> is {why} t0 = <start>; write a later, reachable time" for why in TOO_EARLY),
     *(
-        "Usage",
-        "Options",
-        "Commands",
-        "[OPTIONS]",
-        "COMMAND [ARGS]...",
-        "Show this message and exit.",
-        "Show the version and exit.",
+        f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
+        for what in MISSHAPEN
     ),
+    *"Usage Options Commands [OPTIONS]".split(),
+    *("COMMAND [ARGS]...", "Show this message and exit.", "Show the version and exit."),
 )
 """What stands nowhere as it is said."""
 HELP = {text for command in (program, *program.commands.values()) for text in texts(command)}
@@ -157,6 +167,12 @@ def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch
         ('model = "polar_orbit"\n[initial]\nr = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
         ('model = "polar_orbit"\n[initial]\nq = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
         ('model = "polar_orbit"\n[initial\n', ("solve", "x.toml")),
+        ('model = "polar_orbit"\n[time]\ntf = []\n', ("solve", "x.toml")),
+        ('model = "../nothing"\n[initial]\nq = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
+        ("", ("solve", "uny-lqr", "--set", "time.tf=-1")),
+        ("", ("new", "My Model")),
+        ("", ("latex", "polar_orbitt")),
+        ("", ("lqr", "clohessy_wiltshire", "--set", "initial.x1=1")),
     ],
 )
 def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
@@ -166,7 +182,7 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
     english, other = (run(*arguments, "--lang", each) for each in ("en", "id"))
     assert (english[0], other[0]) == (3, 3)
     assert other[2].count("\n") == 1
-    shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\] \w+|bukan TOML yang sah: [^;]*", "", other[2]))
+    shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\](?: \w+)?|(?<=: )\w+:|bukan TOML yang sah: [^;]*", "", other[2]))
     assert not ENGLISH.search(shown), other[2]
     assert other[2] != english[2]
 

@@ -69,7 +69,27 @@ def _bodies(shown: Picture) -> Iterator[str]:
     yield r"\fill (0,0) circle (1.5pt)"
 
 
-DRAWN: dict[str, Callable[[Picture], Iterator[str]]] = {"motion": _space, "deviations": _space, "bodies": _bodies}
+def _attitude(shown: Picture) -> Iterator[str]:
+    """Axes of the orbit, those of the body, and the sense of each angle."""
+    far = 1.3 * SIZE
+    for k, arrow in enumerate(shown.arrows):
+        look, along = (",black!50", 1.3) if k < 3 else (",thick", 0.95)
+        x, y = arrow.end
+        side = "right" if x > abs(y) else "below" if abs(x) < abs(y) and y < 0 else "left" if x < 0 else "above"
+        yield rf"\draw[->{look}] (0,0) -- {_at(arrow.end, along * far)} node[{side}] {_names(arrow)}"
+    for points, name in shown.turns:
+        yield r"\draw[->] plot[smooth] coordinates {" + " ".join(_at(p, far) for p in points) + "}"
+        x, y = points[0]
+        yield rf"\node at {_at((x + 0.08, y + 0.05), far)} {{${name}$}}"
+    yield r"\fill (0,0) circle (1.5pt)"
+
+
+DRAWN: dict[str, Callable[[Picture], Iterator[str]]] = {
+    "motion": _space,
+    "deviations": _space,
+    "bodies": _bodies,
+    "attitude": _attitude,
+}
 
 
 def _at(place: Place, scale: float) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
 from satsym import units as expressions
+from satsym.report import display
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -16,17 +16,15 @@ if TYPE_CHECKING:
 COST = "cost"
 """The unit of J where it does not follow from the units of the model."""
 
-_TIMES = frozenset({"s", "second", "min", "minute", "h", "hour", "day", "year"})
-
 
 def time_unit(spec: ProblemSpec) -> str:
     """The unit of time as the model's units spell it; nothing where they do not agree on one.
 
-    Told from the words alone: asking pint costs more than solving.
+    That of parameters counts where no state and no control has any. Told from the words alone: asking pint costs more
+    than solving.
     """
-    words = {word for v in (*spec.states, *spec.controls) for word in re.findall(r"[A-Za-z]+", v.unit)}
-    found = words & _TIMES
-    return found.pop() if len(found) == 1 else ""
+    found = (display.time_unit(v.unit for v in each) for each in ((*spec.states, *spec.controls), spec.parameters))
+    return next((unit for unit in found if unit != "1"), "")
 
 
 def cost_per(unit: str, spec: ProblemSpec) -> str:

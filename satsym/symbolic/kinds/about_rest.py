@@ -20,6 +20,7 @@ from satsym.symbolic.kinds.derived import SpecialCase
 from satsym.symbolic.kinds.multibody import Multibody
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import geometry
 from satsym.symbolic.motion import steps as motion
 
 
@@ -48,6 +49,10 @@ class AboutRest(SpecialCase):
     def motion_steps(self) -> tuple[MaybeStep, ...]:
         """The same."""
         return (second_order, first_order, motion.linearisation)
+
+    def picture(self) -> geometry.Picture | None:
+        """Those of the bodies' axes that what is kept turns."""
+        return self.of.pictured(self.states)
 
     def misfits(self) -> Iterator[str]:
         """States that are neither coordinates of the bodies nor their rates nor speeds."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation
@@ -16,6 +17,7 @@ from satsym.symbolic.equilibria.rest import Rest
 from satsym.symbolic.kinds import kane
 from satsym.symbolic.kinds.bodies import Bodies, axes_of
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import geometry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +53,16 @@ class Multibody(Bodies):
             yield f"the body {body.name!r}", [*self.spin(body), *self.momentum(body)], known
         for place, load in self.loads:
             yield f"the load on {place.name}", self.along(load, self.inertial), known
+
+    def picture(self) -> geometry.Picture | None:
+        """Its axes beside those of the orbit."""
+        return self.pictured(self.states)
+
+    def pictured(self, angles: Iterable[Variable]) -> geometry.Picture | None:
+        """The same, turned by some of its angles alone."""
+        if self.attitude is None:
+            return None
+        return geometry.attitude(self.attitude.subs(self.named), angles)
 
     def followed(self) -> str:
         """The parameter that the model names, if its attitude is all that moves."""

@@ -1,18 +1,20 @@
 """The geometry that a model declares, as points and arrows of a picture: nothing in it is assumed.
 
 A particle in a plane has its position, unit vectors and forces; deviations from its reference are arrows along which
-they move it; bodies that turn about one axis have their angle and the sense of their turns.
+they move it; bodies that turn about one axis have their angle and the sense of their turns; a body that turns in space
+has its axes, turned from those of the orbit, and the sense of each angle.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from math import atan2, hypot, isclose, pi
+from math import atan2, cos, hypot, isclose, pi, sin
 from typing import Any
 
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
 
 Place = tuple[float, float]
@@ -21,6 +23,12 @@ TIME, ANGLE, BEYOND = 0.6, 0.75, 1.3
 """When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
 CURVE = tuple(2 * pi * k / 48 for k in range(49))
 """Times at which the path of the reference is drawn."""
+TURNED = 0.25
+"""What each angle of a body in space is drawn as."""
+OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))
+"""Where axes that are forward, towards the reader and down lie on the page."""
+ROUND = tuple(-2.1 + 0.2 * k for k in range(22))
+"""Angles of an arrow about an axis."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +47,7 @@ class Picture:
     Attributes
     ----------
     kind
-        Key of what it shows: a motion, deviations, bodies.
+        Key of what it shows: a motion, deviations, bodies, an attitude.
     path
         Points of the reference.
     arrows
@@ -48,6 +56,8 @@ class Picture:
         That of the body as seen from the centre, and its name; none if no coordinate is that angle.
     bodies
         Names of concentric bodies.
+    turns
+        Arrows about axes, each with the name of the angle.
     """
 
     kind: str
@@ -55,12 +65,49 @@ class Picture:
     arrows: tuple[Arrow, ...] = ()
     angle: tuple[float, str] | None = None
     bodies: tuple[str, ...] = ()
+    turns: tuple[tuple[tuple[Place, ...], str], ...] = ()
 
 
 def bodies(model: Model, angle: sp.Symbol, names: tuple[str, ...]) -> Picture:
     """Bodies about one axis, and one angle of them."""
     latex = next(v.latex for v in model.states if v.symbol == angle.name)
     return Picture("bodies", angle=(ANGLE, latex), bodies=names)
+
+
+def attitude(matrix: sp.Matrix, angles: Iterable[Variable]) -> Picture | None:
+    """Axes of the orbit and of a body, by the components of the former (rows) along the latter, in terms of angles."""
+    turned = {s: v for v in angles for s in symbols_of((v,)) if s in matrix.free_symbols}
+    rest = dict.fromkeys(matrix.free_symbols, sp.Integer(0))
+    if matrix.subs(rest) != sp.eye(3):
+        return None
+    turns = []
+    for symbol, variable in turned.items():
+        rate = matrix.diff(symbol).subs(rest)
+        axis = (float(rate[2, 1]), float(rate[0, 2]), float(rate[1, 0]))
+        if sorted(map(abs, axis)) == [0.0, 0.0, 1.0]:
+            turns.append((_about(axis), variable.latex))
+    shown = matrix.subs(rest | dict.fromkeys(turned, TURNED))
+    arrows = [Arrow((0, 0), OBLIQUE[k], (f"{name}_0",)) for k, name in enumerate("xyz")]
+    arrows += [Arrow((0, 0), _on_page(shown[:, k]), (name,)) for k, name in enumerate("xyz")]
+    return Picture("attitude", arrows=tuple(arrows), turns=tuple(turns)) if turns else None
+
+
+def _about(axis: tuple[float, float, float]) -> tuple[Place, ...]:
+    """An arrow about an axis, in the positive sense, near the axis's end."""
+    k = next(k for k, part in enumerate(axis) if part)
+    one, other = (k + 1) % 3, (k + 2) % 3
+    points = []
+    for angle in ROUND:
+        place = [0.0, 0.0, 0.0]
+        place[k] = 1.1
+        place[one], place[other] = 0.14 * cos(angle), 0.14 * axis[k] * sin(angle)
+        points.append(_on_page(place))
+    return tuple(points)
+
+
+def _on_page(vector: Any) -> Place:
+    x, y = (sum(float(part) * towards[i] for part, towards in zip(vector, OBLIQUE, strict=True)) for i in range(2))
+    return x, y
 
 
 def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | None:
