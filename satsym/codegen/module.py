@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import derived_units, rk4, roots, symplectic
+from satsym.codegen import derived_units, polynomials, rk4, roots, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.functions import Function, Symbols, symbols
@@ -22,7 +22,7 @@ from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.principle import inequalities, product, set_laws
-from satsym.symbolic.roots import Root, Vertex
+from satsym.symbolic.roots import Argmin, Root, Vertex
 from satsym.symbolic.switching.curve import states_of
 from satsym.symbolic.switching.singular import chattering
 
@@ -120,7 +120,7 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
             one.part.kind,
             names(one.part.controls),
             one.branch,
-            any(e.has(Vertex) for e in one.laws),
+            one.part.kind == "box" and any(e.has(Vertex, Argmin) for e in one.laws),
             one.turned_by.name if one.turned_by else "",
         )
         for one in set_laws.found(derivation)
@@ -183,7 +183,8 @@ def _straight_line(
 
 def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
     """The statements that assign a value."""
-    return roots.lines(symbol.name, value, form, code) if isinstance(value, Root) else [f"{symbol} = {code(value)}"]
+    written = roots.lines if isinstance(value, Root) else polynomials.lines if isinstance(value, Argmin) else None
+    return written(symbol.name, value, form, code) if written else [f"{symbol} = {code(value)}"]
 
 
 def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:

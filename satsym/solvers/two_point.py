@@ -84,7 +84,14 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
         reached = direct(instance, limits)
         if reached is None:
             status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
-            return nothing(instance, status, "no extremal found by a direct method from controls that are drawn")
+            message = "no extremal found by a direct method from controls that are drawn"
+            comparing = [u for part in instance.model.spec.control_parts if part.ends for u in part.controls]
+            if comparing:
+                message += (
+                    f"; H may have several minimisers in {', '.join(comparing)}: extremals that jump between them are "
+                )
+                message += "not found as a rule, and where they stay equally good there is no optimum (chattering)"
+            return nothing(instance, status, message)
         (problem, start), duration = reached, ""
     elif instance.model.spec.directional:
         led = directed(instance, limits, effort, full_length)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -82,6 +83,9 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return _common(e.args[1:], known)
     if isinstance(e, roots.Vertex):
         return _common((e.args[1] / e.args[0], *e.args[2:]), known)
+    if isinstance(e, roots.Argmin):
+        ends, coefficients = [end for end in e.args[:2] if not end.is_infinite], e.args[2:]
+        return _common((*ends, *(a / b for a, b in pairwise(coefficients) if b != 0 and a != 0)), known)
     if isinstance(e, roots.Root):  # what it is a value of; nothing tells where it has no ends
         return _common((end for end in e.args[:2] if not end.is_infinite), known)
     if isinstance(e, sp.Piecewise):

@@ -105,6 +105,24 @@ class Bend(sp.Function):
     is_real = True
 
 
+class Argmin(sp.Function):
+    """``Argmin(lower, upper, c1, ..., cd)``: where ``c1 u + ... + cd u**d`` is least on an interval.
+
+    All places are compared at which its slope vanishes, and both ends; of several that are equally good it is one.
+    """
+
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By a coefficient: the implicit function's derivative, zero at an end. Where it jumps it has no derivative."""
+        if argindex <= 2:
+            return sp.Integer(0)
+        lower, upper, *coefficients = self.args
+        k = argindex - 2
+        bent = sum(j * (j - 1) * c * self ** (j - 2) for j, c in enumerate(coefficients[1:], 2))
+        return -Interior(self, lower, upper) * k * self ** (k - 1) / bent
+
+
 class Middle(sp.Function):
     """``Middle(lower, upper)``: the middle of an interval of angles; of one longer than a turn, of a turn of it."""
 
@@ -202,11 +220,23 @@ def _bend(curvature: Any, slope: Any, lower: Any, upper: Any) -> Any:
     return -1 / curvature if inside else mp.mpf(0)
 
 
+def _argmin(lower: Any, upper: Any, *coefficients: Any) -> Any:
+    if any(c != c for c in coefficients):
+        return mp.nan
+    slope = [k * c for k, c in enumerate(coefficients, 1)]
+    while slope and not slope[-1]:
+        slope.pop()
+    found = mp.polyroots(slope[::-1], maxsteps=MOST, extraprec=10 * mp.mp.prec) if slope[1:] else []
+    places = [end for end in (lower, upper) if not mp.isinf(end)]
+    places += [max(lower, min(mp.re(root), upper)) for root in found]
+    return min(places, key=lambda u: mp.polyval([*coefficients[::-1], 0], u), default=mp.nan)
+
+
 def _middle(lower: Any, upper: Any) -> Any:
     low = max(lower, min(upper, mp.pi) - 2 * mp.pi)
     return (low + min(upper, max(lower, -mp.pi) + 2 * mp.pi)) / 2
 
 
-CONSTRUCTED = (Root, Interior, Convex, Choice, Vertex, Bend, Middle, Bearing)
+CONSTRUCTED = (Root, Interior, Convex, Choice, Vertex, Bend, Argmin, Middle, Bearing)
 MPMATH = {"Interior": _interior, "Convex": _convex, "Choice": _choice, "Middle": _middle, "Bearing": mp.atan2}
-MPMATH |= {"Vertex": _vertex, "Bend": _bend}
+MPMATH |= {"Vertex": _vertex, "Bend": _bend, "Argmin": _argmin}

@@ -287,7 +287,7 @@ def test_a_control_whose_ends_are_compared_needs_both(tmp_path: Path):
 
 def test_several_local_minima_are_refused_with_the_reason():
     with pytest.raises(DerivationError, match="several local minima"):
-        derive(scalar("double_well", -q + w, w**4 - w**2 + q**2, 0, "box"))
+        derive(scalar("rippled", -q + w, w**4 + cos(3 * w) + q**2, 0, "box"))
 
 
 def test_an_end_out_of_reach_is_no_answer(tmp_path: Path):

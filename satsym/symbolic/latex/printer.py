@@ -298,6 +298,15 @@ class Printer(LatexPrinter):
         rows = rf"{inside}, & {bent} > 0 \\ {high}, {flat} < 0 \\ {low}, {flat} \ge 0"
         return rf"\begin{{cases}} {rows} \end{{cases}}"
 
+    def _print_Argmin(self, expr: sp.Expr, exp: str | None = None) -> str:
+        lower, upper, *coefficients = expr.args
+        v = sp.Symbol("v", real=True)
+        polynomial = self._enclosed(self._print(sp.Add(*(c * v**k for k, c in enumerate(coefficients, 1)))))
+        limits = [] if lower.is_infinite else [self._print(lower), r"\le"]
+        limits += ["v", *([] if upper.is_infinite else [r"\le", self._print(upper)])]
+        least = rf"\operatorname*{{arg\,min}}_{{{' '.join(limits)}}} {polynomial}"
+        return rf"{self._enclosed(least)}^{{{exp}}}" if exp else least
+
     def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
         lower, upper = map(self._print, expr.args)
         return rf"\tfrac{{1}}{{2}} ({lower} + {upper})"

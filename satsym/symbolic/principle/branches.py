@@ -22,7 +22,7 @@ from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import Part
 from satsym.symbolic.principle.stationary import indefinite, minimiser, with_angle
-from satsym.symbolic.roots import Bearing, Choice, Convex, Middle, Vertex
+from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Minimum:
     def remarks(self) -> set[str]:
         """Keys of what is said of such a law."""
         said = {Choice: "least of two minimisers", Middle: "nearer end of the angles", Convex: "only where convex"}
-        said[Vertex] = "ends compared where not convex"
+        said |= {Vertex: "ends compared where not convex", Argmin: "least of all minimisers"}
         return {key for kind, key in said.items() for law in self.laws if law.has(kind)}
 
 

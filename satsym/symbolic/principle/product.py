@@ -38,7 +38,7 @@ from satsym.symbolic.principle.set_laws import (
     written_out,
 )
 from satsym.symbolic.principle.stationary_controls import refuse_jumping
-from satsym.symbolic.roots import Choice, Vertex
+from satsym.symbolic.roots import Argmin, Choice, Vertex
 
 STEP = "control_parts"
 """The step that only derivations of such problems have."""
@@ -129,10 +129,11 @@ def control_law(so_far: Derivation) -> Step:
 
 def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
     """Laws that compare minimisers, in named parts that people can read; others as they are."""
-    if not any(law.has(Choice, Vertex) for law in laws):
+    if not any(law.has(Choice, Vertex, Argmin) for law in laws):
         return [], list(laws)
     named = (pn.part_of_law(k) for k in range(1, pn.MOST_PARTS + 1))
     compared = [e for law in laws if isinstance(law, Vertex) for e in law.args[:2]]
+    compared += [e for law in laws if isinstance(law, Argmin) for e in law.args[2:]]
     parts, reduced = sp.cse([*compared, *laws], symbols=named, order="canonical")
     return list(parts), list(reduced[len(compared) :])
 

@@ -3,7 +3,8 @@
 Where the slope of H is ``a f(u) + b`` with a function that can be inverted, the minimiser is stated in closed form;
 else it is the root of a slope that grows, found to the last digits where the law is evaluated. Of ``a cos u + b sin u``
 between bounds it is the direction of ``(-a, -b)``, or the end of the interval nearest to that. A control that
-multiplies what an angle turns, such as a lift, has two minimisers, one of either sign: they are compared.
+multiplies what an angle turns, such as a lift, has two minimisers, one of either sign: they are compared. Of a
+polynomial that is not convex, all places at which its slope vanishes are compared with the ends.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from satsym.symbolic.checks import DIGITS, moderate, numeric, points
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.principle.circle import by_circle
-from satsym.symbolic.roots import Bearing, Choice, Convex, Middle, root_of
+from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
 
 SAMPLES, CONTROLS = 10, 12
 """Random points at which H is looked at, and controls at each."""
@@ -47,11 +48,13 @@ def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
     Raises
     ------
     DerivationError
-        If H may have several local minima.
+        If H may have several local minima, and is no polynomial; or falls for ever.
     """
     circle = by_circle(h, u)
     if circle is not None and h.has(sp.sin, sp.cos):
         return _turned(circle[1], circle[2], ends)
+    if h.is_polynomial(u) and (several := _of_polynomial(name, sp.Poly(h, u), u, ends)) is not None:
+        return several
     terms = _terms(sp.expand(sp.diff(h, u)), u)
     constant = terms.pop(sp.Integer(1), sp.Integer(0))
     if len(terms) == 1:
@@ -107,6 +110,17 @@ def indefinite(name: str, curvature: sp.Expr) -> bool:
     with mp.workdps(DIGITS):
         found = [value(point)[0] for point in points(curvature.free_symbols, f"{name} curvature", SAMPLES)]
     return len({v > 0 for v in found if moderate([v]) and not mp.im(v)}) > 1
+
+
+def _of_polynomial(name: str, h: sp.Poly, u: sp.Symbol, ends: Ends) -> sp.Expr | None:
+    """The least of all minimisers of a polynomial; ``None`` where it is convex, or may fall for ever."""
+    *coefficients, _ = h.all_coeffs()
+    grows = h.degree() % 2 == 0 and h.LC().is_positive
+    if h.degree() < 3 or not (grows or all(end.is_finite is not False for end in ends)):
+        return None
+    if not _bends_down(name, u, sp.diff(h.as_expr(), u, 2)):
+        return None
+    return Argmin(*ends, *(tidy(c) for c in coefficients[::-1]))
 
 
 def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
@@ -171,6 +185,20 @@ def _root(name: str, terms: dict[sp.Expr, sp.Expr], constant: sp.Expr, u: sp.Sym
     _refuse_several(name, u, slope.xreplace(dict(zip(weights, values, strict=True))))
     found = root_of(u, slope, (*weights, *inner))(*ends, *values, *inner)
     return Convex(found, sp.diff(slope, u).xreplace({**dict(zip(weights, values, strict=True)), u: found}))
+
+
+def _bends_down(name: str, u: sp.Symbol, bent: sp.Expr) -> bool:
+    """Whether what H is bent by is negative, for some controls or in some places."""
+    curvature, others = numeric([bent]), bent.free_symbols - {u}
+    with mp.workdps(DIGITS):
+        controls = [point[u] * 2 ** (k % 5 - 2) for k, point in enumerate(points([u], f"{name} {u}", CONTROLS))]
+        found = [
+            curvature({**point, u: side * control})[0]
+            for point in points(others, f"{name} {u}", SAMPLES)
+            for control in controls
+            for side in (1, -1)
+        ]
+    return any(v < 0 for v in found if moderate([v]) and not mp.im(v))
 
 
 def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:

@@ -19,7 +19,7 @@ from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import path_constraints as states
 from satsym.symbolic.principle import path_notation as pn
 from satsym.symbolic.principle.branches import Minimum
-from satsym.symbolic.roots import Vertex
+from satsym.symbolic.roots import Argmin, Vertex
 
 
 def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
@@ -36,7 +36,7 @@ def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
             message = f"bounds on the norm of {controls} are not supported beside them; state a box, or an angle"
         elif one.branch in ("switched", "throttled"):
             message = f"H is linear in {controls}; they are derived where H has a strict minimum in all controls"
-        elif any(law.has(Vertex) for law in one.laws):
+        elif any(law.has(Vertex, Argmin) for law in one.laws):
             message = f"H is not always convex in {controls}, which may jump; they are derived where it is"
         else:
             continue

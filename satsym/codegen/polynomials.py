@@ -1,0 +1,192 @@
+"""The lines that find where a polynomial is least between two ends: all places are compared where its slope vanishes.
+
+Between zeros of its derivative a polynomial is monotone, so that each zero of the slope is enclosed by zeros of the
+slope's derivative, and these by those of the next one, down to a quadratic polynomial. Where there is none between two,
+one of them or some place in between is taken for it, which does no harm: all of them are admissible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import sympy as sp
+
+from satsym.symbolic.roots import Argmin
+
+STEPS, POLISHED = 60, 2
+"""Halvings of an interval, and steps of Newton's method at the best place."""
+
+SMALLEST = 1e-200
+"""By what has a smaller square nothing is divided."""
+
+_AT = sp.Symbol("at", real=True)
+
+Ends = Sequence[str | None]
+"""Lower and upper one; ``None`` where there is none."""
+
+
+@dataclass(frozen=True)
+class _Form:
+    """How a form compares, and how it prints expressions."""
+
+    name: str
+    code: Callable[[sp.Expr], str]
+
+    def chosen(self, left: str, right: str, one: str, other: str) -> str:
+        """One where the left is less than the right, else the other."""
+        if self.name == "np":
+            return f"np.where({left} < {right}, {one}, {other})"
+        return f"{one} if {left} < {right} else {other}"
+
+    def within(self, place: str, ends: Ends) -> list[str]:
+        """Statements that bring a place between ends."""
+        low, high = ends
+        found = [] if low is None else [f"{place} = {self.chosen(place, low, low, place)}"]
+        return found + ([] if high is None else [f"{place} = {self.chosen(high, place, high, place)}"])
+
+
+def lines(name: str, least: Argmin, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
+    """Statements that give a name the place at which a polynomial is least.
+
+    Parameters
+    ----------
+    name
+        Of the result; others begin with it.
+    form
+        ``"math"`` or ``"np"``.
+    code
+        Prints expressions in that form.
+    """
+    by, coefficients = _Form(form, code), least.args[2:]
+    degree, low, high = len(coefficients), f"{name}_low", f"{name}_high"
+    ends = [None if end.is_infinite else code(end) for end in least.args[:2]]
+    named = [sp.Symbol(f"{name}_c{k}", real=True) for k in range(1, degree + 1)]
+    found = [f"{c} = {code(value)}" for c, value in zip(named, coefficients, strict=True)]
+    exact = _derivatives(named)
+    if form == "np":  # where one looks, nothing is moved by a complex step: it comes in with the polish
+        found += [f"{c}_real = np.real({c})" for c in named]
+        named = [sp.Symbol(f"{c}_real", real=True) for c in named]
+    derivatives = _derivatives(named)
+    found += _within_reach(low, high, ends, named, by)
+    places = [f"{name}_{degree - 2}_{k}" for k in range(2)]
+    found += _zeros(name, places, derivatives[degree - 2], by)
+    found += [line for place in places for line in by.within(place, (low, high))]
+    found += _in_order(places, by)
+    for k in range(degree - 3, 0, -1):
+        around = [low, *places, high]
+        places = [f"{name}_{k}_{j}" for j in range(degree - k)]
+        for place, pair in zip(places, pairwise(around), strict=True):
+            found += _enclosed(name, place, pair, derivatives[k], by)
+    compared = [*places, *(end for end in ends if end is not None)]
+    return [*found, *_best(name, compared, derivatives[0], by), *_polished(name, exact, ends, by)]
+
+
+def _derivatives(coefficients: list[sp.Symbol]) -> list[sp.Poly]:
+    """Of a polynomial without a constant, the first being itself."""
+    found = [sp.Poly([*coefficients[::-1], 0], _AT)]
+    for _ in coefficients:
+        found.append(found[-1].diff())
+    return found
+
+
+def _within_reach(low: str, high: str, ends: Ends, coefficients: list[sp.Symbol], by: _Form) -> list[str]:
+    """Between which places all zeros of the slope lie that are between the ends: Cauchy's bound."""
+    absolute = "np.abs" if by.name == "np" else "math.fabs"
+    *others, last = coefficients
+    sizes = " + ".join(f"{float(k)!r}*{absolute}({c})" for k, c in enumerate(others, 1))
+    bound = f"1.0 + ({sizes})/({float(len(coefficients))!r}*{absolute}({last}) + {SMALLEST!r})"
+    return [f"{high} = {bound}", f"{low} = -{high}", *by.within(low, ends), *by.within(high, ends)]
+
+
+def _zeros(name: str, places: list[str], quadratic: sp.Poly, by: _Form) -> list[str]:
+    """Both zeros of a quadratic polynomial, without cancellation; where there are none, some places."""
+    square, linear, constant = (by.code(c) for c in quadratic.all_coeffs())
+    a, b, c, root, sum_, below = (f"{name}_{part}" for part in ("a", "b", "c", "root", "sum", "below"))
+    return [
+        f"{a} = {square}",
+        f"{b} = {linear}",
+        f"{c} = {constant}",
+        f"{root} = {b}*{b} - 4.0*{a}*{c}",
+        f"{root} = {by.chosen(root, '0.0', '0.0', root)}",
+        f"{root} = {by.name}.sqrt({root})",
+        f"{sum_} = -0.5*({b} + {root})",
+        f"{below} = 0.5*({root} - {b})",
+        f"{sum_} = {by.chosen(b, '0.0', below, sum_)}",
+        *_divided(places[0], sum_, a, below, by),
+        *_divided(places[1], c, sum_, below, by),
+    ]
+
+
+def _divided(place: str, above: str, below: str, spare: str, by: _Form) -> list[str]:
+    """A quotient; something finite where nothing is divided by."""
+    square = f"{below}*{below}"
+    return [
+        f"{spare} = {by.chosen(square, repr(SMALLEST), '1.0', below)}",
+        f"{place} = {above}/{spare}",
+    ]
+
+
+def _in_order(places: list[str], by: _Form) -> list[str]:
+    """The lower place first."""
+    one, other = places
+    return [
+        f"{one}_first = {by.chosen(other, one, other, one)}",
+        f"{other} = {by.chosen(other, one, one, other)}",
+        f"{one} = {one}_first",
+    ]
+
+
+def _enclosed(name: str, place: str, ends: tuple[str, str], derivative: sp.Poly, by: _Form) -> list[str]:
+    """The zero of what is monotone between two places, by halving."""
+    low, high, rising, value = (f"{name}_{part}" for part in ("left", "right", "rising", "value"))
+    return [
+        f"{low} = {ends[0]}",
+        f"{high} = {ends[1]}",
+        f"{rising} = {_value(derivative, high, by)} - ({_value(derivative, low, by)})",
+        f"for _ in range({STEPS}):",
+        f"    {place} = 0.5*({low} + {high})",
+        f"    {value} = {rising}*({_value(derivative, place, by)})",
+        f"    {low} = {by.chosen(value, '0.0', place, low)}",
+        f"    {high} = {by.chosen(value, '0.0', high, place)}",
+        f"{place} = 0.5*({low} + {high})",
+    ]
+
+
+def _best(name: str, places: list[str], polynomial: sp.Poly, by: _Form) -> list[str]:
+    """The place of several at which a polynomial is least."""
+    value, least = f"{name}_value", f"{name}_least"
+    found = [f"{name} = {places[0]}", f"{least} = {_value(polynomial, name, by)}"]
+    for place in places[1:]:
+        found += [
+            f"{value} = {_value(polynomial, place, by)}",
+            f"{name} = {by.chosen(value, least, place, name)}",
+            f"{least} = {by.chosen(value, least, value, least)}",
+        ]
+    return [*found, f"{name} = {name} + 0.0*{least}"]
+
+
+def _polished(name: str, derivatives: list[sp.Poly], ends: Ends, by: _Form) -> list[str]:
+    """To the last digits between the ends, where the slope grows; to the nearer end where it falls."""
+    (low, high), step, curved, nearer = ends, f"{name}_step", f"{name}_curved", f"{name}_nearer"
+    statements = [f"{curved} = {_value(derivatives[2], name, by)}", f"{step} = {_value(derivatives[1], name, by)}"]
+    if low is not None:
+        statements += [f"{step} = {by.chosen(low, name, step, '0.0')}"]
+    if high is not None:
+        statements += [f"{step} = {by.chosen(name, high, step, '0.0')}"]
+    if low is not None and high is not None:
+        statements += [f"{nearer} = {by.chosen(f'{name} + {name}', f'{low} + {high}', low, high)}"]
+        statements += [f"{name} = {by.chosen('0.0', curved, name, nearer)}"]
+    statements += [
+        f"{step} = {by.chosen('0.0', curved, step, '0.0')}",
+        f"{curved} = {by.chosen('0.0', curved, curved, '1.0')}",
+        f"{name} = {name} - {step}/{curved}",
+        *by.within(name, ends),
+    ]
+    return [f"for _ in range({POLISHED}):", *(f"    {one}" for one in statements)]
+
+
+def _value(polynomial: sp.Poly, place: str, by: _Form) -> str:
+    """A polynomial at a place, by Horner's rule."""
+    return by.code(sp.horner(polynomial).xreplace({_AT: sp.Symbol(place, real=True)}))
