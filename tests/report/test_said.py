@@ -99,6 +99,9 @@ COMPOSED = (
         f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
         for what in MISSHAPEN
     ),
+    "[lqr] <key>: no input is left to control with; name at least one control",
+    "[lqr] <key>: the model has no control <name>; controls here: <names>",
+    "[classical] <key>: <value> are not both positive; the loop would not settle",
     *"Usage Options Commands [OPTIONS]".split(),
     *("COMMAND [ARGS]...", "Show this message and exit.", "Show the version and exit."),
 )
