@@ -164,6 +164,25 @@ def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_flies
     assert failed(found) == ["no proof of a minimum along singular arcs: not convex"]
 
 
+def test_thrust_that_comes_to_its_bound_on_the_boundary_stays_there_until_the_fuel_is_spent():
+    """At a pressure of 9 the bound on thrust is met before the singular surface: costates jump there."""
+    legs = (
+        (rocket(3.5), lambda y: drag(y[0], y[1]) - 0.45, (0.01, 0.02)),
+        (rocket(on_the_boundary), lambda y: on_the_boundary(y) - 3.5, (0.07, 0.09)),
+        (rocket(3.5), lambda y: y[2] - 0.6, (0.0815, 0.09)),
+        (rocket(0.0), lambda y: y[1], (0.19, 0.22)),
+    )
+    y, times = flown(legs)
+    case = instance.load("goddard-pressure")
+    lower = tuple(
+        9.0 if one.symbol == "q_max" else p for one, p in zip(case.model.spec.parameters, case.parameters, strict=True)
+    )
+    found = solve(replace(case, parameters=lower))
+    assert -found.objective == pytest.approx(y[0], rel=1e-12)
+    assert (*found.switching_times[0], found.times[-1]) == pytest.approx(times, rel=1e-8)
+    assert failed(found) == ["not resolved: second variation where costates jump"]
+
+
 def test_goddards_rocket_agrees_with_events_alone():
     """Full thrust up to the singular surface, along it until 0.6 of the mass is left, and a coast to the top."""
     legs = (

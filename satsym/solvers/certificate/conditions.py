@@ -91,6 +91,8 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
     """
     here = np.clip(np.searchsorted(flow.times, solution.times), 1, len(flow.times) - 1)
     here -= solution.times - flow.times[here - 1] < flow.times[here] - solution.times
+    again = np.append(False, np.diff(solution.times) == 0.0)  # the second of two nodes at one time: after a jump
+    here[again] = np.searchsorted(flow.times, flow.times[here[again]], side="right") - 1
     same = np.abs(flow.times[here] - solution.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
     state, costate = typical(solution, FAINT)
     parts = [

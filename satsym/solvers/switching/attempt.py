@@ -19,7 +19,7 @@ from satsym.solvers.switching.boundaries import off_boundaries
 from satsym.solvers.switching.extremal_arcs import ROUGH
 from satsym.solvers.switching.newton import Equations, Refined, solve
 from satsym.solvers.switching.stops import stops
-from satsym.solvers.switching.structure import SINGULAR, Guess
+from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Guess, constraint_of, jumps, on_boundary
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
 
 REPAIRS = 8
@@ -139,7 +139,9 @@ def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
         if residual <= SOLVED or last:
             return replace(own, residual=residual) if residual <= SOLVED else None
         equations, known = _equations(instance, own), own.at
-        found = solve(equations, equations.start(known.costates, known.times, known.end, known.stops), limits.watch)
+        found = solve(
+            equations, equations.start(known.costates, known.times, known.end, known.stops, known.jumps), limits.watch
+        )
     return None
 
 
@@ -228,7 +230,10 @@ def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory]
         if shortest is None or shortest[0] > NO_TIME * (end - start):
             break
         left = _dropped(found, *shortest[1:])
-        at = replace(found.at, times=left.times)
+        kept = (
+            found.at.jumps if len(left.structure.jumps) == len(found.at.jumps) else np.zeros(len(left.structure.jumps))
+        )
+        at = replace(found.at, times=left.times, jumps=kept)
         equations = Equations(instance, left.structure, found.sizes, end - start)
         found = replace(found, structure=left.structure, at=at, arcs=equations.arcs(at, slopes=False))
         found = replace(found, residual=_residual(instance, found))
@@ -246,6 +251,10 @@ def _inserted(found: Refined, trajectory: Trajectory, fault: Violation) -> Guess
     begin = times[arc - 1] if arc > 0 else trajectory.arcs[0].start
     end = times[arc] if arc < len(times) else found.at.end
     level, present = fault.level, row[arc]
+    if fault.beyond and present >= BOUNDARY:  # it comes to its bound on the boundary, or leaves it there
+        late, (begins, ends) = bool(fault.end + fault.start > begin + end), jumps(present)
+        present = on_boundary(constraint_of(present), begins or not late, ends or late)
+        row = (*row[:arc], present, *row[arc + 1 :])
     near = 1e-9 * (trajectory.arcs[-1].end - trajectory.arcs[0].start)
     if fault.start <= begin + near:
         levels = (*row[:arc], level, *row[arc:]) if arc == 0 or row[arc - 1] != level else row

@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.switching.boundary import BoundaryField
+from satsym.solvers.switching.boundary import BoundaryField, pushed
 from satsym.solvers.switching.extremal_arcs import Arc
 from satsym.solvers.switching.field import NUDGE
-from satsym.solvers.switching.structure import BOUNDARY, SINGULAR
+from satsym.solvers.switching.structure import SINGULAR, jumps, on_boundary
 from satsym.solvers.switching.trajectory import Trajectory, Violation, runs
+
+NEAR = 0.01
+"""Share of a boundary arc that a singular one is given beside it."""
 
 
 def acting(instance: Instance, constraint: int) -> int:
     """The control that moves the last rate of a constraint."""
-    spec, rng = instance.model.spec, np.random.default_rng(0)
-    order, m, x = spec.path_constraints[constraint].order, len(spec.controls), np.array(instance.initial)
-    moved = rng.uniform(0.5, 1.0, m)[:, None] + 1j * NUDGE * np.eye(m)
-    places = np.repeat((np.where(x == 0.0, 1.0, x) * rng.uniform(0.5, 1.0, len(x)))[:, None], m, axis=1)
-    rates = instance.model.path_rates_batch(np.full(m, instance.t0), places, moved, instance.parameters)
-    return int(np.abs(np.imag(np.asarray(rates)[constraint, order - 1])).argmax())
+    rng, x = np.random.default_rng(0), np.array(instance.initial)
+    drawn = np.where(x == 0.0, 1.0, x) * rng.uniform(0.5, 1.0, len(x))
+    return int(np.abs(effects(instance, constraint, instance.t0, drawn)).argmax())
+
+
+def effects(instance: Instance, constraint: int, time: float, x: Array) -> Array:
+    """What each control does to the last rate of a constraint, shape (m,)."""
+    m, order = len(instance.model.spec.controls), instance.model.spec.path_constraints[constraint].order
+    places = np.repeat(x[:, None], m, axis=1)
+    rates = instance.model.path_rates_batch(np.full(m, time), places, 1j * NUDGE * np.eye(m), instance.parameters)
+    return np.asarray(np.imag(np.asarray(rates)[constraint, order - 1]) / NUDGE)
 
 
 def values(instance: Instance, times: Array, z: Array) -> Array:
@@ -48,10 +58,37 @@ def off_boundaries(trajectory: Trajectory, slack: float = 1e-9) -> list[Violatio
             amounts = -push / pressure if pressed and push is not None else g[k] / room[k]
             for first, last in runs(amounts > slack):
                 control, times = acting(instance, k), tables[which][0]
-                level = _left(arcs, which, first, len(times) - 1 - last, control) if pressed else BOUNDARY + k
+                level = (
+                    _left(arcs, which, first, len(times) - 1 - last, control)
+                    if pressed
+                    else on_boundary(k, order > 1, order > 1)
+                )
                 low, high = float(times[max(first - 1, 0)]), float(times[min(last + 1, len(times) - 1)])
                 found.append(Violation(control, which, low, high, level, float(amounts[first : last + 1].max())))
+    return [*found, *_pulling(arcs, slack)]
+
+
+def _pulling(arcs: list[Arc], slack: float) -> list[Violation]:
+    """Jumps of the wrong sign: a singular arc is tried in between."""
+    found = []
+    for k, (before, after) in enumerate(pairwise(arcs)):
+        for which, one in ((k, before), (k + 1, after)):
+            if not isinstance(one.field, BoundaryField) or not jumps(one.field.levels[one.field.acting])[which == k]:
+                continue
+            by, size = jump(one.field, before.end, before.after, after.before)
+            if -by > slack * size:
+                span = NEAR * (one.end - one.start)
+                low, high = (one.end - span, one.end) if which == k else (one.start, one.start + span)
+                found.append(Violation(one.field.acting, which, low, high, SINGULAR, -by / size))
     return found
+
+
+def jump(field: BoundaryField, time: float, before: Array, after: Array) -> tuple[float, float]:
+    """The multiplier with which costates jump along the gradient of a constraint, and one that would be large."""
+    slope = pushed(field.instance, field.constraint, time, before, 0.0)[1][0]
+    length = max(float(slope @ slope), 1e-300)
+    lam = np.abs(before[field.n :]).max()
+    return float((before - after)[field.n :] @ slope) / length, float(lam / np.sqrt(length))
 
 
 def _left(arcs: list[Arc], which: int, before: int, after: int, control: int) -> int:

@@ -11,7 +11,7 @@ from satsym.arrays import Array
 from satsym.control_set import Row
 from satsym.instance import Instance
 from satsym.solvers.switching.field import BEYOND, NUDGE, Field
-from satsym.solvers.switching.structure import BOUNDARY
+from satsym.solvers.switching.structure import BOUNDARY, constraint_of
 
 
 class BoundaryField(Field):
@@ -25,7 +25,8 @@ class BoundaryField(Field):
         (self.acting, *more) = [i for i, level in enumerate(levels) if level >= BOUNDARY]
         if more or self.singular is not None:
             raise ArithmeticError("no law is known for two controls that are off their bounds")
-        self.constraint = levels[self.acting] - BOUNDARY
+        self.constraint = constraint_of(levels[self.acting])
+        self.order = instance.model.spec.path_constraints[self.constraint].order
         low, high = instance.lower[self.acting], instance.upper[self.acting]
         self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
 
@@ -53,6 +54,12 @@ class BoundaryField(Field):
         found = np.asarray(self.model.path_multiplier_batch(t, x, self.controls(t, z), lam, self.p, bounds))
         return np.broadcast_to(found[self.constraint], t.shape)
 
+    def off_bound(self, bound: float, t: float, z: list[float]) -> tuple[float, Array, float]:
+        """The control less a bound, relative to its range, and what :func:`off_boundary` says besides."""
+        low, high = self.instance.lower[self.acting], self.instance.upper[self.acting]
+        found = self.controls(*_moved(t, z))[self.acting] / (high - low)
+        return float(found[0].real - bound / (high - low)), found[:-1].imag / NUDGE, float(found[-1].imag / NUDGE)
+
     def rates(self, t: float, z: list[float]) -> list[float]:
         self.control(t, z)
         return self.along(np.array([t]), np.array(z)[:, None])[1][:, 0].tolist()
@@ -71,13 +78,35 @@ class BoundaryField(Field):
         return np.array(self.rates(t, z)), slopes
 
 
-def off_boundary(instance: Instance, level: int, t: float, z: list[float]) -> tuple[float, Array, float]:
-    """A constraint where a control comes to keep to its boundary: value, derivatives by z, shape (2n,), and by time."""
-    n, which = len(instance.initial), level - BOUNDARY
-    rest, place = np.zeros((len(instance.model.spec.controls), 1)), np.array(z[:n])[:, None]
-    bounds = instance.control_set.arguments
-    ahead = instance.model.path_constraints_batch(np.array([t + 1j * NUDGE]), place, rest, instance.parameters, bounds)
-    slopes = instance.model.path_gradient_batch(np.array([t]), place, rest, instance.parameters)
-    value = np.asarray(ahead)[which, 0]
-    gradient = np.concatenate([np.asarray(slopes)[which, :, 0], np.zeros(n)])
-    return float(value.real), gradient, float(value.imag / NUDGE)
+def off_boundary(
+    instance: Instance, constraint: int, t: float, z: list[float], rate: bool = False
+) -> tuple[float, Array, float]:
+    """A constraint, or its first rate, with derivatives by z, shape (2n,), and by explicit time."""
+    n, (times, moved) = len(instance.initial), _moved(t, z)
+    rest, p = np.zeros((len(instance.model.spec.controls), len(times))), instance.parameters
+    if rate:
+        found = np.asarray(instance.model.path_rates_batch(times, moved[:n], rest, p))[constraint, 0]
+    else:
+        bounds = instance.control_set.arguments
+        found = np.asarray(instance.model.path_constraints_batch(times, moved[:n], rest, p, bounds))[constraint]
+    return float(found[0].real), found[:-1].imag / NUDGE, float(found[-1].imag / NUDGE)
+
+
+def pushed(
+    instance: Instance, constraint: int, t: float, z: Array, by: float
+) -> tuple[Array, tuple[Array, Array, Array]]:
+    """States and costates after a jump of the costates by so much of g_x against it.
+
+    Besides g_x, shape (n,), and its derivatives by states and by explicit time, shapes (n, n) and (n,).
+    """
+    n, (times, moved) = len(instance.initial), _moved(t, z.tolist())
+    rest = np.zeros((len(instance.model.spec.controls), len(times)))
+    table = np.asarray(instance.model.path_gradient_batch(times, moved[:n], rest, instance.parameters))[constraint]
+    slope, slopes = table[:, 0].real, table.imag / NUDGE
+    return np.concatenate([z[:n], z[n:] - by * slope]), (slope, slopes[:, :n], slopes[:, -1])
+
+
+def _moved(t: float, z: list[float]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """A place by complex steps in each of its components and in time, shapes (2n + 1,) and (2n, 2n + 1)."""
+    step = 1j * NUDGE * np.eye(len(z) + 1)
+    return t + step[-1], np.array(z)[:, None] + step[:-1]

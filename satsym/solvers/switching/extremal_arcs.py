@@ -13,6 +13,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
+from satsym.solvers.switching.boundary import pushed
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import Event, Structure
 from satsym.solvers.switching.throttled import equations
@@ -61,6 +62,8 @@ class Unknowns:
     """Of terminal constraints."""
     stops: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """States and costates at the stops, shape (M, 2n)."""
+    jumps: Array = field(default_factory=lambda: np.zeros(0))
+    """Multipliers of :attr:`Structure.jumps`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +81,9 @@ class Arc:
     event: Event | None
     """The switch that ends it; ``None`` for the last."""
     slopes: Array
-    """Derivatives of ``after`` by the initial costates, the switching times, the final time and the values at stops,
-    the piece's end moving with these: shape (2n, n + K + 1 + 2nM). Meaningless where they were not asked for."""
+    """Derivatives of ``after`` by the initial costates, the switching times, the final time, the values at stops and
+    the multipliers of J jumps, the piece's end moving with these: shape (2n, n + K + 1 + 2nM + J). Meaningless where
+    they were not asked for."""
     stop: int | None = None
     """The number of the stop that ends it, if one does."""
 
@@ -121,7 +125,9 @@ def extremal(
     """
     n, end_column = len(instance.initial), len(instance.initial) + structure.switches
     z = np.concatenate([instance.initial, at.costates])
-    total: Array = np.zeros((2 * n, end_column + 1 + 2 * n * len(stops)))
+    known, own = structure.jumps, end_column + 1 + 2 * n * len(stops)
+    jumps = {(control, number): (k, constraint) for k, (control, number, constraint) in enumerate(known)}
+    total: Array = np.zeros((2 * n, own + len(known)))
     total[n:, :n] = np.eye(n)
     unit = np.eye(total.shape[1])
     number, begin, moving = [0] * len(structure.levels), instance.t0, np.zeros(len(unit))
@@ -149,7 +155,28 @@ def extremal(
                 z, total = at.stops[stop], unit[own : own + 2 * n]
         if event is not None:
             number[event.control] += 1
+            if (event.control, event.number) in jumps:
+                k, constraint = jumps[event.control, event.number]
+                total = jumped(instance, constraint, arcs[-1], at.jumps[k], moving, own + k)
+                z = pushed(instance, constraint, begin, z, at.jumps[k])[0]
     return arcs
+
+
+def jumped(instance: Instance, constraint: int, arc: Arc, by: float, moving: Array, column: int) -> Array:
+    """Derivatives of the values after a jump that ends an arc.
+
+    Parameters
+    ----------
+    by
+        Its multiplier, the unknown of this column.
+    moving
+        Derivatives of its time.
+    """
+    n, (slope, by_state, by_time) = len(instance.initial), pushed(instance, constraint, arc.end, arc.after, by)[1]
+    found = arc.slopes.copy()
+    found[n:] -= by * (by_state @ found[:n] + np.outer(by_time, moving))
+    found[n:, column] -= slope
+    return found
 
 
 def growth(field: Field, start: float, end: float, z: Array, sizes: Array) -> float:

@@ -13,10 +13,10 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.switching.boundary import off_boundary
-from satsym.solvers.switching.extremal_arcs import ROUGH, TOLERANCE, Accuracy, Arc, Stop, Unknowns, extremal
+from satsym.solvers.switching.boundary import BoundaryField, off_boundary
+from satsym.solvers.switching.extremal_arcs import ROUGH, TOLERANCE, Accuracy, Arc, Stop, Unknowns, extremal, jumped
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure
+from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure, constraint_of, jumps
 
 MOST = 20
 NEAR = 1e-2
@@ -82,11 +82,14 @@ class Equations:
         """Whether the final time is unknown."""
         return self.instance.tf is None
 
-    def start(self, costates: Array, times: Array, end: float, stops: Array | None = None) -> Unknowns:
+    def start(
+        self, costates: Array, times: Array, end: float, stops: Array | None = None, jumps: Array | None = None
+    ) -> Unknowns:
         """Unknowns with vanishing multipliers."""
         none = np.zeros(len(self.instance.model.spec.multipliers))
         values = np.zeros((0, len(self.sizes))) if stops is None else stops
-        return Unknowns(np.asarray(costates), np.asarray(times), end, none, values)
+        jumps = np.zeros(len(self.structure.jumps)) if jumps is None else jumps
+        return Unknowns(np.asarray(costates), np.asarray(times), end, none, values, jumps)
 
     def arcs(self, at: Unknowns, slopes: bool = True, tolerance: float = TOLERANCE) -> list[Arc]:
         """The extremal; raises as :func:`extremal`."""
@@ -95,7 +98,7 @@ class Equations:
     def residual(self, at: Unknowns, arcs: list[Arc]) -> tuple[Array, Array]:
         """Residuals and their derivatives by all unknowns, in units of :attr:`scale`: shapes (r,) and (r, v)."""
         values, slopes = self._end(at, arcs[-1])
-        inner = [row for before, after in pairwise(arcs) for row in self._junction(before, after)]
+        inner = [row for before, after in pairwise(arcs) for row in self._junction(at, before, after)]
         inner += self._singular_start(arcs[0])
         table = np.zeros((len(inner), slopes.shape[1]))
         for k, (_, row) in enumerate(inner):
@@ -111,15 +114,24 @@ class Equations:
         times = np.full(self.structure.switches + self.free_time, self.duration)
         cost = float((self.sizes[:n] * self.sizes[n:]).max())
         multipliers = np.full(len(self.instance.model.spec.multipliers), cost)
-        return np.concatenate([self.sizes[n:], times, np.tile(self.sizes, len(self.stops)), multipliers])
+        jumps = [cost / self._room(constraint) for *_, constraint in self.structure.jumps]
+        return np.concatenate([self.sizes[n:], times, np.tile(self.sizes, len(self.stops)), jumps, multipliers])
+
+    def _room(self, constraint: int) -> float:
+        """The size of a constraint, as the start shows it."""
+        start = [*self.instance.initial, *np.zeros(len(self.instance.initial))]
+        value, gradient, _ = off_boundary(self.instance, constraint, self.instance.t0, start)
+        return max(abs(value), float(np.abs(gradient) @ self.sizes), 1e-300)
 
     def moved(self, at: Unknowns, step: Array) -> Unknowns:
         """Unknowns after a step in units of :attr:`scale`."""
         n, k = len(at.costates), len(at.times)
         change = step * self.scale
         end = at.end + float(change[n + k]) if self.free_time else at.end
-        stops, multipliers = np.split(change[n + k + self.free_time :], [at.stops.size])
+        ends = np.cumsum([at.stops.size, len(at.jumps)])
+        stops, jumps, multipliers = np.split(change[n + k + self.free_time :], ends)
         at = replace(at, stops=at.stops + stops.reshape(at.stops.shape), multipliers=at.multipliers + multipliers)
+        at = replace(at, jumps=at.jumps + jumps)
         return replace(at, costates=at.costates + change[:n], times=at.times + change[n : n + k], end=end)
 
     def _end(self, at: Unknowns, last: Arc) -> tuple[Array, Array]:
@@ -149,28 +161,55 @@ class Equations:
         place = len(self.instance.initial) + self.structure.switches
         return row if self.free_time else np.delete(row, place, axis=-1)
 
-    def _junction(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
+    def _junction(self, at: Unknowns, before: Arc, after: Arc) -> list[tuple[float, Array]]:
         """What must vanish between two arcs: the gap at a stop, or what a switch asks for."""
         if before.stop is None:
-            return self._switch(before, after)
+            return self._switch(at, before, after)
         slopes, size = before.slopes.copy(), len(self.sizes)
         begin = len(self.instance.initial) + self.structure.switches + 1 + before.stop * size
         slopes[:, begin : begin + size] -= np.eye(size)
         gap = (before.after - after.before) / self.sizes
         return list(zip(gap.tolist(), slopes / self.sizes[:, None], strict=True))
 
-    def _switch(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
-        """What must vanish at a switch: nothing where a singular arc ends, or one on a boundary."""
+    def _switch(self, at: Unknowns, before: Arc, after: Arc) -> list[tuple[float, Array]]:
+        """What must vanish at a switch: nothing where a singular arc ends, or one on a boundary that does not jump."""
         event = before.event
         assert event is not None
-        levels = (before.field.levels[event.control], after.field.levels[event.control])
-        switch = _Switch(before.field, before.end, before.after.tolist(), before.slopes, event.control, event.column)
-        rows = [switch.row(levels, self.sizes)] if levels[0] < SINGULAR else []
+        i = event.control
+        levels = (before.field.levels[i], after.field.levels[i])
+        switch = _Switch(before.field, before.end, before.after.tolist(), before.slopes, i, event.column)
+        later = self._after_jump(at, switch, before, after)
+        rows = [] if levels[0] >= SINGULAR else [(later if jumps(levels[1])[0] else switch).row(levels, self.sizes)]
         if levels[1] == SINGULAR:
-            rows.append(replace(switch, field=after.field, t=after.start).rate_row(self.sizes))
+            rows.append(later.rate_row(self.sizes))
         if levels[1] >= BOUNDARY:
-            rows.append(switch.boundary_row(levels[1], self.sizes))
+            which = constraint_of(levels[1])
+            second = self.instance.model.spec.path_constraints[which].order > 1
+            for rate in (False, True) if second else (False,):
+                rows.append(
+                    switch.vanishing_row(*off_boundary(self.instance, which, switch.t, switch.z, rate), self.sizes)
+                )
+            rows += [later.rate_row(self.sizes)] if second else []
+        for field, jumping, other in (
+            (before.field, jumps(levels[0])[1], after),
+            (after.field, jumps(levels[1])[0], before),
+        ):
+            if jumping and isinstance(field, BoundaryField) and field.order == 1:
+                rows.append(switch.vanishing_row(*field.off_bound(other.field.saturated[i], switch.t, switch.z)))
         return rows
+
+    def _after_jump(self, at: Unknowns, switch: _Switch, before: Arc, after: Arc) -> _Switch:
+        """The switch as the next arc has it."""
+        later = replace(switch, field=after.field, t=after.start, z=after.before.tolist())
+        for k, (control, number, constraint) in enumerate(self.structure.jumps):
+            assert before.event is not None
+            if (control, number) == (before.event.control, before.event.number):
+                n, count = len(self.instance.initial), before.slopes.shape[1]
+                moving = np.eye(count)[n + before.event.column]
+                column = count - len(self.structure.jumps) + k
+                slopes = jumped(self.instance, constraint, before, at.jumps[k], moving, column)
+                return replace(later, slopes=slopes)
+        return later
 
     def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
         """What must vanish at the start of a singular arc that begins everything, or of one on a boundary."""
@@ -219,10 +258,11 @@ class _Switch:
         size = max(float(np.abs(gradient) @ sizes), 1e-300)
         return rate / size, self._moving(gradient, 0.0) / size
 
-    def boundary_row(self, level: int, sizes: Array) -> tuple[float, Array]:
-        """The same for the constraint on whose boundary the next arc is."""
-        value, gradient, by_time = off_boundary(self.field.instance, level, self.t, self.z)
-        size = max(float(np.abs(gradient) @ sizes), 1e-300)
+    def vanishing_row(
+        self, value: float, gradient: Array, by_time: float, sizes: Array | None = None
+    ) -> tuple[float, Array]:
+        """The same for a function of states and time, in units of its own size, or as it is."""
+        size = 1.0 if sizes is None else max(float(np.abs(gradient) @ sizes), 1e-300)
         rate = by_time + float(gradient @ np.array(self.field.rates(self.t, self.z)))
         return value / size, self._moving(gradient, rate) / size
 

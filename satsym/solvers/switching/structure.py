@@ -3,21 +3,41 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from satsym.arrays import Array
 
 LOWER, REST, UPPER, SINGULAR, BOUNDARY = -1, 0, 1, 2, 3
-"""Levels: on a bound, at the admissible value of least magnitude, as the singular condition has it, or as the first
-path constraint has it on its boundary; that of each further one is one more."""
+"""Levels: on a bound, at the admissible value of least magnitude, as the singular condition has it, or, from the last
+of these on, as a path constraint has it on its boundary; see :func:`on_boundary`."""
 
 NAMES = {LOWER: "-", REST: "0", UPPER: "+", SINGULAR: "s"}
 
 
+def on_boundary(constraint: int, begins: bool = False, ends: bool = False) -> int:
+    """The level on the boundary of a constraint, and whether costates jump where such an arc begins and where it ends.
+
+    Of constraints of order one they do only where the control meets its bound there.
+    """
+    return BOUNDARY + 4 * constraint + begins + 2 * ends
+
+
+def constraint_of(level: int) -> int:
+    """On whose boundary a level is."""
+    return (level - BOUNDARY) // 4
+
+
+def jumps(level: int) -> tuple[bool, bool]:
+    """Whether costates jump at the start of an arc, and at its end."""
+    kind = (level - BOUNDARY) % 4 if level >= BOUNDARY else 0
+    return bool(kind & 1), bool(kind & 2)
+
+
 def named(level: int) -> str:
     """For messages; boundaries are numbered where there are several."""
-    return NAMES.get(level, f"b{level - BOUNDARY + 1 if level > BOUNDARY else ''}")
+    return NAMES.get(level, f"b{constraint_of(level) + 1 if constraint_of(level) else ''}")
 
 
 @dataclass(frozen=True)
@@ -49,6 +69,17 @@ class Structure:
     def name(self) -> str:
         """For messages: ``+-`` or ``-0+ | +-``."""
         return " | ".join("".join(map(named, row)) for row in self.levels)
+
+    @property
+    def jumps(self) -> list[tuple[int, int, int]]:
+        """Where costates jump: control, which of its switches, and the constraint along whose gradient they do."""
+        return [
+            (control, number, constraint_of(level))
+            for control, row in enumerate(self.levels)
+            for number, pair in enumerate(pairwise(row))
+            for level, jumping in zip(pair, (jumps(pair[0])[1], jumps(pair[1])[0]), strict=True)
+            if jumping
+        ]
 
     def by_control(self, times: Array) -> list[Array]:
         """The times of each control, from those of all."""

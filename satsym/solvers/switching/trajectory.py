@@ -119,6 +119,8 @@ class Violation:
     amount: float
     """How far the switching function is on the wrong side, relative to its largest value; or how far the control is
     beyond its bounds, relative to the distance between them."""
+    beyond: bool = False
+    """Whether it is beyond them."""
 
 
 def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
@@ -140,7 +142,7 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
                 better = int(wrong[(first + last) // 2])
                 amount = float(amounts[first : last + 1].max())
                 low, high = times[max(first - 1, 0)], times[min(last + 1, len(times) - 1)]
-                found.append(Violation(control, which, float(low), float(high), better, amount))
+                found.append(Violation(control, which, float(low), float(high), better, amount, level >= SINGULAR))
     return found
 
 

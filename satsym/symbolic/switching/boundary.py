@@ -27,9 +27,6 @@ def boundary_control(so_far: Derivation) -> Step | None:
     for found in constraints(so_far):
         effect, rest = affine(so_far, found, controls)
         u = acting(so_far, found)
-        if found.order > 1:
-            message = "its order is 2; where H is linear in the controls no extremals are found for more than one"
-            raise DerivationError(f"{so_far.name}: path_constraints {found.name}: {message}", ("path_constraints",))
         law = tidy(simplified(-rest / effect[controls.index(u)]))
         equations.append(Equation(f"{found.name}_{u.name}", pn.boundary_control(found.name, u), law))
         checks.append(identity("keeps the constraint", [found.rates[-1].xreplace({u: law})]))

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.switching.junction_times import curvature
 from satsym.solvers.certificate.switching.replay import Piece, Replay
-from satsym.solvers.switching.boundaries import values
-from satsym.solvers.switching.boundary import BoundaryField
+from satsym.solvers.switching.boundaries import jump, values
+from satsym.solvers.switching.boundary import BoundaryField, off_boundary, pushed
 from satsym.solvers.switching.structure import SINGULAR
 
-VIOLATED, PULLING, STRICT = 1e-9, 1e-8, 1e-6
-"""Largest violation of a constraint relative to its size, largest multiplier of the wrong sign, and least share of the
-largest multiplier that is strict."""
+VIOLATED, PULLING, STRICT, JUMP = 1e-9, 1e-8, 1e-6, 1e-7
+"""Largest violation of a constraint relative to its size, largest multiplier of the wrong sign, least share of the
+largest multiplier that is strict, and largest jump of states and costates that is none."""
 
 CURVED = 1e-7
 """Least relative curvature in the switching times."""
@@ -27,6 +29,14 @@ def on_boundary(again: Replay) -> bool:
     return any(isinstance(piece.field, BoundaryField) for piece in again.pieces)
 
 
+def still(again: Replay) -> bool:
+    """Whether the boundaries do not move by themselves, so that H is constant along them."""
+    fields = ((piece.field, piece.end, piece.after.tolist()) for piece in again.pieces)
+    return not any(
+        isinstance(one, BoundaryField) and off_boundary(one.instance, one.constraint, t, z)[2] for one, t, z in fields
+    )
+
+
 def necessary(solution: Solution, again: Replay) -> list[Check]:
     """Constraints hold along the replay, and multipliers of those on their boundaries have the right sign."""
     instance = solution.instance
@@ -36,12 +46,30 @@ def necessary(solution: Solution, again: Replay) -> list[Check]:
     checks = [Check("path constraint violated", float(np.maximum(g / room, 0.0).max()), VIOLATED)]
     if on_boundary(again):
         checks.append(Check("multiplier on a boundary is negative", max(0.0, -_pressure(again, 0.0)), PULLING))
+        jumps = _jumps(again)
+        checks.append(Check("multiplier at a junction is negative", max([0.0, *(-by for by, _ in jumps)]), PULLING))
+        checks.append(Check("jump of the costates", max([0.0, *(off for _, off in jumps)]), JUMP))
     return checks
+
+
+def _jumps(again: Replay) -> list[tuple[float, float]]:
+    """Multipliers where boundary arcs begin and end, and what states and costates jump besides, relative to sizes."""
+    found = []
+    for before, after in pairwise(again.pieces):
+        for field in (before.field, after.field):
+            if isinstance(field, BoundaryField):
+                by, size = jump(field, before.end, before.after, after.before)
+                pushed_to = pushed(field.instance, field.constraint, before.end, before.after, by)[0]
+                rest, sizes = np.abs(after.before - pushed_to), np.abs(before.after) + np.abs(after.before)
+                found.append((by / size, float((rest / np.maximum(sizes, sizes.max() * JUMP)).max())))
+    return found
 
 
 def sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Multipliers press strictly, and the second variation in the times is positive."""
     pressed, curved = _pressure(again, BESIDE), curvature(solution.instance, again)
+    if any(by > JUMP for by, _ in _jumps(again)):
+        return [Check("not resolved: second variation where costates jump", 1.0, 0.0)]
     return [
         Check("multiplier vanishes on a boundary", float(not pressed > STRICT), 0.0),
         Check("second variation in the switching times", float(not curved > CURVED), 0.0),
@@ -55,8 +83,9 @@ def _pressure(again: Replay, beside: float) -> float:
         if isinstance(piece.field, BoundaryField):
             singular = [_singular(again.pieces[i]) if 0 <= i < len(again.pieces) else False for i in (k - 1, k + 1)]
             low, high = (beside * flag * (piece.end - piece.start) for flag in singular)
-            inside = (again.times >= piece.start + low) & (again.times <= piece.end - high)
-            found.append(piece.field.multiplier(again.times[inside], again.z[:, inside]))
+            times, z = again.along(piece)
+            inside = (times >= piece.start + low) & (times <= piece.end - high)
+            found.append(piece.field.multiplier(times[inside], z[:, inside]))
     every = np.concatenate(found)
     return float(every.min() / max(np.abs(every).max(), 1e-300))
 

@@ -108,7 +108,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         checks.append(Check("switching function on singular arcs", _off_singular(solution, again), STATIONARY))
     if instance.model.spec.path_constraints:
         checks += boundaries.necessary(solution, again)
-    if instance.model.spec.autonomous:
+    if instance.model.spec.autonomous and boundaries.still(again):
         checks.append(Check(conditions.HAMILTONIAN, _drift(solution, again), DRIFT))
     return checks
 
@@ -200,9 +200,8 @@ def _off_singular(solution: Solution, again: Replay) -> float:
         if control is not None:
             if all(one.field.kept == control for one in again.pieces):
                 sizes[control] = float(np.abs(field.gradient(piece.start, piece.before.tolist(), control)) @ both)
-            inside = (again.times >= piece.start) & (again.times <= piece.end)
-            x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
-            sigma = signs(field.instance, again.times[inside], x, lam)[0][control]
+            times, z = again.along(piece)
+            sigma = signs(field.instance, times, z[: field.n], z[field.n :])[0][control]
             worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
     return worst
 

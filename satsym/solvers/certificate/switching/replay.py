@@ -18,9 +18,10 @@ from satsym.solvers.certificate.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
 from satsym.solvers.certificate.switching.restarts import restarts
-from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none
+from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none, jump
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.boundary import BoundaryField
 from satsym.solvers.switching.cold_start.recognition import levels as best_levels
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import REST, SINGULAR
@@ -70,6 +71,12 @@ class Replay:
     """Of the motion, the terminal cost included."""
     gap: float = 0.0
     """Where it began anew, the largest difference to what was reached, relative to sizes."""
+
+    def along(self, piece: Piece) -> tuple[Array, Array]:
+        """Times of an arc and values there: its ends, and the nodes between."""
+        inside = (self.times > piece.start) & (self.times < piece.end)
+        z = np.column_stack([piece.before, self.z[:, inside], piece.after])
+        return np.concatenate([[piece.start], self.times[inside], [piece.end]]), z
 
     def switching_times(self, control: int) -> list[float]:
         """Of one control."""
@@ -149,6 +156,8 @@ class _Again:
             rows.append(row)
             pieces = [*pieces, piece] if whole else [*pieces[:-1], _joined(pieces[-1], piece)]
             t, z, cost, whole = piece.end, piece.after, cost + added, piece.switched is not None
+            if any(isinstance(one, BoundaryField) for one in (piece.field, equations(instance, levels))):
+                z = z + jump(self.solution, t)
             if t >= anew[0][0] and len(anew) > 1:
                 (_, value), *anew = anew
                 gap, z = max(gap, float((np.abs(value - z) / self.by.sizes).max())), value

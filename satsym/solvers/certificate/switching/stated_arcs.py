@@ -6,10 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.switching.boundaries import acting
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.structure import BOUNDARY, LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, on_boundary
 from satsym.solvers.switching.throttled import shown_by, signs, switched, weights
 from satsym.solvers.switching.trajectory import deciding
 
@@ -52,8 +53,14 @@ def _on_boundary(solution: Solution, control: int, time: float) -> int | None:
     for event in solution.events:
         constraint = names.index(event.name)
         if event.t < time and acting(solution.instance, constraint) == control:
-            found = BOUNDARY + constraint if event.kind == "entry" else None
+            found = on_boundary(constraint) if event.kind == "entry" else None
     return found
+
+
+def jump(solution: Solution, time: float) -> Array:
+    """By how much states and costates jump at a time, as a solution states it, shape (2n,)."""
+    z, places = np.concatenate([solution.x, solution.lam]), np.flatnonzero(solution.times == time)
+    return np.asarray(z[:, places[-1]] - z[:, places[0]] if len(places) > 1 else np.zeros(len(z)))
 
 
 def decided_by_none(solution: Solution, control: int) -> bool:

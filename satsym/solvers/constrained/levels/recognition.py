@@ -1,6 +1,6 @@
 """The levels that controls take along a regularised path: at bounds, on boundaries, and singular where neither holds.
 
-What is active has a multiplier that is larger, in its measure, than its slack is in its own.
+What is active has a multiplier that is larger, in its measure and that of the cost, than its slack is in its own.
 """
 
 from __future__ import annotations
@@ -8,12 +8,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.control_set import bound_names
 from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.slopes import rooms
 from satsym.solvers.constrained.transcription import Program, middles
-from satsym.solvers.switching.boundaries import acting
-from satsym.solvers.switching.structure import BOUNDARY, LOWER, SINGULAR, UPPER, Course, Guess, Structure
+from satsym.solvers.switching.boundaries import acting, effects
+from satsym.solvers.switching.structure import (
+    BOUNDARY,
+    LOWER,
+    SINGULAR,
+    UPPER,
+    Course,
+    Guess,
+    Structure,
+    constraint_of,
+    on_boundary,
+)
 from satsym.solvers.switching.trajectory import runs
 
 BRIEF = 2
@@ -34,7 +45,8 @@ def recognised(program: Program, path: Path, shortest: int = BRIEF) -> Guess:
     for control in range(len(at.u)):
         levels = _without_brief(_levels(program, path, control), shortest)
         switches = np.flatnonzero(np.diff(levels)) + 1
-        rows.append(tuple(int(level) for level in levels[np.append(0, switches)]))
+        row = [int(level) for level in levels[np.append(0, switches)]]
+        rows.append(_with_jumps(program, path, row, edges[switches], at.x[:, switches]))
         times += edges[switches].tolist()
     begin, end = (at.y[:, place] + (at.y[:, place] - at.y[:, beside]) / 2.0 for place, beside in ((0, 1), (-1, -2)))
     lam = np.column_stack([begin, at.y, end])
@@ -42,6 +54,30 @@ def recognised(program: Program, path: Path, shortest: int = BRIEF) -> Guess:
     places = np.concatenate([edges[:1], np.real(program.times(at.duration, True)), edges[-1:]])
     course = Course(places, np.concatenate([x, lam]))
     return Guess(Structure(tuple(rows)), np.array(times), begin, float(edges[-1]), course, bounded=True)
+
+
+def _with_jumps(program: Program, path: Path, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
+    """With jumps where a boundary is left for the bound that pushes beyond it, or reached from that which pulls away.
+
+    Parameters
+    ----------
+    times, x
+        When levels change, and states there, shapes (K,) and (n, K).
+    """
+    instance, sides, found = program.instance, {LOWER: -1.0, UPPER: 1.0}, list(row)
+    for place, level in enumerate(row):
+        if level < BOUNDARY or instance.model.spec.path_constraints[which := constraint_of(level)].order > 1:
+            continue
+        beyond = [
+            0 <= at < len(times)
+            and way
+            * sides.get(row[other], 0.0)
+            * effects(instance, which, times[at], x[:, at])[acting(instance, which)]
+            > 0.0
+            for at, other, way in ((place - 1, place - 1, -1.0), (place, (place + 1) % len(row), 1.0))
+        ]
+        found[place] = on_boundary(which, *beyond)
+    return tuple(found)
 
 
 def _levels(program: Program, path: Path, control: int) -> NDArray[np.int64]:
@@ -55,7 +91,7 @@ def _levels(program: Program, path: Path, control: int) -> NDArray[np.int64]:
         if one.order and acting(instance, k) == control:
             both = active[k].copy()
             both[1:] &= active[k][:-1]
-            found[both & (found == SINGULAR)] = BOUNDARY + k
+            found[both & (found == SINGULAR)] = on_boundary(k, one.order > 1, one.order > 1)
     return found
 
 
@@ -63,7 +99,8 @@ def _active(program: Program, path: Path) -> NDArray[np.bool_]:
     """Whether each constraint is active, shape (h, N); of those on states at the end of each interval."""
     s, z = path.at.s, path.at.z * program.kept
     room = np.maximum(s.max(axis=1, keepdims=True), 1e-4 * rooms(program, path.at))
-    return np.asarray(z / np.maximum(z.max(axis=1, keepdims=True), 1e-300) > s / room)
+    unit = max(abs(path.cost), 1e-12) / program.intervals
+    return np.asarray(z * room / unit > s / room)
 
 
 def _without_brief(levels: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:

@@ -22,7 +22,7 @@ from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.homotopy import Stopped
-from satsym.solvers.switching.structure import BOUNDARY, Guess
+from satsym.solvers.switching.structure import BOUNDARY, Guess, constraint_of
 from satsym.status import Status
 
 INTERVALS = (100, 250, 500)
@@ -140,7 +140,7 @@ def _with_events(instance: Instance, exact: Exact, solution: Solution) -> Soluti
         begins, ends = [instance.t0, *own.tolist()], [*own.tolist(), at.end]
         for level, begin, end in zip(row, begins, ends, strict=True):
             if level >= BOUNDARY:
-                name = names[level - BOUNDARY]
+                name = names[constraint_of(level)]
                 events += [Event("entry", name, begin)]
                 events += [Event("exit", name, end)] if end < at.end else []
     return replace(solution, method=BOUNDARY_ARCS, events=tuple(sorted(events, key=lambda one: one.t)))
