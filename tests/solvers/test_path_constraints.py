@@ -396,3 +396,23 @@ def test_an_arc_from_which_the_multiplier_lifts_begins_later_after_a_touch_point
     found = certified(satsym.solve(case))
     assert found.objective == pytest.approx(0.011195977, rel=5e-6)
     assert [one.kind for one in found.events] == ["touch", "entry", "exit"]
+
+
+@pytest.mark.parametrize("height", [3e-4, 5e-4])
+def test_a_touch_right_before_a_given_end_off_the_boundary_is_not_taken_for_the_end(height: float):
+    """The least effort from (1/2, 0) to (h, 1/10) through (0, 0) at the best time."""
+    ends = {"initial": {"x": 0.5, "v": 0.0}, "final": {"x": height, "v": 0.1}, "tf": 1.0}
+    found = certified(solved(kept("ground", ground=-x), **ends))
+
+    def effort(begin: tuple[float, float], end: tuple[float, float], lasting: float) -> float:
+        d, w = end[0] - begin[0] - begin[1] * lasting, end[1] - begin[1]
+        return 2 * (3 * d**2 - 3 * d * w * lasting + w**2 * lasting**2) / lasting**3
+
+    best = minimize_scalar(
+        lambda time: effort((0.5, 0.0), (0.0, 0.0), time) + effort((0.0, 0.0), (height, 0.1), 1.0 - time),
+        bounds=(1.0 - 35 * height, 1.0 - 15 * height),
+        options={"xatol": 1e-10},
+    )
+    assert [one.kind for one in found.events] == ["touch"]
+    assert found.events[0].t == pytest.approx(best.x, abs=1e-5)
+    assert found.objective == pytest.approx(best.fun, rel=1e-9)

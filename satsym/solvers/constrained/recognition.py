@@ -98,7 +98,8 @@ def _with_ends(program: Program, contact: Contact, times: Array, sizes: Array) -
     one, step = program.instance, 1.5 * float(times[1] - times[0])
     opens = not contact.touches and contact.start - one.t0 < step and _on_boundary(program, contact.constraint, sizes)
     order, end = one.model.spec.path_constraints[contact.constraint].order, float(times[-1])
-    if end - contact.end >= step or (order > 1 and not contact.touches):
+    away = not _on_boundary_at_end(program, contact.constraint, sizes)
+    if away or end - contact.end >= step or (order > 1 and not contact.touches):
         return replace(contact, opens=opens)
     start = end if end - contact.start <= step else contact.start
     return replace(contact, start=start, end=end, opens=opens and start < end, closes=True)
@@ -120,6 +121,17 @@ def _meeting(program: Program, path: Path, contacts: list[Contact], times: Array
             if along[int(np.abs(times - middle).argmin())] and one.start < middle < other.end:
                 found[j], found[k] = replace(one, end=middle), replace(other, start=middle)
     return found
+
+
+def _on_boundary_at_end(program: Program, constraint: int, sizes: Array) -> bool:
+    """Whether a constraint may be on its boundary at the end, where given states alone may decide that it is not."""
+    one, n = program.instance, len(program.instance.initial)
+    if one.tf is None or program.kept[constraint, -1] > 0.0:
+        return True
+    given, t = np.isin(np.arange(n), program.given), np.array([one.tf])
+    x = np.where(given, program.target(one.tf - one.t0), 0.0)[:, None]
+    ended = values(one, t, x, np.zeros((len(one.model.spec.controls), 1)))[constraint, 0]
+    return bool(abs(ended) <= ON_BOUNDARY * sizes[constraint])
 
 
 def _on_boundary(program: Program, constraint: int, sizes: Array) -> bool:

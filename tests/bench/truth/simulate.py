@@ -41,9 +41,8 @@ def confirmed(case: Case, found: Found) -> Confirmed | None:
     physics = MODELS[case.model]
     p = physics.given(case.parameters)
     y = np.array([case.initial[name] for name in physics.states] + [0.0])
-    h = found.duration / len(found.controls)
-    for k, values in enumerate(found.controls):
-        ended = _through(case, p, y, case.t0 + k * h, h, values)
+    for values, a, b in zip(found.controls, found.edges[:-1], found.edges[1:], strict=True):
+        ended = _through(case, p, y, case.t0 + a * found.duration, (b - a) * found.duration, values)
         if ended is None:
             return None
         y = ended
