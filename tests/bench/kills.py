@@ -27,8 +27,8 @@ from satsym.report.results.set_list import LIST
 from satsym.status import BadInput
 
 KILLS = 100
-OLD = ("simulate", "soft-return", "--plot")
-NEW = ("solve", "soft-return", "--plot")
+OLD = ("simulate", "soft-return")
+NEW = ("solve", "soft-return")
 NEXT = ("simulate", "soft-return")
 NOTES = "notes.txt"
 """A file of the user's in the same folder."""
@@ -52,10 +52,12 @@ def finished(command: tuple[str, ...], folder: Path) -> None:
         raise RuntimeError(f"{' '.join(command)}: exit {run.returncode}: {said.decode()}")
 
 
-def killed(sound: Path, folder: Path, rng: random.Random, sign: signal.Signals, length: float) -> Iterator[str]:
+def killed(
+    command: tuple[str, ...], sound: Path, folder: Path, rng: random.Random, sign: signal.Signals, length: float
+) -> Iterator[str]:
     """Replace a sound old set, kill that, and look: first what was found, then what is wrong."""
     shutil.copytree(sound, folder)
-    run, writing = started(NEW, folder), rng.random() < 0.5
+    run, writing = started(command, folder), rng.random() < 0.5
     moment = time.monotonic() + rng.uniform(0.0, length)
     while run.poll() is None and (not _writes(folder) if writing else time.monotonic() < moment):
         time.sleep(0.0005)
@@ -100,20 +102,21 @@ def _writes(folder: Path) -> bool:
 NEW_NAMES: set[str] = set()
 
 
-def main(count: int = KILLS, seed: int = 1) -> int:
-    """Kill so many times, and print what was found."""
+def main(count: int = KILLS, seed: int = 1, *, draw: bool = True) -> int:
+    """Kill so many times, with all pictures or none, and print what was found."""
+    old, new = ((*command, *["--plot"] * draw) for command in (OLD, NEW))
     rng, outcomes, wrong = random.Random(seed), Counter[str](), 0
     with tempfile.TemporaryDirectory() as work:
         sound, fresh = Path(work) / "sound", Path(work) / "fresh"
-        finished(OLD, sound)
+        finished(old, sound)
         (sound / NOTES).write_text("mine", encoding="utf-8")
         began = time.monotonic()
-        finished(NEW, fresh)
+        finished(new, fresh)
         length = 1.1 * (time.monotonic() - began)
         NEW_NAMES.update(json.loads((fresh / LIST).read_text(encoding="utf-8"))["files"])
         for number in range(count):
             folder = Path(work) / f"kill-{number}"
-            outcome, *faults = killed(sound, folder, rng, (signal.SIGKILL, signal.SIGTERM)[number % 2], length)
+            outcome, *faults = killed(new, sound, folder, rng, (signal.SIGKILL, signal.SIGTERM)[number % 2], length)
             faults += followed(folder)
             outcomes[outcome] += 1
             wrong += bool(faults)

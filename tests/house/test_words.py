@@ -86,10 +86,12 @@ def english(glossaries: dict[str, str]) -> list[Avoided]:
 
 def complaints(named: Iterable[tuple[str, str]], words: list[Avoided]) -> list[str]:
     """What to write instead, and where."""
+    any_of = re.compile("|".join(re.escape(each.words) for each in words))
     return [
         f'{where}: write "{each.term}" instead of "{each.words}" in {text[:160]!r}'
         for where, text in named
         for said in [plain(HOLE.sub(" ", text))]
+        if any_of.search(said)
         for each in words
         if each.words in said and each.used(said)
     ]

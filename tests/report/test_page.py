@@ -115,7 +115,10 @@ def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
     assert "&lt;b&gt;no &amp; way" in failed
 
 
-def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(text: str, solution: Solution) -> None:
+def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(
+    text: str, solution: Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
     own = render(solution, derived(loader.problem("polar_orbit")[0]), "x.toml", stated="my model.py")
     assert "satsym latex polar_orbit" in text
     assert "satsym report x.toml --html report.html --derivation &#x27;my model.py&#x27;" in own

@@ -34,13 +34,14 @@ def looked_up() -> frozenset[str]:
     """Texts given to ``say``, ``each`` and ``counted`` of satsym.report.said, wherever these stand there themselves."""
     found = set[str]()
     for tree in _trees():
+        nodes = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom | ast.Call)]
         imported = {
             name.asname or name.name
-            for node in ast.walk(tree)
+            for node in nodes
             if isinstance(node, ast.ImportFrom) and node.module in ("satsym.report.said", "satsym.report")
             for name in node.names
         }
-        for node in ast.walk(tree):
+        for node in nodes if imported else ():
             if not isinstance(node, ast.Call):
                 continue
             called = node.func
