@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
 Source: ../derivations/examples/goddard_pressure.py 798e74f8007b45abdd5c4c8c2d53a388
-Digest: 731b0c9da6ea1102a6b9624ca1175d7ac942b7017872fe7ba14db683005251fd
+Digest: 7e1c89616b19de02600b7baba7d40225a24671309ede5eed121a1e7cf4119881
 """
 
 import math
@@ -363,11 +363,10 @@ def path_multiplier(t, x, u, lam, p, bounds):
     inv_v = 1.0/v
     inv_rho0 = 1.0/rho0
     inv_c = 1.0/c
-    w = math.exp(beta*(h - 1.0))
     inv_m = 1.0/m
-    w_2 = area*inv_m*lambda_v*w*math.exp(beta - beta*h)
+    area_inv_m_lambda_v = area*inv_m*lambda_v
     return (
-        0.5*inv_c*v*w_2 + w_2 - inv_rho0*inv_v*lambda_h*w,
+        0.5*area_inv_m_lambda_v*inv_c*v + area_inv_m_lambda_v - inv_rho0*inv_v*lambda_h*math.exp(beta*(h - 1.0)),
         0.0,
         0.0,
     )
@@ -1113,10 +1112,9 @@ def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     inv_v = 1.0/v
     inv_rho0 = 1.0/rho0
     inv_c = 1.0/c
-    w = np.exp(beta*(h - 1.0))
     inv_m = 1.0/m
-    w_2 = area*inv_m*lambda_v*w*np.exp(beta - beta*h)
-    out[0] = 0.5*inv_c*v*w_2 + w_2 - inv_rho0*inv_v*lambda_h*w
+    area_inv_m_lambda_v = area*inv_m*lambda_v
+    out[0] = 0.5*area_inv_m_lambda_v*inv_c*v + area_inv_m_lambda_v - inv_rho0*inv_v*lambda_h*np.exp(beta*(h - 1.0))
     out[1] = 0.0
     out[2] = 0.0
     return out

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 
 import sympy as sp
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from satsym.symbolic.model import Model, symbols_of, t
 
@@ -17,12 +18,18 @@ LARGEST = 400
 LENGTHY = 1000
 """Operations, likewise."""
 
+TURNING = 300
+"""Operations times sines and cosines of it, likewise, unless it may be zero: rewriting them grows with both."""
+
 PROVABLE = 4000
 """Terms of a sum that is multiplied out."""
 
 LONG = 150
 GROWTH = 2
 """Terms of what is multiplied out, and how many times as many operations as before, beyond which it stays as it was."""
+
+FACTORED = 40
+"""Terms of a sum that is looked at as a product; those of longer ones hardly ever have a form worth the time."""
 
 MINUTE = 1e-30
 """A number that is smaller may be zero."""
@@ -81,7 +88,10 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
 
 def shortened(expression: sp.Expr) -> sp.Expr:
     """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
-    if terms_of(expression) > LARGEST or expression.count_ops() > LENGTHY:
+    operations, turned = expression.count_ops(), len(expression.atoms(TrigonometricFunction))
+    if terms_of(expression) > LARGEST or operations > LENGTHY:
+        return expression
+    if operations * turned > TURNING and _differs_from_zero(expression):
         return expression
     logarithms = {e: sp.Dummy(real=True) for e in expression.atoms(sp.log)}
     if not logarithms:
@@ -181,7 +191,8 @@ def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:
 def _shortest(expression: sp.Expr) -> sp.Expr:
     expanded = _expand(expression)
     # A sum with decimals is hardly ever a product of others, and to look for them takes sympy up to a minute.
-    products = sp.gcd_terms(expanded) if expression.has(sp.Float) else sp.factor(expression)
+    plain = expression.has(sp.Float) or len(sp.Add.make_args(expanded)) > FACTORED
+    products = sp.gcd_terms(expanded) if plain else sp.factor(expression)
     return min((expanded, products, sp.together(expression)), key=sp.count_ops)
 
 

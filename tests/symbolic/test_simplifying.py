@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from satsym.symbolic.algebra import PROVABLE, depends, simplified, terms_of, tidy, vanishes
+from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, terms_of, tidy, vanishes
 from satsym.symbolic.checks import deviation, identity, numeric, points
 from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.linear.matrices import right_half_plane
@@ -96,6 +96,19 @@ def test_what_would_grow_when_multiplied_out_is_parted_by_what_it_is_linear_in_a
     sides = numeric([found, expression])
     with mp.workdps(30):
         assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q, *lam}, "parted"))
+
+
+def test_sympy_is_not_asked_to_rewrite_many_sines_at_length_unless_they_may_cancel(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+    monkeypatch.setattr(sp, "simplify", lambda expression: asked.append(expression) or sp.Integer(0))
+    waves = sp.Add(*(sin(k * q) * cos(x + k * y) / (x + k) ** 2 for k in range(1, 9)))
+    assert shortened(waves) == waves
+    assert not asked
+    doubled = 2 * sin(q) * cos(q) - sin(2 * q)
+    assert shortened(waves * doubled) == 0
+    assert asked
 
 
 @pytest.mark.parametrize(("off", "right"), [(0, True), (sp.Rational(1, 10**9), False)])

@@ -97,8 +97,8 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
     for found in constraints(so_far):
         vanishing = _vanishing(so_far, found)
         moving = canonical(so_far, found)
-        last = tidy(sp.expand(total_derivative(vanishing[-1], moving)), (eta := pn.multiplier(found.name),))
-        by_eta = sp.simplify(sp.diff(last, eta))
+        last = tidy(total_derivative(vanishing[-1], moving), (eta := pn.multiplier(found.name),))
+        by_eta = simplified(sp.diff(last, eta))
         value = tidy(simplified(-last.xreplace({eta: sp.Integer(0)}) / by_eta))
         equations += [
             Equation(pn.vanishing_entry(found.name, k), pn.vanishing(found.name, k), e) for k, e in enumerate(vanishing)
