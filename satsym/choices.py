@@ -23,10 +23,11 @@ class Command(Choice):
 
 
 class Checked(Choice):
-    """How much of a certificate answers get: none, all but competitors, or as ``satsym solve``."""
+    """How much of a certificate answers get: none, all but competitors, these for some rows, or as ``satsym solve``."""
 
     NONE = "none"
     LOCAL = "local"
+    SAMPLE = "sample"
     FULL = "full"
 
 

@@ -27,7 +27,7 @@ from satsym.report.results.study_table import header
 from satsym.solution import CostInterval
 from satsym.solvers.improving import goes_on
 from satsym.status import BadInput, Verdict
-from satsym.studies import reading, rows
+from satsym.studies import reading, rows, solving
 from satsym.studies.asking import asked
 from satsym.studies.design import Grid, Sample
 from tests.support.chunks import Here, failing
@@ -55,6 +55,23 @@ def test_each_row_is_what_solving_it_alone_gives(tmp_path: Path) -> None:
             assert found[f"costate_initial.{name}"][k] == pytest.approx(alone.lam[i, 0], abs=1e-9)
     first = (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "initial.r [km],parameters.c1,status" in first
+
+
+def test_some_rows_are_compared_with_competitors_and_the_others_stay_as_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(solving, "EACH", 4)
+    vary = {"initial.r": (1.0, 1.1, 48)}
+    some, none = (
+        study(NAME, tmp_path / kind, vary=vary, certificate=kind, executor=here, workers=1)
+        for kind in ("sample", "local")
+    )
+    drawn = np.array([int(key, 16) % 4 == 0 for key in some["key"]])
+    assert 0 < drawn.sum() < 48
+    assert set(some["verdict"][drawn]) == {"certified"}
+    assert set(some["verdict"][~drawn]) == set(none["verdict"]) == {"local minimum"}
+    assert (some["objective"][~drawn] == none["objective"][~drawn]).all()
+    assert np.allclose(some["objective"], none["objective"], rtol=1e-9)
 
 
 def test_competitors_are_compared_only_where_that_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -52,7 +52,8 @@ def _listed(choices: type[Choice]) -> str:
 @click.option(
     "--certificate",
     metavar="KIND",
-    help=f"Of solve: {_listed(Checked)}; by default local, that is all but competitors; full is as `satsym solve`.",
+    help=f"Of solve: {_listed(Checked)}; by default local, that is all but competitors; full is as `satsym solve`, "
+    "and sample that for one row in fifty.",
 )
 @click.option("--feedback", metavar="LAW", help="Of simulate, as `satsym simulate` has it.")
 @click.option("--trajectories", is_flag=True, help="Keep them, too, in few npz files.")
