@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.report import display
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
+from satsym.report.plots.reading import ROUNDING, SMALL
 from satsym.report.results import files
 from satsym.report.said import decimal, say
 from satsym.report.terminal.comparison import unit_of
@@ -42,20 +44,22 @@ def page(cases: Sequence[Case]) -> Figure | None:
     answered = [case for case in cases if case.answered]
     if not answered:
         return None
-    names = _shared(answered)
+    shared = _shared(answered)
+    panels = [(variable, dict[int, Array]()) for variable in shared]
+    panels += [(variable, apart) for variable in shared if (apart := _differences(answered, variable))]
     law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
     columns = style.across(2)
-    below = -(-len(names) // columns)
+    below = -(-len(panels) // columns)
     pairs = 2 // columns
     rows = below + pairs * (1 + (law is not None))
     driven = all(case.instance.driven for case in cases)
     title = cases[0].instance.title if driven else ", ".join(case.instance.name for case in cases)
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, columns)
-    for k, variable in enumerate(names):
-        last = k == len(names) - 1 and k % columns == 0
+    for k, (variable, apart) in enumerate(panels):
+        last = k == len(panels) - 1 and k % columns == 0
         place = grid[k // columns, :] if last else grid[k // columns, k % columns]
-        _over_time(figure.add_subplot(place), answered, variable)
+        _over_time(figure.add_subplot(place), answered, variable, apart)
     _totals([figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)], answered)
     if law is not None:
         _range([figure.add_subplot(grid[below + pairs + k // columns, k % columns]) for k in range(2)], law)
@@ -83,17 +87,29 @@ def _shared(cases: Sequence[Case]) -> list[Variable]:
     return [every[0][name] for name in wanted if name not in idle and all(name in each for each in every)]
 
 
-def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
+def _differences(cases: Sequence[Case], variable: Variable) -> dict[int, Array]:
+    """What a case has more than the first, by its number, where one of their curves would hide the other."""
+    first, found = cases[0], {}
+    values, times = first.signal(variable.symbol), first.times - first.times[0]
+    for k, case in enumerate(cases[1:], start=1):
+        own = case.times - case.times[0]
+        apart = np.where(own <= times[-1], case.signal(variable.symbol) - np.interp(own, times, values), np.nan)
+        if ROUNDING * np.ptp(values) < np.nanmax(np.abs(apart)) < SMALL * np.ptp(values):
+            found[k] = apart
+    return found
+
+
+def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array]) -> None:
+    """A variable of all cases, or where there is any what some have more than the first."""
     end = SHOWN * max(_until(case) for case in cases)
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
-    most = max(float(np.abs(case.signal(variable.symbol)).max()) for case in cases)
+    drawn = apart or {k: case.signal(variable.symbol) for k, case in enumerate(cases)}
+    most = max(float(np.nanmax(np.abs(values))) for values in drawn.values())
     measure = display.engineering(variable.unit, most)
-    for k, case in enumerate(cases):
-        times = case.times - case.times[0]
-        values = case.signal(variable.symbol)
+    for k, values in drawn.items():
         axes.plot(
-            times / factor,
+            (cases[k].times - cases[k].times[0]) / factor,
             values / measure.divisor,
             color=COLOURS[k % 6],
             linestyle=DASHES[k % 6],
@@ -101,14 +117,15 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             zorder=3.0 + 0.1 * k,
         )
     limit = max((case.instance.limits.get(variable.symbol, 0.0) for case in cases), default=0.0)
-    if 0.0 < limit < 2.0 * most:
+    if not apart and 0.0 < limit < 2.0 * most:
         for edge in (-limit, limit):
             axes.axhline(edge / measure.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
-    axes.set_title(display.shortened(say(variable.meaning), 62))
+    meaning = display.shortened(say(variable.meaning), 62)
+    axes.set_title(say("difference from <name>", name=cases[0].instance.name) if apart else meaning)
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
-    if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
+    if not apart and variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
         # an impulse has no height; an arrow stands for it, and its size is said
         for k, (_, impulse) in enumerate(sudden):
             if impulse:
@@ -128,7 +145,8 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=style.points(8.5)
         )
     axes.set_xlabel(display.labelled("$t$", unit))
-    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), measure.unit))
+    symbol = display.formula(variable.latex, variable.symbol)
+    axes.set_ylabel(display.labelled(rf"$\Delta${symbol}" if apart else symbol, measure.unit))
 
 
 def _until(case: Case) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import textwrap
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +11,6 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.display import shortened
 from satsym.report.look import SCREEN, Look
 from satsym.report.results import files
 from satsym.report.said import say
@@ -195,12 +195,19 @@ def figure(width: float, height: float) -> Figure:
 
 
 def titled(title: str, width: float, height: float) -> Figure:
-    """A figure under a title, which is cut if it is longer than a line; or under none, if none are wanted."""
+    """A figure under a title, of which two lines are shown at most; or under none, if none are wanted."""
     page = figure(width, height)
     if not with_titles():
         return page
-    text = shortened(say(title), int(9.8 * page.get_figwidth() / sheet().letters))
-    page.suptitle(text, x=0.012, ha="left", fontsize=points(11.5), fontweight="bold", parse_math=False)
+    room = int(9.8 * page.get_figwidth() / sheet().letters)
+    page.suptitle(
+        textwrap.fill(say(title), room, max_lines=2, placeholder="\N{HORIZONTAL ELLIPSIS}"),
+        x=0.012,
+        ha="left",
+        fontsize=points(11.5),
+        fontweight="bold",
+        parse_math=False,
+    )
     return page
 
 
