@@ -1,4 +1,4 @@
-"""Competitors with other boundary arcs, or other times of points on the way: to what other paths lead."""
+"""Competitors with other boundary arcs, or other times of points on the way: variants, and to what paths lead."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import Comparison, summed
+from satsym.solvers.certificate.constrained.variants import near
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.solving import others
 
@@ -32,5 +33,6 @@ def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
     if instance.tf is None:  # paths last as long as the solution does
         instance = replace(instance, tf_guess=float(solution.times[-1]))
     tried, costs, interrupted = others(instance, solution.objective, seed + 1, deadline)
-    found = summed(solution, Kind.ARCS, tried, costs, interrupted)
-    return Comparison((found,), () if costs and not interrupted else (Kind.ARCS,))
+    count, more, late = (0, list[float](), True) if interrupted else near(solution, deadline)
+    found = summed(solution, Kind.ARCS, tried + count, [*costs, *more], late)
+    return Comparison((found,), () if (costs or count) and not late else (Kind.ARCS,))

@@ -1,0 +1,83 @@
+"""Competitors whose structure is near that of the answer: without one of its contacts, or with another in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from satsym.solution import Solution
+from satsym.solvers.constrained.newton import begun, cost, solved
+from satsym.solvers.constrained.revision import wrong
+from satsym.solvers.constrained.structure import Contact, Structure, ordered
+from satsym.solvers.failures import tried
+from satsym.solvers.iteration import Limits
+
+SHORT = 0.02
+"""Share of the duration by which an arc begins before, and ends after, the touch point that it replaces."""
+
+WORK = 20_000
+"""Columns that may be linearised for one of them."""
+
+
+def near(solution: Solution, deadline: float) -> tuple[int, list[float], bool]:
+    """How many variants there are, costs of those that are admissible extremals, and whether time was up before all."""
+    costs, count = list[float](), 0
+    for structure in _variants(solution):
+        limits = Limits(200, deadline, work=WORK)
+        found = tried(partial(_extremal, solution, structure, limits))
+        if limits.late:
+            return count, costs, True
+        count += 1
+        costs += [] if found is None else [found]
+    return count, costs, False
+
+
+def _extremal(solution: Solution, structure: Structure, limits: Limits) -> float | None:
+    """The cost of the admissible extremal of a structure near a solution; ``None`` without one."""
+    nothing = np.zeros(len(solution.instance.model.spec.multipliers))
+    known = solution.times, np.concatenate([solution.x, solution.lam]), nothing
+    found = solved(begun(solution.instance, structure, known, float(solution.times[-1])), limits)
+    return None if found is None or wrong(found)[0] else cost(found)
+
+
+def contacts(solution: Solution) -> list[Contact]:
+    """What the events of a solution say."""
+    names, open_since = [one.name for one in solution.instance.model.spec.path_constraints], dict[int, float]()
+    begin, end = float(solution.times[0]), float(solution.times[-1])
+    found = list[Contact]()
+    for event in solution.events:
+        which = names.index(event.name)
+        if event.kind == "touch":
+            found.append(Contact(which, event.t, event.t, closes=event.t >= end))
+        elif event.kind == "entry":
+            open_since[which] = event.t
+        else:
+            start = open_since.pop(which)
+            found.append(Contact(which, start, event.t, opens=start <= begin))
+    lasting = (Contact(k, start, end, opens=start <= begin, closes=True) for k, start in open_since.items())
+    return [*found, *lasting]
+
+
+def _variants(solution: Solution) -> Iterator[Structure]:
+    """Without a contact, a touch in place of an arc and the other way, an arc in two, and two contacts as one."""
+    known, spec = list(ordered(contacts(solution)).contacts), solution.instance.model.spec.path_constraints
+    lasting = float(solution.times[-1] - solution.times[0])
+    for k, one in enumerate(known):
+        others = [*known[:k], *known[k + 1 :]]
+        yield ordered(others)
+        if one.touches and not one.closes:
+            half = min(SHORT * lasting, one.start - solution.times[0], solution.times[-1] - one.start) / 2
+            yield ordered([*others, replace(one, start=one.start - half, end=one.end + half)])
+        if not one.touches and spec[one.constraint].order > 1 and not (one.opens or one.closes):
+            yield ordered([*others, Contact(one.constraint, one.middle, one.middle)])
+        if not one.touches:
+            third = (one.end - one.start) / 3
+            parts = replace(one, end=one.start + third, closes=False), replace(one, start=one.end - third, opens=False)
+            yield ordered([*others, *parts])
+        after = next((each for each in known[k + 1 :] if each.constraint == one.constraint), None)
+        if after is not None:
+            rest = [each for each in others if each is not after]
+            yield ordered([*rest, replace(one, end=after.end, closes=after.closes and not after.touches)])
