@@ -166,7 +166,7 @@ class SolverOptions(_Table, frozen=True):
     method: Annotated[Method, Key("which solver; by default the one that fits", SOLVING)] = methods.AUTO
     tolerance: Annotated[Positive, Key("largest residual of an answer", MOVING, "1")] = 1e-9
     steps: Annotated[Steps, Key("steps of the grid", MOVING)] = 1000
-    max_seconds: Annotated[Positive, Key("when to give up", MOVING, "s")] = 60.0
+    max_seconds: Annotated[Positive, Key("processor time after which to give up", MOVING, "s")] = 60.0
     max_iterations: Annotated[Count | None, Key("sweeps, of methods that sweep", SOLVING)] = None
     free_angles: Annotated[Names, Key("states whose final value counts modulo a turn", SOLVING)] = ()
     relaxation: Annotated[

@@ -61,7 +61,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
         If the problem is refused whatever ends are given.
     """
     began = time.perf_counter()
-    trials = Trials(instance, progress, quick, began + instance.solver.max_seconds)
+    trials = Trials(instance, progress, quick, iteration.deadline_of(instance))
     for trials.work in BUDGETS:
         found = _found(trials, {})
         if found.status.answered or trials.late or not trials.cut_short:
@@ -118,7 +118,7 @@ class Trials:
 
     def by(self, solver: Solver, met: Met, work: float) -> Solution:
         """The solution with these ends by a solver; no answer where time is up, or such an end is refused."""
-        left = self.deadline - time.perf_counter()
+        left = self.deadline - iteration.computed()
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if left <= 0.0:
             self.late = True
@@ -129,7 +129,7 @@ class Trials:
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
             self.refused[frozenset(met.items())] = error
             return replace(nothing, status=Status.NOT_CONVERGED, message=str(error))
-        self.late = self.late or time.perf_counter() > self.deadline
+        self.late = self.late or iteration.computed() > self.deadline
         return found
 
 

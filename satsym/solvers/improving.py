@@ -12,6 +12,7 @@ import numpy as np
 from satsym.instance import Guess, Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
+from satsym.solvers import iteration
 from satsym.solvers.certificate.competitors import SAMPLES, guess
 from satsym.solvers.certificate.saddle import departures, fall
 from satsym.solvers.certificate.verdict import examined
@@ -40,7 +41,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         Called after each iteration.
     """
     began = time.perf_counter()
-    deadline = began + instance.solver.max_seconds
+    deadline = iteration.deadline_of(instance)
     solution = solver(instance, progress)
     certificate, better = examined(solution, deadline)
     if better is not None and instance.guess:
@@ -122,7 +123,7 @@ def _again(
     start: Instance, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
 ) -> Solution | None:
     """The solution to which an instance with a guess leads; ``None`` where it is not cheaper, or time is up."""
-    instance, left = solution.instance, deadline - time.perf_counter()
+    instance, left = solution.instance, deadline - iteration.computed()
     if left <= 0.0:
         return None
     options = msgspec.structs.replace(instance.solver, max_seconds=left)

@@ -49,6 +49,16 @@ class TimeUp(Exception):
     """The time is over in the midst of what does not iterate, such as a long trajectory."""
 
 
+def computed() -> float:
+    """Seconds of a processor that this thread has had: what else a machine does at the time must change no answer."""
+    return time.thread_time()
+
+
+def deadline_of(instance: Instance) -> float:
+    """When the time of an instance that is begun now will be over, on that clock."""
+    return computed() + instance.solver.max_seconds
+
+
 BLOCK = 10_000
 """Steps of a grid between two looks at the clock."""
 
@@ -57,13 +67,13 @@ BLOCK = 10_000
 class Limits:
     """When to give up, and who watches until then.
 
-    What a verdict depends on is limited by work, which is the same on every machine; the clock is there for people.
+    What a verdict depends on is limited by work, which is the same on every machine; time is there for people.
     """
 
     iterations: int
     """Of the method."""
     deadline: float
-    """On the clock of ``time.perf_counter``."""
+    """On the clock of :func:`computed`."""
     watch: Callable[[float, float], None] | None = None
     """Told cost and residual after inner steps, for a solver whose phases take long."""
     work: float = float("inf")
@@ -83,7 +93,7 @@ class Limits:
     @property
     def late(self) -> bool:
         """Whether the time is over."""
-        return time.perf_counter() > self.deadline
+        return computed() > self.deadline
 
     def check(self) -> None:
         """Raise :class:`TimeUp` if the time is over."""
@@ -120,8 +130,7 @@ def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list
         if progress:
             progress(history[-1])
 
-    deadline = time.perf_counter() + instance.solver.max_seconds
-    return Limits(instance.solver.max_iterations or MOST, deadline, watch, instance.work), history
+    return Limits(instance.solver.max_iterations or MOST, deadline_of(instance), watch, instance.work), history
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point as scaled
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, computed
 
 POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
 WORKERS = min(2, os.cpu_count() or 1)
@@ -89,7 +89,7 @@ def best_of_eight(case: Instance) -> float:
     problem = scaled(case, case.tf - case.t0).relaxed(float("inf"))
     best = float("inf")
     for start in eight(problem):
-        found = from_path(problem, start, Limits(STEPS, time.perf_counter() + SECONDS), STEPS)
+        found = from_path(problem, start, Limits(STEPS, computed() + SECONDS), STEPS)
         if found.minimum:
             best = min(best, found.cost * problem.scale.cost)
     return best

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -15,7 +16,7 @@ from satsym.analysis.regulator.feedback import simulate
 from satsym.instance import Instance
 from satsym.instance.options import MOST_BYTES, needed_memory, solver
 from satsym.solvers import iteration, solve
-from satsym.solvers.iteration import BLOCK, Limits, TimeUp
+from satsym.solvers.iteration import BLOCK, Limits, TimeUp, watched
 from satsym.solvers.simulation import blocks
 from satsym.status import BadInput, Status
 
@@ -142,3 +143,21 @@ def test_few_places_are_never_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(TimeUp):
         late.in_blocks(np.sin, np.arange(11.0))
     np.testing.assert_array_equal(Limits(1, float("inf")).in_blocks(np.sin, np.arange(25.0)), np.sin(np.arange(25.0)))
+
+
+def test_what_else_a_machine_does_uses_up_no_time() -> None:
+    limits, _ = watched(asked("soft-return", max_seconds=0.05), None)
+    time.sleep(0.1)
+    assert not limits.late
+    began = time.thread_time()
+    while not limits.late:
+        pass
+    assert time.thread_time() - began < 0.06
+
+
+def test_no_solver_counts_its_time_on_another_clock(repository: Path) -> None:
+    """Limits are on that of the processor: a deadline on another one would never come."""
+    files = (repository / "satsym" / "solvers").rglob("*.py")
+    assert {path.name for path in files if "+ instance.solver.max_seconds" in path.read_text("utf-8")} == {
+        "iteration.py"
+    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from itertools import islice
 
 import numpy as np
@@ -21,7 +20,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point as to_scaled
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, computed
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 
@@ -76,7 +75,7 @@ def check(population: Population, numbers: range) -> None:
 def test_final_angle_is_moved_to_where_other_ways_do_not_lead() -> None:
     """Five turns around, inwards from far out: found in four seconds after the other ways took thirty in vain."""
     problem = scaled(1704)
-    limits = Limits(500, time.perf_counter() + SECONDS)
+    limits = Limits(500, computed() + SECONDS)
     found = along_ends(problem, limits, lambda easier: cold_start(easier, limits).found)
     assert found is not None
     assert found.minimum
@@ -97,7 +96,7 @@ def test_extremals_are_followed_round_a_fold() -> None:
     def at(fraction: float) -> TwoPoint:
         return ending(wanted, {"theta": angle + 0.5 * (1.0 - fraction)})
 
-    found = cold_start(at(0.0), Limits(500, time.perf_counter() + SECONDS)).found
+    found = cold_start(at(0.0), Limits(500, computed() + SECONDS)).found
     assert found.minimum
     points = list(islice(extremals(at, found.curve), 12))
     fractions = np.array([point.fraction for point in points])

@@ -19,7 +19,7 @@ from satsym.solution import Solution
 from satsym.solvers import solve, two_point
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.scaling import two_point as scaled
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, computed
 from satsym.solvers.nearest_end import nearest
 from satsym.status import BadInput, Status
 from tests.support.canonical import Orbit, _fly
@@ -345,7 +345,7 @@ def test_what_can_be_done_is_reached_by_the_search_for_the_nearest_end(name, bou
     case = replace(instance.load(name), **bounds)
     problem = scaled(case, case.tf - case.t0)
     idle = paths.curve(problem.relaxed(math.inf), paths.first(problem))
-    found = nearest(problem, idle, Limits(500, time.perf_counter() + 60.0))
+    found = nearest(problem, idle, Limits(500, computed() + 60.0))
     assert found is not None
     assert found.arrives
 

@@ -67,7 +67,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     Parameters
     ----------
     deadline
-        On the clock of ``time.perf_counter``.
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     seed
         Of starts that are drawn: another one where a solution was found from such a start.
     """

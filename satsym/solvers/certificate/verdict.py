@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from satsym.arrays import Array
@@ -23,6 +21,7 @@ from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.node_defect import node_defect
 from satsym.solvers.certificate.segments import Segments, segments
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
+from satsym.solvers.iteration import deadline_of
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
@@ -45,7 +44,7 @@ def certify(solution: Solution, compared: bool = True) -> Certificate | None:
         ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
         former hold.
     """
-    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds, compared=compared)[0]
+    return examined(solution, deadline_of(solution.instance), compared=compared)[0]
 
 
 def examined(
@@ -56,7 +55,7 @@ def examined(
     Parameters
     ----------
     deadline
-        On the clock of ``time.perf_counter``; what is not compared by then is said.
+        On the clock of :func:`~satsym.solvers.iteration.computed`; what is not compared by then is said.
     seed
         Of starts that are drawn.
     compared
@@ -82,7 +81,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution, compared, seed), None
+            return switching.certify(solution, deadline, compared, seed), None
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 

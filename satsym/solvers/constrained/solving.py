@@ -33,7 +33,7 @@ from satsym.solvers.constrained.structure import Event as Happening
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
-from satsym.solvers.iteration import Limits, Meter, watched
+from satsym.solvers.iteration import Limits, Meter, computed, deadline_of, watched
 from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
@@ -94,11 +94,11 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         from satsym.solvers.constrained.levels import solving as levels
 
         return levels.solve(instance, progress)
-    began = time.perf_counter()
+    began, until = time.perf_counter(), deadline_of(instance)
     relaxed = two_point.solve(instance, progress)
     if relaxed.status.answered and violation(relaxed) <= SLACK:
         return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
-    limits = replace(watched(instance, None)[0], deadline=began + instance.solver.max_seconds)
+    limits = replace(watched(instance, None)[0], deadline=until)
     with np.errstate(all="ignore"):
         try:
             found = _best(instance, relaxed, limits)
@@ -113,7 +113,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 def cheaper(solution: Solution, deadline: float) -> Solution | None:
     """The extremal to which paths about an answer without boundary arcs lead; ``None`` where none is cheaper."""
     began = time.perf_counter()
-    if began >= deadline or convex(solution.instance):
+    if computed() >= deadline or convex(solution.instance):
         return None
     with np.errstate(all="ignore"):
         limits = replace(watched(solution.instance, None)[0], deadline=deadline)
@@ -182,7 +182,7 @@ def others(instance: Instance, worth: float, seed: int, deadline: float) -> tupl
     seed
         Of the paths.
     deadline
-        On the clock of ``time.perf_counter``.
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline, work=WORK)
     with np.errstate(all="ignore"):

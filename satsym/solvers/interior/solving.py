@@ -22,7 +22,7 @@ from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.failures import tried
 from satsym.solvers.interior.descent import optimum
 from satsym.solvers.interior.guesses import LASTING, Base, bases, bent, drawn_weights, passing, weights
-from satsym.solvers.iteration import Limits, Meter, watched
+from satsym.solvers.iteration import Limits, Meter, deadline_of, watched
 from satsym.status import Status
 
 KEPT = 4
@@ -59,9 +59,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Solution
         Times hold each junction twice: the last instant before it and the first after it.
     """
-    began = time.perf_counter()
+    began, until = time.perf_counter(), deadline_of(instance)
     relaxed = two_point.solve(instance, progress)
-    limits = replace(watched(instance, None)[0], deadline=began + instance.solver.max_seconds)
+    limits = replace(watched(instance, None)[0], deadline=until)
     found: Arcs | Stopped | None = None
     with np.errstate(all="ignore"):
         for base in bases(instance, relaxed):
@@ -85,7 +85,7 @@ def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[fl
     seed
         Of what is drawn.
     deadline
-        On the clock of ``time.perf_counter``.
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     instance, rng, costs = solution.instance, np.random.default_rng(seed), list[float]()
     points, lasting = len(instance.model.spec.interior), float(solution.times[-1]) - instance.t0

@@ -8,13 +8,12 @@ failed relaxation is told is measured at the extremal, which a method without th
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.solution import Iteration
-from satsym.solvers.iteration import Limits, iterate
+from satsym.solvers.iteration import Limits, computed, iterate
 from satsym.solvers.sweep.quasi_newton import QuasiNewton
 from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, forward, unbounded_law
 from satsym.status import Status
@@ -94,7 +93,7 @@ class Relaxation:
 
     def _near_extremal(self) -> Forward:
         iterations, seconds = ASIDE
-        limits = Limits(iterations, time.perf_counter() + seconds)
+        limits = Limits(iterations, computed() + seconds)
         return iterate(QuasiNewton(self.problem, self.start, self.tolerance), limits, None).state.sweep.forward
 
 

@@ -16,7 +16,7 @@ from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solvers.control import corners
-from satsym.solvers.iteration import Limits, Run, iterate
+from satsym.solvers.iteration import Limits, Run, deadline_of, iterate
 from satsym.solvers.sweep.quasi_newton import Descent, QuasiNewton
 from satsym.solvers.sweep.relaxation import Relaxation, Relaxed
 from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, forward, unbounded_law
@@ -54,7 +54,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise ValueError("the sweep needs a given final time and a free final state")
     kernels = _kernels(instance)
     rule = "relaxation" if instance.solver.relaxation else "quasi-Newton"
-    limits = Limits(instance.solver.max_iterations or ITERATIONS[rule], began + instance.solver.max_seconds)
+    limits = Limits(instance.solver.max_iterations or ITERATIONS[rule], deadline_of(instance))
     problem = SweepProblem(instance, kernels, Grid.uniform(instance.t0, instance.tf, instance.solver.steps), limits)
     start = forward(problem, _starting_control(problem))
     if not start.usable:

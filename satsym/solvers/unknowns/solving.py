@@ -17,7 +17,7 @@ from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Progress, Solution
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
 from satsym.solvers.failures import tried
-from satsym.solvers.iteration import unsolved
+from satsym.solvers.iteration import deadline_of, unsolved
 from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
 from satsym.solvers.unknowns.reaching import reaching
 from satsym.solvers.unknowns.trials import Late, Solver, Trial, Trials, unit_of
@@ -50,7 +50,7 @@ def solve(instance: Instance, progress: Progress | None, solver: Solver, certifi
     """
     began = time.perf_counter()
     units = np.array([unit_of(unknown, instance) for unknown in instance.free])
-    trials = Trials(instance, solver, progress, began + instance.solver.max_seconds, units)
+    trials = Trials(instance, solver, progress, deadline_of(instance), units)
     try:
         found = _solved(trials, certified)
     except Late:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -15,6 +14,7 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place, Unknown
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.start import slope
+from satsym.solvers.iteration import computed
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -76,7 +76,7 @@ class Trials:
             if not (math.isfinite(value) and unknown.admits(self.instance, value)):
                 return None
             found = unknown.at(found, value)
-        left = self.deadline - time.perf_counter()
+        left = self.deadline - computed()
         if left <= 0.0:
             raise Late
         options = msgspec.structs.replace(found.solver, max_seconds=left)

@@ -17,7 +17,7 @@ def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
     Parameters
     ----------
     deadline
-        On the clock of ``time.perf_counter``.
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     seed
         Of the paths.
     """

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from satsym.arrays import Array
@@ -43,10 +41,9 @@ LATER = Check("not strict: the same switches later cost the same", 1.0, 0.0)
 """Why a second variation is not positive, where a shift in time is the whole reason."""
 
 
-def certify(solution: Solution, compare: bool = True, seed: int = 0) -> Certificate:
+def certify(solution: Solution, deadline: float, compare: bool = True, seed: int = 0) -> Certificate:
     """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`."""
-    seconds = max(solution.instance.solver.max_seconds - solution.wall_s, 0.0)
-    limits = Limits(MOST, time.perf_counter() + seconds)
+    limits = Limits(MOST, deadline)
     try:
         again, failed = replay(solution, limits), "flow from the initial costates is finite"
     except TooMuchWork:

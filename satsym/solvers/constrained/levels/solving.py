@@ -17,7 +17,7 @@ from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import VIOLATED, violation
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.iteration import Limits, Meter, watched
+from satsym.solvers.iteration import Limits, Meter, deadline_of, watched
 from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
@@ -58,13 +58,13 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     BadInput
         If a bound is missing, or a constraint is violated where the motion is to start or to end.
     """
-    began = time.perf_counter()
+    began, until = time.perf_counter(), deadline_of(instance)
     relaxed = solving.solve(instance, progress)
     if relaxed.status.answered and violation(relaxed) <= VIOLATED:
         return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
     if relaxed.status is Status.INFEASIBLE:
         return replace(relaxed, method=BOUNDARY_ARCS)
-    limits = replace(watched(instance, None)[0], deadline=began + instance.solver.max_seconds)
+    limits = replace(watched(instance, None)[0], deadline=until)
     with np.errstate(all="ignore"):
         found = _best(instance, relaxed, limits)
         if isinstance(found, Stopped):
@@ -82,7 +82,7 @@ def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[fl
     seed
         Of the paths.
     deadline
-        On the clock of ``time.perf_counter``.
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     instance = replace(solution.instance, tf_guess=float(solution.times[-1]))  # paths last as long as the solution does
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline)
