@@ -12,7 +12,7 @@ from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.results.studies import Numbers
-from satsym.report.said import message, say
+from satsym.report.said import decimal, message, say
 from satsym.report.said import numbers as numbers_said
 from satsym.status import Status
 
@@ -103,11 +103,11 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
         said = numbers_said(display.number(float(one), 4) for one in (low, middle, high))
         title = say("quantiles 5, 50 and 95 %: <values>", values=said)
-        if beyond := len(finite) - len(shown):
-            ends = numbers_said(display.number(float(one), 4) for one in (finite.min(), finite.max()))
-            said = say(
-                "not shown: <count> of <rows> rows far out, to <ends>", count=beyond, rows=len(finite), ends=ends
-            )
+        beyond = np.setdiff1d(finite, shown)
+        if len(beyond):
+            low, high = (decimal(display.number(float(one), 4)) for one in (beyond[0], beyond[-1]))
+            counts = {"count": len(finite) - len(shown), "rows": len(finite)}
+            said = say("not shown: <count> of <rows> rows far out, from <low> to <high>", **counts, low=low, high=high)
             title += f"\n{said}"
         place.set_title(title)
 
