@@ -111,6 +111,27 @@ def test_a_motion_may_end_and_begin_on_a_boundary(start: float):
     assert found.objective == pytest.approx(speeding + (3.0 - (0.7 + start) / 2.0 * speeding) / 0.7, rel=1e-12)
 
 
+def test_an_arc_too_brief_to_be_seen_leads_to_the_boundary():
+    """A start next to a boundary is not on it: no arc there begins with the motion."""
+    box, start = {"u": [-1.0, 1.0]}, {"x": 0.0, "v": 0.65}
+    found = solved(
+        CAR,
+        **(ACROSS | {"initial": start, "final": {"x": 20.0, "v": 0.0}, "control": box, "parameters": {"v_top": 0.7}}),
+    )
+    away = 0.05 * (0.65 + 0.7) / 2.0 + 0.7**2 / 2.0
+    assert found.objective == pytest.approx(0.05 + (20.0 - away) / 0.7 + 0.7, rel=1e-12)
+    assert found.events[0].t == pytest.approx(0.05, rel=1e-9)
+
+
+def test_an_arc_beside_its_boundary_fails_the_certificate():
+    """At a higher limit the same motion keeps to none."""
+    found = solved(CAR, **ACROSS).found
+    higher = replace(found, instance=replace(found.instance, parameters=(1.1, 1.0)))
+    checks = {one.name: one.passed for one in certify(higher).checks}
+    assert not checks["off the boundary on its arcs"]
+    assert certify(higher).verdict is Verdict.FAILED
+
+
 def test_the_second_variation_is_that_of_the_top_where_all_else_is_given():
     """Below a pressure of 8 no arc is singular: entry and fuel fix all times but the last, at which h'' = -1/h^2."""
     case = satsym.load("goddard-pressure").with_(parameters={"q_max": 5.0})

@@ -221,7 +221,11 @@ class Equations:
         slopes[n:, :n] = np.eye(n)
         start = _Switch(first.field, first.start, first.before.tolist(), slopes, kept, None)
         rows = [start.row((SINGULAR, SINGULAR), self.sizes)]
-        return rows if first.field.singular is None else [*rows, start.rate_row(self.sizes)]
+        if isinstance(first.field, BoundaryField):  # nothing moves the start to the boundary
+            value, gradient, _ = off_boundary(self.instance, first.field.constraint, start.t, start.z)
+            size = max(float(np.abs(gradient) @ self.sizes), abs(value), 1e-300)
+            return [*rows, (value / size, np.zeros(first.slopes.shape[1]))]
+        return [*rows, start.rate_row(self.sizes)]
 
 
 @dataclass(frozen=True, eq=False)

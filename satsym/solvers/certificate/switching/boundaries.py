@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.switching.junction_times import curvature
 from satsym.solvers.certificate.switching.replay import Piece, Replay
@@ -41,15 +42,26 @@ def necessary(solution: Solution, again: Replay) -> list[Check]:
     """Constraints hold along the replay, and multipliers of those on their boundaries have the right sign."""
     instance = solution.instance
     derived = np.array([one.order > 0 for one in instance.model.spec.path_constraints])
-    g = values(instance, again.times, again.z)[derived]
+    g = values(instance, again.times, again.z)
     room = np.maximum(np.abs(g).max(axis=1, keepdims=True), 1e-300)
-    checks = [Check("path constraint violated", float(np.maximum(g / room, 0.0).max()), VIOLATED)]
+    checks = [Check("path constraint violated", float(np.maximum(g / room, 0.0)[derived].max()), VIOLATED)]
     if on_boundary(again):
+        checks.append(Check("off the boundary on its arcs", _off(again, room[:, 0]), VIOLATED))
         checks.append(Check("multiplier on a boundary is negative", max(0.0, -_pressure(again, 0.0)), PULLING))
         jumps = _jumps(again)
         checks.append(Check("multiplier at a junction is negative", max([0.0, *(-by for by, _ in jumps)]), PULLING))
         checks.append(Check("jump of the costates", max([0.0, *(off for _, off in jumps)]), JUMP))
     return checks
+
+
+def _off(again: Replay, room: Array) -> float:
+    """Largest distance from boundaries along arcs on these, relative to sizes of constraints, shape (h,)."""
+    found = [0.0]
+    for piece in again.pieces:
+        if isinstance(piece.field, BoundaryField):
+            k = piece.field.constraint
+            found.append(float(np.abs(values(piece.field.instance, *again.along(piece))[k]).max() / room[k]))
+    return max(found)
 
 
 def _jumps(again: Replay) -> list[tuple[float, float]]:

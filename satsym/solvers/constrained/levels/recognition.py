@@ -13,7 +13,7 @@ from satsym.control_set import bound_names
 from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.slopes import rooms
 from satsym.solvers.constrained.transcription import Program, middles
-from satsym.solvers.switching.boundaries import acting, effects
+from satsym.solvers.switching.boundaries import acting, effects, values
 from satsym.solvers.switching.structure import (
     BOUNDARY,
     LOWER,
@@ -26,6 +26,9 @@ from satsym.solvers.switching.structure import (
     on_boundary,
 )
 from satsym.solvers.switching.trajectory import runs
+
+SHORT, OFF = 0.5, 1e-6
+"""Of an interval, an arc at an end that no interval shows; and share of its size by which a boundary is not met."""
 
 BRIEF = 2
 """Intervals of a singular arc that is none: a switch falls into one of them."""
@@ -46,14 +49,35 @@ def recognised(program: Program, path: Path, shortest: int = BRIEF) -> Guess:
         levels = _without_brief(_levels(program, path, control), shortest)
         switches = np.flatnonzero(np.diff(levels)) + 1
         row = [int(level) for level in levels[np.append(0, switches)]]
-        rows.append(_with_jumps(program, path, row, edges[switches], at.x[:, switches]))
-        times += edges[switches].tolist()
+        row, own = _with_ends(program, path, row, edges[switches].tolist())
+        near = np.clip(np.searchsorted(edges, own), 0, program.intervals)
+        rows.append(_with_jumps(program, path, row, np.array(own), at.x[:, near]))
+        times += own
     begin, end = (at.y[:, place] + (at.y[:, place] - at.y[:, beside]) / 2.0 for place, beside in ((0, 1), (-1, -2)))
     lam = np.column_stack([begin, at.y, end])
     x = np.column_stack([at.x[:, 0], middles(at.x), at.x[:, -1]])
     places = np.concatenate([edges[:1], np.real(program.times(at.duration, True)), edges[-1:]])
     course = Course(places, np.concatenate([x, lam]))
     return Guess(Structure(tuple(rows)), np.array(times), begin, float(edges[-1]), course, bounded=True)
+
+
+def _with_ends(program: Program, path: Path, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
+    """With a brief arc to a boundary that the start is not on, and one away from a boundary that the end is not on."""
+    instance, x = program.instance, path.at.x
+    end = instance.t0 + path.at.duration
+    brief = SHORT * path.at.duration / program.intervals
+    for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
+        level = row[place]
+        if level < BOUNDARY:
+            continue
+        which, state = constraint_of(level), x[:, place]
+        z = np.append(state, np.zeros(len(state)))[:, None]
+        if values(instance, np.array([time]), z)[which, 0] >= -OFF * rooms(program, path.at)[which, 0]:
+            continue
+        push = effects(instance, which, time, state)[acting(instance, which)] * (1.0 if first else -1.0)
+        level = UPPER if push > 0.0 else LOWER
+        row, times = ([level, *row], [time + brief, *times]) if first else ([*row, level], [*times, time - brief])
+    return row, times
 
 
 def _with_jumps(program: Program, path: Path, row: list[int], times: Array, x: Array) -> tuple[int, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
+from satsym.solvers.constrained.easing import tightened
 from satsym.solvers.constrained.interior_point import regularised
 from satsym.solvers.constrained.levels.recognition import BRIEF, recognised
 from satsym.solvers.constrained.starts import drawn, first, straight
@@ -98,7 +99,8 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stop
     for intervals in INTERVALS:
         program = Program(instance, intervals)
         begun = first(program, relaxed)
-        found = [one for one in _searched(program, [begun, *drawn(program, begun, DRAWN, 0)], worth, limits) if one]
+        starts = [begun, *drawn(program, begun, DRAWN, 0)]
+        found = [one for one in _searched(program, starts, worth, limits, begun) if one]
         if found:
             return min(found, key=lambda one: one.trajectory.cost(instance))
         if limits.late:
@@ -107,13 +109,20 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stop
     return Stopped(Status.NOT_CONVERGED, message)
 
 
-def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> Iterator[Exact | None]:
-    """To what each start leads within these limits; what leads to a known path leads to the same. Ends with time."""
+def _searched(
+    program: Program, starts: list[Point], worth: float, limits: Limits, eased: Point | None = None
+) -> Iterator[Exact | None]:
+    """To what each start leads within these limits; what leads to a known path leads to the same. Ends with time.
+
+    From one of them constraints are eased where they are too far from holding.
+    """
     known: list[tuple[float, Exact | None]] = []
     for start in starts:
         own = replace(limits, meter=Meter())
         try:
             path = regularised(program, start, worth, own)
+            if start is eased and not path.solved:
+                path = tightened(program, start, worth, own)
         except FAILURES:
             yield None
             continue
