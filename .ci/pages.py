@@ -12,7 +12,10 @@ import tempfile
 from pathlib import Path
 
 BUILT = Path(__file__).parents[1] / "docs" / "_build" / "html"
-PAGES = "index start theory gallery instances models glossary documents comparison reference/commands tutorials/judge"
+PAGES = (
+    "index start howto theory gallery instances models glossary documents comparison reference/commands "
+    "reference/python tutorials/judge"
+)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 QUIET = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "

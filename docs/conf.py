@@ -28,7 +28,6 @@ nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # docstrings name what has no page here
 python_use_unqualified_type_names = True
 autodoc_member_order = "bysource"
-python_maximum_signature_line_length = 80
 toc_object_entries_show_parents = "hide"
 # links into the repository, from pages that are read there as well
 myst_url_schemes = ["http", "https"]
