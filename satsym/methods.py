@@ -134,7 +134,7 @@ METHODS = {
         ),
         Method(
             BOUNDARY_ARCS,
-            "exact arcs and touch points, for path constraints and points on the way",
+            "exact arcs, for path constraints and points on the way",
             "satsym.solvers.by_arcs:solve",
             constrained=True,
             automatic=True,

@@ -28,9 +28,9 @@ from satsym.instance import Instance
 from satsym.solvers import two_point
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.conditions import boundary_residual
-from satsym.solvers.certificate.flow import flow
 from satsym.solvers.certificate.jacobi import conjugate
-from satsym.solvers.certificate.segments import segments
+from satsym.solvers.certificate.reintegration.flow import flow
+from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation.problem import TwoPoint

@@ -16,7 +16,7 @@ from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.jacobi import conjugate
-from satsym.solvers.certificate.segments import segments
+from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.simulation.extrapolation import NotFinite, integrate
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -9,9 +9,9 @@ import pytest
 
 from satsym import instance, solvers
 from satsym.solution import Solution
-from satsym.solvers.certificate.closed_flow import closed_flow
-from satsym.solvers.certificate.flow import Flow, flow, typical
-from satsym.solvers.certificate.segments import segments
+from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
+from satsym.solvers.certificate.reintegration.flow import Flow, flow, typical
+from satsym.solvers.certificate.reintegration.segments import segments
 
 
 def both(solution: Solution) -> tuple[Flow, Flow]:

@@ -16,7 +16,7 @@ from satsym.solvers import linear
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.jacobi import NOT_STRICT, Conjugate, conjugate
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
-from satsym.solvers.certificate.segments import segments
+from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.spec import ControlSetKind, Variable
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, symbols_of

@@ -12,7 +12,7 @@ from scipy.linalg import block_diag, expm
 
 from satsym.solvers.certificate.end_form import EndForm
 from satsym.solvers.certificate.jacobi import Phases, followed, second_order_at_end
-from satsym.solvers.certificate.segments import balanced
+from satsym.solvers.certificate.reintegration.segments import balanced
 
 Array = NDArray[np.floating[Any]]
 PIECES, STEPS = 80, 200

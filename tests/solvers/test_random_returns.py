@@ -9,9 +9,9 @@ import pytest
 
 from satsym.solvers import two_point
 from satsym.solvers.certificate import certify, conditions
-from satsym.solvers.certificate.flow import flow
 from satsym.solvers.certificate.jacobi import conjugate
-from satsym.solvers.certificate.segments import segments
+from satsym.solvers.certificate.reintegration.flow import flow
+from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.path_of_ends import along_ends, ending
 from satsym.solvers.collocation.arclength import extremals

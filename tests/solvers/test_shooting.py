@@ -17,7 +17,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import shooting, solve, two_point
 from satsym.solvers.certificate.conditions import boundary_residual
-from satsym.solvers.certificate.flow import flow
+from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits

@@ -21,7 +21,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.arc_lengths import quadratic
 from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration

@@ -52,6 +52,12 @@ def held() -> Derivation:
 
 
 @pytest.fixture(scope="module")
+def passing() -> Derivation:
+    """A point that is passed on the way."""
+    return shipped("inspection")
+
+
+@pytest.fixture(scope="module")
 def ball() -> Derivation:
     """Two controls of equal weight, their norm bounded."""
     states, controls = ((Variable("x1", "x_1"), Variable("x2", "x_2")), (Variable("u1", "u_1"), Variable("u2", "u_2")))
@@ -148,11 +154,16 @@ UNTIDIED = {"control_rates", "newton", "first_order", "reference", "second_deriv
     "step", [name for name, f in STEPS.items() if hasattr(sys.modules[f.__module__], "tidy") and name not in UNTIDIED]
 )
 def test_no_expression_of_a_step_can_be_falsified(
-    polar: Derivation, walled: Derivation, held: Derivation, monkeypatch: pytest.MonkeyPatch, step: str
+    polar: Derivation,
+    walled: Derivation,
+    held: Derivation,
+    passing: Derivation,
+    monkeypatch: pytest.MonkeyPatch,
+    step: str,
 ) -> None:
     """Every single expression e that a step tidies is made 1 - e in turn: caught, or without any effect."""
     module = sys.modules[STEPS[step].__module__]
-    derivation = next(one for one in (polar, walled, held) if step in {known.name for known in one.steps})
+    derivation = next(one for one in (polar, walled, held, passing) if step in {known.name for known in one.steps})
     tidy, right = module.tidy, derivation.step(step).equations
     calls = caught = index = 0
 

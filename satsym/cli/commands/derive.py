@@ -122,7 +122,7 @@ def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
             said = (
                 "removed: no derivation leads to it"
                 if ours
-                else "no derivation leads to it, and satsym did not write it"
+                else "is not from satsym; remove it: no derivation leads to it"
             )
             lines.append(f"{path}  {say(said)}")
     return lines

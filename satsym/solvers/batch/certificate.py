@@ -19,10 +19,10 @@ from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED
 from satsym.solvers.certificate.corners import inverses, positive
-from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-from satsym.solvers.certificate.node_defect import FINE
-from satsym.solvers.certificate.segments import balanced
+from satsym.solvers.certificate.reintegration.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
+from satsym.solvers.certificate.reintegration.node_defect import FINE
+from satsym.solvers.certificate.reintegration.segments import balanced
 from satsym.solvers.certificate.verdict import COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
@@ -50,7 +50,7 @@ WHOLE = 0.9 * 2.0 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
-    """Of states and costates, to which errors are held, see :func:`satsym.solvers.certificate.flow.typical`."""
+    """Of states and costates, to which errors are held; from ``typical`` of the certificate's flow."""
 
     state: Array
     largest: Array

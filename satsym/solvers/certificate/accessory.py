@@ -16,8 +16,8 @@ from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import end_form
-from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.certificate.jacobi import kernel
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 
 PIECES = 50
 """On which the control's change is constant."""

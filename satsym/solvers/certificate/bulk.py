@@ -18,10 +18,10 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.corners import positive
-from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-from satsym.solvers.certificate.node_defect import Parameters, joined, missed, stretches
-from satsym.solvers.certificate.segments import balanced
+from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
+from satsym.solvers.certificate.reintegration.node_defect import Parameters, joined, missed, stretches
+from satsym.solvers.certificate.reintegration.segments import balanced
 from satsym.solvers.certificate.verdict import DEFECT, certify, first_order
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Verdict

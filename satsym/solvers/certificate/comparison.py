@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.flow import products
+from satsym.solvers.certificate.reintegration.flow import products
 
 if TYPE_CHECKING:
     from satsym.solvers.collocation.curve import Curve

@@ -19,7 +19,7 @@ from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
-from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 

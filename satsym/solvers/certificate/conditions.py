@@ -10,8 +10,17 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
-from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, costing, products, typical, undriven, unit_sizes
-from satsym.solvers.certificate.segments import Segments, values
+from satsym.solvers.certificate.reintegration.flow import (
+    FAINT,
+    NEGLIGIBLE,
+    Flow,
+    costing,
+    products,
+    typical,
+    undriven,
+    unit_sizes,
+)
+from satsym.solvers.certificate.reintegration.segments import Segments, values
 from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.slopes import undecided

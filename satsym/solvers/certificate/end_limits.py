@@ -19,7 +19,7 @@ from satsym.kernels.active import stated
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate.end_form import final_values, multipliers
-from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.status import Verdict
 
 BEYOND = 1e-9

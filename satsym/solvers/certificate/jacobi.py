@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.end_form import EndForm, end_form
-from satsym.solvers.certificate.segments import Segments, between
+from satsym.solvers.certificate.reintegration.segments import Segments, between
 
 TURN = 2.0 * np.pi
 

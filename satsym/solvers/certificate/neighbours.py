@@ -16,7 +16,7 @@ from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.accessory import Accessory, accessory
 from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
-from satsym.solvers.certificate.flow import products, typical
+from satsym.solvers.certificate.reintegration.flow import products, typical
 from satsym.solvers.collocation.problem import ended
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.regularised import sloping

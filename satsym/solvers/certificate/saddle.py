@@ -16,8 +16,8 @@ from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
 from satsym.solvers.certificate.accessory import accessory
-from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""

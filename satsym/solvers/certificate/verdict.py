@@ -9,17 +9,17 @@ from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
-from satsym.solvers.certificate.closed_flow import closed_flow
 from satsym.solvers.certificate.comparison import Comparison, Competitor
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
-from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.jumps import jumps
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
-from satsym.solvers.certificate.node_defect import node_defect
-from satsym.solvers.certificate.segments import Segments, segments
+from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
+from satsym.solvers.certificate.reintegration.flow import TOLERANCE, Flow, flow
+from satsym.solvers.certificate.reintegration.node_defect import node_defect
+from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.solvers.iteration import deadline_of
 from satsym.status import Verdict

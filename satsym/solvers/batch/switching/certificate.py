@@ -17,8 +17,8 @@ from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.switching.arrivals import Arrivals, stated
-from satsym.solvers.certificate.flow import NEGLIGIBLE, TOLERANCE
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+from satsym.solvers.certificate.reintegration.flow import NEGLIGIBLE, TOLERANCE
 from satsym.solvers.certificate.switching.conditions import CLOSE, DRIFT, RESIDUAL, STRICT, TIMES
 from satsym.solvers.certificate.switching.variation import RANK
 from satsym.solvers.simulation.extrapolation import leap_and_error

@@ -16,7 +16,7 @@ from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
-from satsym.solvers.certificate.flow import FAINT, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT, typical
 from satsym.solvers.constrained.active import control, deciding, multipliers
 from satsym.solvers.constrained.arcs import holds_control, sizes, values
 from satsym.solvers.constrained.convexity import convex

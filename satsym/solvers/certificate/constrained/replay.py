@@ -15,7 +15,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
-from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, typical
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import conditions, gradient

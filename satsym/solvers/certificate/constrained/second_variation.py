@@ -24,7 +24,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.moving_times import Moving
 from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
-from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.constrained.active import control, multipliers
 from satsym.solvers.constrained.arcs import effects, gradient, holds_control
 from satsym.solvers.constrained.structure import FREE, Active, within

@@ -16,8 +16,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states, multipliers
-from satsym.solvers.certificate.flow import typical
 from satsym.solvers.certificate.jacobi import kernel
+from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.certificate.switching.variation import flat_along

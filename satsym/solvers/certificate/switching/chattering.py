@@ -15,7 +15,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, CostInterval, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.segments import segments, values
+from satsym.solvers.certificate.reintegration.segments import segments, values
 from satsym.solvers.certificate.switching.comparison import allowed
 from satsym.solvers.certificate.switching.variation import convex
 from satsym.solvers.control.regularised import regularised, smoothed_law

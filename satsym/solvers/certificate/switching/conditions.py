@@ -8,7 +8,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.flow import Flow, typical
+from satsym.solvers.certificate.reintegration.flow import Flow, typical
 from satsym.solvers.certificate.switching import boundaries
 from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared

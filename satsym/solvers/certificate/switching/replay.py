@@ -14,7 +14,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
 from satsym.solvers.certificate.switching.restarts import restarts

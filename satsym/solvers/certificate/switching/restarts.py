@@ -9,7 +9,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.stated_arcs import Stated
 from satsym.solvers.switching.stops import stops
 from satsym.solvers.switching.structure import SINGULAR, Course, Guess, Structure

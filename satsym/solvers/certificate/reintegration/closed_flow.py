@@ -11,8 +11,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
-from satsym.solvers.certificate.segments import Segments
+from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
+from satsym.solvers.certificate.reintegration.segments import Segments
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap_and_error
 

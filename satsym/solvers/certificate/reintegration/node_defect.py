@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.flow import FAINT, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT, typical
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap, leap_and_error
 
 FINE = 1e-10

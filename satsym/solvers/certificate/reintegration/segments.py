@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.control.slopes import without_poles
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
