@@ -89,7 +89,8 @@ class Row:
         proof, peer = self.found.certificate, self.peer
         theirs = "not tried" if peer is None else f"{self.theirs:.2f}"
         if peer and not peer.reached:
-            theirs = f"not reached: {peer.objective:.8g} on {peer.intervals} intervals"
+            objective = self.found.instance.model.spec.objective(peer.objective)
+            theirs = f"not reached: {objective:.8g} on {peer.intervals} intervals"
         return (
             self.name,
             self.entry["source"],
