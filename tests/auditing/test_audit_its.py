@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 
 from satsym import auditing as audit
+from satsym.auditing import cache
 from satsym.auditing.causes import findings
 from satsym.report.terminal.audit import audit_text
 from tests.support import its_claim_routes as claims
@@ -159,7 +160,7 @@ CASES = [(document, key) for document, routes in ROUTES.items() for key in route
 @pytest.fixture(scope="module")
 def judged() -> dict[str, list[audit.Judged]]:
     """What the audit finds."""
-    return {document: audit.audit(audit.read(audit.locate(document))) for document in ROUTES}
+    return {document: cache.audit(audit.read(audit.locate(document))) for document in ROUTES}
 
 
 @pytest.mark.parametrize(("document", "key"), CASES, ids=[f"{d}: {k}" for d, k in CASES])

@@ -27,6 +27,7 @@ def test_variants_are_not_tried_when_time_is_up():
     assert near(found, 0.0) == (0, [], True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bryson-denham", "obstacle", "return-above"])
 def test_contacts_are_those_that_the_answer_states(name: str):
     found = solve(instance.load(name))

@@ -77,6 +77,7 @@ def test_a_lift_keeps_to_the_acceleration_that_its_passengers_bear(top: float, d
     assert [one.name for one in found.events] == ["push", "push", "brake", "brake"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("fast", "hard", "distance"), [(1.0, 1.0, 10.0), (1.5, 0.8, 6.0), (0.7, 2.0, 4.0)])
 def test_limits_of_speed_and_acceleration_make_an_s_curve(fast: float, hard: float, distance: float):
     """Rest to rest with jerk one (order two: costates jump): up to the speed, along it, and down again."""
