@@ -81,6 +81,20 @@ def test_a_jump_from_one_well_to_the_other_is_said_and_not_certified(tmp_path: P
     assert (failed.name, failed.value) == ("second variation unknown: jumps between minimisers", 1.0)
 
 
+def test_where_both_wells_stay_as_good_neither_is_certified(tmp_path: Path) -> None:
+    """Nothing weighs where q ends: speeds of one, of minus one, and any that take turns cost nothing."""
+    case = build(
+        tmp_path,
+        scalar("double_well", w, WELL, 0, "box"),
+        "[initial]\nq = 0.0\n[time]\ntf = 1.0\n[control]\nw = [-2, 1.5]\n",
+    )
+    found = solve(case)
+    assert found.status is Status.CONVERGED
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
+    assert [c.name for c in found.certificate.checks if not c.passed] == ["another minimiser of H stays as good"]
+
+
 @pytest.mark.slow
 def test_between_the_wells_there_is_no_best_speed(tmp_path: Path) -> None:
     """Slower than one it pays to go to and fro, as often as one likes: nothing is found, and it is said why."""
