@@ -93,7 +93,7 @@ class Program(Explained, click.Group):
     """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """What it may be told, and its commands."""
+        """Its options, and its commands."""
         super().format_options(ctx, formatter)
         with formatter.section(explained("Commands")):
             widest = max(map(len, self.commands))

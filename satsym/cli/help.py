@@ -76,7 +76,7 @@ class Explained(click.Command):
         _write(formatter, self.help)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """What it may be told."""
+        """Its options."""
         records = []
         for option in self.get_params(ctx):
             if isinstance(option, click.Option) and (record := option.get_help_record(ctx)) is not None:

@@ -100,7 +100,7 @@ _verbose = click.option(
 
 
 def shared_options(command: Any) -> Any:
-    """What every command may be told."""
+    """Options of every command."""
     return _quiet(_verbose(language_option(command)))
 
 

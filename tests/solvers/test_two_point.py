@@ -70,7 +70,7 @@ def hamiltonian(case: Instance, y: np.ndarray) -> float:
     return p["c0"] + 0.5 * (p["c1"] * u1**2 + p["c2"] * u2**2) + float(y[4:] @ rates(case, y)[:4])
 
 
-def flown(found: Solution) -> np.ndarray:
+def simulated(found: Solution) -> np.ndarray:
     """States and costates at the end, integrated again from the start, stopping at each switching time."""
     case = found.instance
     y = np.concatenate([case.initial, found.lam[:, 0]])
@@ -99,7 +99,7 @@ def missed(found: Solution) -> float:
     """Largest relative miss of given final states by the flow from the initial costates."""
     given, goal = wanted(found)
     size = np.maximum(np.abs(found.x).max(axis=1), 1e-300)
-    return float((np.abs(flown(found)[:4] - goal) / size)[given].max(initial=0.0))
+    return float((np.abs(simulated(found)[:4] - goal) / size)[given].max(initial=0.0))
 
 
 @pytest.mark.parametrize(
@@ -207,7 +207,7 @@ def test_each_kind_of_end_is_transversal(name):
     assert found.status is Status.CONVERGED
     assert case.boundary_type == int(name[5])
     assert missed(found) < 1e-9
-    y = flown(found)
+    y = simulated(found)
     given, _ = wanted(found)
     error = y[:4] - np.array([p["sigma"], 0.0, p["omega"] * tf, p["omega"]])
     weights = np.array([p["k1"], p["k2"], p["k3"], p["k4"]])
@@ -244,7 +244,7 @@ def test_a_bounded_control_may_come_with_a_free_final_time():
     assert np.abs(found.u).max() <= 0.08 + 1e-12
     assert found.switching_times[1]
     assert missed(found) < 1e-9
-    y = flown(found)
+    y = simulated(found)
     assert hamiltonian(case, y) - y[6] == pytest.approx(0.0, abs=1e-9)
 
 

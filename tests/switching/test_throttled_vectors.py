@@ -128,7 +128,7 @@ def on_the_boundary(y: np.ndarray) -> float:
     return mass * (250.0 * v**2 + 1.0 / h**2) + drag(h, v)
 
 
-def flown(
+def simulated(
     legs: Sequence[tuple[Any, Callable[[np.ndarray], float], tuple[float, float]]],
 ) -> tuple[np.ndarray, list[float]]:
     """Where legs lead, each until its event, and when that is."""
@@ -152,7 +152,7 @@ def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_flies
         (rocket(on_the_surface), lambda y: y[2] - 0.6, (0.075, 0.08)),
         (rocket(0.0), lambda y: y[1], (0.19, 0.21)),
     )
-    y, times = flown(legs)
+    y, times = simulated(legs)
     found = shipped("goddard-pressure")
     assert found.status is Status.CONVERGED
     assert -found.objective == pytest.approx(y[0], rel=1e-12)
@@ -172,7 +172,7 @@ def test_thrust_that_comes_to_its_bound_on_the_boundary_stays_there_until_the_fu
         (rocket(3.5), lambda y: y[2] - 0.6, (0.0815, 0.09)),
         (rocket(0.0), lambda y: y[1], (0.19, 0.22)),
     )
-    y, times = flown(legs)
+    y, times = simulated(legs)
     case = instance.load("goddard-pressure")
     lower = tuple(
         9.0 if one.symbol == "q_max" else p for one, p in zip(case.model.spec.parameters, case.parameters, strict=True)
@@ -190,7 +190,7 @@ def test_goddards_rocket_agrees_with_events_alone():
         (rocket(on_the_surface), lambda y: y[2] - 0.6, (0.06, 0.08)),
         (rocket(0.0), lambda y: y[1], (0.19, 0.21)),
     )
-    y, times = flown(legs)
+    y, times = simulated(legs)
     found = shipped("goddard")
     assert found.status is Status.CONVERGED
     assert -found.objective == pytest.approx(y[0], rel=1e-11)

@@ -46,7 +46,7 @@ def test_points_are_typeset(language: str):
 
 
 @pytest.mark.parametrize(
-    ("problem", "told"),
+    ("problem", "message"),
     [
         (through(x - 1, path_constraints={"wall": x - 2}), "beside path_constraints"),
         (through(x - 1, control_set="ball"), 'beside control_set "ball"'),
@@ -60,6 +60,6 @@ def test_points_are_typeset(language: str):
         (through(x - 1, interior={"mark": x}), "write a name for each"),
     ],
 )
-def test_what_is_not_solved_or_not_sound_is_refused(problem: Problem, told: str):
-    with pytest.raises(DerivationError, match=told):
+def test_what_is_not_solved_or_not_sound_is_refused(problem: Problem, message: str):
+    with pytest.raises(DerivationError, match=message):
         derive(problem)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 OUTER = (0.01, 0.99)
-"""Quantiles by which it is told what lies far out."""
+"""Quantiles beyond which rows may lie far out."""
 
 MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
 COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)

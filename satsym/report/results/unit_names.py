@@ -20,7 +20,7 @@ COST = "cost"
 def time_unit(spec: ProblemSpec) -> str:
     """The unit of time as the model's units spell it; nothing where they do not agree on one.
 
-    That of parameters counts where no state and no control has any. Told from the words alone: asking pint costs more
+    That of parameters counts where no state and no control has any. Found by the words alone: asking pint costs more
     than solving.
     """
     found = (display.time_unit(v.unit for v in each) for each in ((*spec.states, *spec.controls), spec.parameters))
