@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from satsym.arrays import Array
 from satsym.solution import Solution
@@ -61,6 +60,8 @@ def ties(solution: Solution) -> int:
 
 def _tied(solution: Solution, node: int) -> bool:
     """Whether H has another minimiser at a node, one control being changed at a time."""
+    from scipy.optimize import minimize_scalar
+
     instance, model = solution.instance, solution.instance.model
     t, x, u, lam = solution.times[node], solution.x[:, node], solution.u[:, node], solution.lam[:, node]
     wide = 1.0 + 2.0 * float(np.abs(solution.u).max())
