@@ -52,9 +52,9 @@ def test_generated_modules_import_only_math_and_numpy(repository: Path) -> None:
     modules = sorted(repository.glob("generated/[!_]*.py"))
     assert modules
     for module in modules:
-        tree = ast.parse(module.read_text(encoding="utf-8"))
-        imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
-        imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+        nodes = list(ast.walk(ast.parse(module.read_text(encoding="utf-8"))))
+        imported = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+        imported |= {str(node.module) for node in nodes if isinstance(node, ast.ImportFrom)}
         assert imported <= {"__future__", "math", "numpy"}, module.name
 
 

@@ -17,6 +17,7 @@ from satsym import instance, kernels
 from satsym.cli.app import program
 from satsym.report.said import translations
 from satsym.report.texts import languages
+from tests.support.said import tree
 
 EXCEPT = re.compile(r"\((?:but|kecuali): ([^)]*)\)")
 
@@ -176,13 +177,14 @@ def test_titles_and_meanings_of_what_is_shipped_use_the_words_of_the_glossary(en
 def sources(repository: Path) -> dict[Path, ast.Module]:
     """All modules of satsym, by their paths in it."""
     top = repository / "satsym"
-    return {path.relative_to(top): ast.parse(path.read_text("utf-8")) for path in sorted(top.rglob("*.py"))}
+    return {path.relative_to(top): tree(path) for path in sorted(top.rglob("*.py"))}
 
 
-def messages(tree: ast.Module) -> Iterator[tuple[int, str]]:
+def messages(module: ast.Module) -> Iterator[tuple[int, str]]:
     """String literals of more than one word with their lines: no docstrings, holes of f-strings left out."""
-    silent = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
+    nodes = [node for node in ast.walk(module) if isinstance(node, ast.Expr | ast.JoinedStr | ast.Constant)]
+    silent = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    for node in nodes:
         if isinstance(node, ast.JoinedStr):
             parts = [part for part in node.values if isinstance(part, ast.Constant)]
             silent |= {id(part) for part in parts}
@@ -197,19 +199,19 @@ def test_messages_and_labels_use_the_words_of_the_glossary(
     keys = {path.partition(".")[2] for path, _ in leaves(texts(repository, "en"))}  # name a text, and are not read
     said = [
         (f"{path}:{line}", text)
-        for path, tree in sources.items()
+        for path, module in sources.items()
         if path.parts[0] not in ("auditing", "codegen")
-        for line, text in messages(tree)
+        for line, text in messages(module)
         if " " in text.strip() and text not in keys
     ]
     assert len(said) > 500
     assert complaints(said, english) == []
 
 
-def public_names(path: Path, tree: ast.Module) -> Iterator[str]:
+def public_names(path: Path, module: ast.Module) -> Iterator[str]:
     """The module, its constants, functions and classes, and their fields and methods; nothing that begins with _."""
     yield from path.with_suffix("").parts
-    waiting: list[ast.stmt] = list(tree.body)
+    waiting: list[ast.stmt] = list(module.body)
     while waiting:
         node = waiting.pop()
         found: list[str] = []
@@ -225,8 +227,8 @@ def public_names(path: Path, tree: ast.Module) -> Iterator[str]:
 
 def test_public_names_use_the_words_of_the_glossary(sources: dict[Path, ast.Module], english: list[Avoided]) -> None:
     # measurements are named by ledgers, in the words of the documents
-    kept = {path: tree for path, tree in sources.items() if path.parts[:2] != ("auditing", "measurements")}
-    names = {name for path, tree in kept.items() for name in public_names(path, tree) if name[0] != "_"}
+    kept = {path: module for path, module in sources.items() if path.parts[:2] != ("auditing", "measurements")}
+    names = {name for path, module in kept.items() for name in public_names(path, module) if name[0] != "_"}
     assert len(names) > 1000
     old = {name for name in names if any(each.words in apart(name) and each.used(apart(name)) for each in english)}
     assert sorted(old) == [], "these names use words to avoid"

@@ -15,9 +15,13 @@ HOLE = re.compile(r"<([a-z_]+)>")
 
 
 @cache
-def _trees() -> tuple[ast.Module, ...]:
-    own = [*SOURCE.rglob("*.py"), *(SOURCE.parent / "derivations").rglob("*.py")]
-    return tuple(ast.parse(path.read_text("utf-8")) for path in sorted(own))
+def tree(path: Path) -> ast.Module:
+    """The syntax of a file, parsed once for all tests of a process."""
+    return ast.parse(path.read_text("utf-8"))
+
+
+def _trees() -> Iterator[ast.Module]:
+    return (tree(path) for top in (SOURCE, SOURCE.parent / "derivations") for path in sorted(top.rglob("*.py")))
 
 
 def _literals(node: ast.expr) -> Iterator[str]:
@@ -33,8 +37,8 @@ def _literals(node: ast.expr) -> Iterator[str]:
 def looked_up() -> frozenset[str]:
     """Texts given to ``say``, ``each`` and ``counted`` of satsym.report.said, wherever these stand there themselves."""
     found = set[str]()
-    for tree in _trees():
-        nodes = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom | ast.Call)]
+    for module in _trees():
+        nodes = [node for node in ast.walk(module) if isinstance(node, ast.ImportFrom | ast.Call)]
         imported = {
             name.asname or name.name
             for node in nodes
@@ -60,8 +64,8 @@ def looked_up() -> frozenset[str]:
 def written() -> frozenset[str]:
     """Every text in the source, with ``<>`` where a formatted one has a value."""
     found = set[str]()
-    for tree in _trees():
-        for node in ast.walk(tree):
+    for module in _trees():
+        for node in ast.walk(module):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 found.add(anonymous(node.value))
             elif isinstance(node, ast.JoinedStr):
