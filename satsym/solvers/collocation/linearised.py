@@ -83,8 +83,15 @@ class Linearised:
         return self._blocks.solve(residual.by_interval[:, None]).reshape(shape)
 
 
-def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
+def linearise(
+    system: System, curve: Curve, residual: Residual, jacobian: Array, at_end: Array | None = None
+) -> Linearised:
     """Eliminate the stages, interval by interval and all intervals in one call, and factor what remains.
+
+    Parameters
+    ----------
+    at_end
+        The boundary residuals by the end, if others are meant than those of the problem.
 
     Raises
     ------
@@ -108,7 +115,8 @@ def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array)
     extra = solved[:, n + 1 :].reshape(count, e, s, n)
     by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
     ends = system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta)
-    matching = Matching(transition, by_theta, *ends, mixed=system.problem.homogeneous)
+    by_end = ends[0] if at_end is None else at_end
+    matching = Matching(transition, by_theta, by_end, ends[1], mixed=system.problem.homogeneous)
     return Linearised(system, blocks, matching, response, extra, residual, solved[:, n])
 
 

@@ -4,7 +4,9 @@ A curve of states and costates holds a control (through the control law) and mul
 on the canonical equations is a step of sequential quadratic programming. Hence steps are measured by an exact
 penalty function; where the second variation is not positive, the Newton step is no descent and the
 Gauss-Newton step is taken, whose quadratic programme is convex: the costates' own rates by the states are
-evaluated without costates. A second-order correction keeps the penalty from refusing good steps.
+evaluated without costates. Where costs themselves are concave and that step is no descent either, their second
+derivatives are left out in the directions in which they are. A second-order correction keeps the penalty from
+refusing good steps.
 (Nocedal and Wright, Numerical Optimization, chapter 18.)
 """
 
@@ -100,6 +102,7 @@ def minimise(
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
         at = _Merit(system, curve, cost, violated, penalty, linearised, step)
         found = _searched(at, within_domain(problem, curve, step), whole=close)
+        found = found or _convexly(at, residual, jacobian)
         if found is None:
             return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
         curve, residual, cost, violated = found.curve, found.residual, found.cost, found.violated
@@ -205,6 +208,33 @@ def _without_costates(system: System, curve: Curve, jacobian: Array) -> Array:
     stages[n:], nodes[n:] = 0.0, 0.0
     bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
     return bare
+
+
+def _convexly(at: _Merit, residual: Residual, jacobian: Array) -> _Trial | None:
+    """The curve after a Gauss-Newton step with costs that are made convex, if that step descends."""
+    system, curve, problem = at.system, at.curve, at.system.problem
+    n, slopes = problem.states, _without_costates(system, curve, jacobian)
+    slopes[n:, :n] = -_convex(-slopes[n:, :n].transpose(2, 0, 1)).transpose(1, 2, 0)
+    by_end = problem.boundary_slopes(curve.nodes[:, -1], curve.theta)[0].copy()
+    free = np.ix_(~problem.fixed, np.append(~problem.fixed, np.zeros(n, bool)))
+    by_end[:n][free] = -_convex(-by_end[:n][free][None])[0]
+    try:
+        linearised = linearise(system, curve, residual, slopes, by_end)
+    except np.linalg.LinAlgError:
+        return None
+    step = linearised.step(residual)
+    if not np.isfinite(step.size(curve.moved(step, 1.0))):
+        return None
+    penalty = _raised(at.penalty, _multipliers(curve, step, n, len(at.violated)))
+    convex = replace(at, linearised=linearised, step=step, penalty=penalty)
+    return _searched(convex, within_domain(problem, curve, step), whole=False)
+
+
+def _convex(hessians: Array) -> Array:
+    """Symmetric matrices of a stack, shape (M, n, n), without their negative eigenvalues."""
+    values, axes = np.linalg.eigh((hessians + hessians.transpose(0, 2, 1)) / 2.0)
+    found: Array = (axes * np.maximum(values, 0.0)[:, None, :]) @ axes.transpose(0, 2, 1)
+    return found
 
 
 def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:

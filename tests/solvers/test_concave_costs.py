@@ -1,0 +1,47 @@
+"""Costs that are concave in places: the least of several minima, by closed forms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from satsym.solvers import solve
+from satsym.status import Verdict
+from tests.support.models import build, k, q, scalar, w
+
+
+@pytest.mark.parametrize(("tilt", "start"), [(0.3, 0.1), (-0.2, -0.3), (0.9, 0.6)])
+def test_the_deeper_of_two_wells_at_the_end_is_found_from_beside_the_other(
+    tmp_path: Path, tilt: float, start: float
+) -> None:
+    """Speeds are constant: what is left is a polynomial in the final state."""
+    end = Polynomial([0.0, 1.0])
+    cost = (end - start) ** 2 / 2.0 + 5.0 * (end**2 - 1.0) ** 2 + tilt * end
+    least = min(cost(root.real) for root in cost.deriv().roots() if abs(root.imag) < 1e-9)
+    problem = scalar("two_wells_at_the_end", w, w**2 / 2, 5 * (q**2 - 1) ** 2 + k * q, "free")
+    text = f"[parameters]\nk = {tilt}\n[initial]\nq = {start}\n[time]\ntf = 1.0\n"
+    found = solve(build(tmp_path, problem, text))
+    assert found.objective == pytest.approx(least, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.parametrize("duration", [3.3, 4.0, 5.0])
+def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: Path, duration: float) -> None:
+    """From zero and back, rewarded for the square of the distance: at full speed, and on an arc of a cosine between."""
+    half = duration / 2.0
+    left = brentq(lambda s: np.tan(s) * (half - s) - 1.0, 1e-9, min(half, np.pi / 2.0) - 1e-9)
+    size, entry = 1.0 / np.sin(left), half - left
+    arc = quad(lambda s: (size * np.sin(s)) ** 2 - (size * np.cos(s)) ** 2, 0.0, left)[0]
+    cost = entry - entry**3 / 3.0 + arc  # half the integrand, and both halves of the time
+    problem = scalar("rewarded_for_distance", w, (w**2 - q**2) / 2, 0, "box")
+    text = f"[initial]\nq = 0\n[final]\nq = 0\n[time]\ntf = {duration}\n[control]\nw = [-1, 1]\n"
+    found = solve(build(tmp_path, problem, text))
+    assert found.objective == pytest.approx(cost, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
