@@ -9,11 +9,14 @@ looked at again in the answer.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet, Row
 from satsym.instance import Guess, Instance
+from satsym.kernels import Kernels
 from satsym.solution import Solution
 
 SPANNED, MOVED = 1e-9, 1e-9
@@ -101,7 +104,7 @@ def redundant(instance: Instance) -> Redundant | None:
     rng = np.random.default_rng(0)
     end = _end(instance, fixed, rng)
     with np.errstate(all="ignore"):
-        if not _spans_less(instance, end, rng):
+        if not _spans_less(instance, end):
             return None
         one = _still(instance, end, rng)
         other = None if one is None else _still(instance, end, rng)
@@ -133,26 +136,33 @@ def _controls(instance: Instance, rng: np.random.Generator, count: int) -> Array
     return np.asarray(instance.control_set.project(rng.normal(size=(len(instance.model.spec.controls), count))))
 
 
-def _spans_less(instance: Instance, end: Array, rng: np.random.Generator) -> bool:
+def _spans_less(instance: Instance, end: Array) -> bool:
     """Whether rates of change at the end and how they change along each other span less than all directions.
 
     Where they do not, no quantity is conserved, and nothing else needs to be looked at.
     """
-    model, p, t, n = instance.model, instance.parameters, _last(instance), len(end)
-    u = _controls(instance, rng, DRAWN).T.tolist()
-    rates = np.array([model.dynamics(t, end.tolist(), one, p) for one in u]).T
-    slopes = [np.array(model.jacobian_x(t, end.tolist(), one, p)).reshape(n, n) for one in u]
-    size = _sizes(instance, end)
-    moved = rates - rates[:, :1] if instance.tf is not None else rates
-    columns = [(column, np.abs(rates).max(axis=1)) for column in moved.T]
-    for i in range(DRAWN):
-        for j in range(i):
-            one, other = slopes[j] @ rates[:, i], slopes[i] @ rates[:, j]
-            columns.append(
-                (one - other, np.abs(slopes[j]) @ np.abs(rates[:, i]) + np.abs(slopes[i]) @ np.abs(rates[:, j]))
-            )
+    _, powers = np.frexp(_sizes(instance, end))
+    place = _last(instance), instance.tf is None, tuple(end.tolist()), tuple(powers.tolist())
+    return _spanning_less(instance.model, instance.parameters, instance.control_set, *place)
+
+
+@lru_cache(maxsize=8)
+def _spanning_less(
+    model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row, powers: tuple[int, ...]
+) -> bool:
+    """The same, known again where only the start differs: all that counts of sizes is their power of two."""
+    drawn = np.random.default_rng(0).normal(size=(len(model.spec.controls), DRAWN))
+    given = np.full(DRAWN, t), np.repeat(np.array(end)[:, None], DRAWN, axis=1), within.project(drawn), p
+    rates, slopes = model.dynamics_batch(*given), model.jacobian_x_batch(*given)
+    later, earlier = np.tril_indices(DRAWN, -1)
+    carried, terms = np.einsum("abj,bi->aij", slopes, rates), np.einsum("abj,bi->aij", np.abs(slopes), np.abs(rates))
+    moved = rates if free_time else rates - rates[:, :1]
+    columns = np.concatenate([moved, carried[:, later, earlier] - carried[:, earlier, later]], axis=1)
+    own = np.repeat(np.abs(rates).max(axis=1, keepdims=True), DRAWN, axis=1)
+    made_of = np.concatenate([own, terms[:, later, earlier] + terms[:, earlier, later]], axis=1)
+    size = np.ldexp(1.0, powers)[:, None]
     # what cancels but for rounding must not count: each column is relative to what it is made of
-    table = np.array([column / size / max(float((terms / size).max()), 1e-300) for column, terms in columns]).T
+    table = columns / size / np.maximum((made_of / size).max(axis=0), 1e-300)
     if not np.isfinite(table).all():
         return False
     values = np.linalg.svd(table, compute_uv=False)

@@ -67,27 +67,11 @@ class Rotation:
 
 def rotation(instance: Instance) -> Rotation | None:
     """The rotation that follows the motion at the initial state best; ``None`` where there is none."""
-    return _rotation(instance.model, instance.t0, instance.initial, instance.parameters)
-
-
-@lru_cache(maxsize=8)
-def _rotation(model: Kernels, t0: float, initial: Row, parameters: Row) -> Rotation | None:
-    """The same; it is asked for again with every duration."""
-    n, rng = len(initial), np.random.default_rng(0)
-    start = np.array(initial)
-    size = np.maximum(np.abs(start), np.abs(start).max() * 1e-3 + 1e-300)
-    x = start[:, None] + size.mean() * rng.uniform(-0.5, 0.5, (n, DRAWN * n))
-    rates, slopes = _motion(model, t0, parameters, x)
-    if not np.isfinite(rates).all() or not np.isfinite(slopes).all() or _linear(slopes):
+    model, start = instance.model, np.array(instance.initial)
+    found = _generators(model, instance.t0, _about(model, start), instance.parameters)
+    if found is None:
         return None
-    # One row a component of G f - f_x G x, one column an entry of G.
-    eye = np.eye(n)
-    rows = np.einsum("ia,bk->kiab", eye, rates) - np.einsum("iak,bk->kiab", slopes, x)
-    _, values, basis = np.linalg.svd(rows.reshape(-1, n * n))
-    found = basis[values <= NONE * values[0]].reshape(-1, n, n)
-    if not len(found):
-        return None
-    here, _ = _motion(model, t0, parameters, start[:, None])
+    here, _ = _motion(model, instance.t0, instance.parameters, start[:, None])
     weights = np.linalg.lstsq((found @ start).T, here[:, 0], rcond=1e-9)[0]
     matrix = np.tensordot(weights, found, 1)
     angular, axes = np.linalg.eig(matrix)
@@ -96,6 +80,32 @@ def _rotation(model: Kernels, t0: float, initial: Row, parameters: Row) -> Rotat
         return None
     multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > 1e-6 * fastest]).min())
     return Rotation(axes, 1j * multiples, np.linalg.inv(axes))
+
+
+def _about(model: Kernels, start: Array) -> Row:
+    """A place near a state that it shares with others: these maps are the same everywhere."""
+    grid = np.ldexp(0.25, np.frexp(np.abs(start).max())[1])
+    near = np.where(start > 0.0, np.ldexp(1.0, np.rint(np.log2(np.abs(start) + 1e-300)).astype(int)), start)
+    positive = np.array([state.positive for state in model.spec.states])
+    return tuple(np.where(positive, near, grid * np.rint(start / max(grid, 1e-300))).tolist())
+
+
+@lru_cache(maxsize=32)
+def _generators(model: Kernels, t0: float, about: Row, parameters: Row) -> Array | None:
+    """All maps G of a motion that is not linear, shape (k, n, n); ``None`` where there are none."""
+    n, start = len(about), np.array(about)
+    size = np.maximum(np.abs(start), np.abs(start).max() * 1e-3 + 1e-300)
+    x = start[:, None] + size.mean() * np.random.default_rng(0).uniform(-0.5, 0.5, (n, DRAWN * n))
+    rates, slopes = _motion(model, t0, parameters, x)
+    if not np.isfinite(rates).all() or not np.isfinite(slopes).all() or _linear(slopes):
+        return None
+    # One row a component of G f - f_x G x, one column an entry of G.
+    eye = np.eye(n)
+    rows = np.einsum("ia,bk->kiab", eye, rates) - np.einsum("iak,bk->kiab", slopes, x)
+    # There are many more equations than entries: their triangular factor has the same null space.
+    _, values, basis = np.linalg.svd(np.linalg.qr(rows.reshape(-1, n * n), mode="r"))
+    found = basis[values <= NONE * values[0]].reshape(-1, n, n)
+    return found if len(found) else None
 
 
 def turns(around: Rotation, states: Array) -> float:

@@ -63,7 +63,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     attempts: list[tuple[Origin, Callable[[], Attempt | None]]] = [
         (
             Origin.GUESS if guess else Origin.STRAIGHT_LINE,
-            lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_path(free, path, limits),
+            lambda: straight_through(free, line, limits) or from_path(free, path, limits),
         ),
         (Origin.PROBLEMS, lambda: along_problems(free, geometric, limits)),
         (Origin.DRAWN, lambda: _drawn(free, limits)),

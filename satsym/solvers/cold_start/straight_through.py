@@ -1,7 +1,8 @@
 """The quick way: Newton's method from the straight line between the ends, kept if it walks straight through.
 
-No step may leave the domain, each must be less than half the one before, few may be needed; the mesh must still
-resolve the motion and the second variation must be positive. Everything else is left to slower ways.
+No step may leave the domain, each must be shorter than the one before, few may be needed; on a mesh that resolves the
+motion, which is laid anew where it does not, the second variation must be positive. Everything else is left to slower
+ways.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ import numpy as np
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.newton import within_domain
+from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
@@ -23,21 +26,29 @@ NEAR = 3e-2
 FEW = 6
 """Corrections from the straight line that still count as straight through."""
 
+ROUGH, FEWER = 2, 3
+"""First corrections, which are far off whatever the stages, and the stages that they are given."""
 
-def straight_through(start: Curve, system: System, limits: Limits) -> Attempt | None:
+SHORTER = 0.8
+"""Share of the correction before that the next one may have. The first raises the costates from zero to their size,
+whatever that is, so that the second is not to be compared with it closely."""
+
+
+def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt | None:
     """The minimum to which Newton's method leads at once.
 
     Parameters
     ----------
+    problem
+        Without bounds.
     start
         A guess, mostly without costates.
-    system
-        Collocation equations of a problem without bounds, on the guess's mesh and with its stages.
     """
-    problem, curve = system.problem, start
-    before, steps, cost = float("inf"), 0, 0.0
-    while steps < FEW:
-        steps += 1
+    curve, before = start.with_stages(FEWER), float("inf")
+    system, cost = System(problem, start.mesh, FEWER), 0.0
+    for steps in range(1, FEW + 1):
+        if steps == ROUGH + 1:
+            curve, system = curve.with_stages(STAGES), System(problem, curve.mesh, STAGES)
         residual, jacobian = system.residual(curve), system.jacobian(curve)
         try:
             linearised = linearise(system, curve, residual, jacobian)
@@ -46,21 +57,19 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Attempt | 
             size = step.size(moved)
             if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
-            curve = moved
+            curve, before = moved, SHORTER * size
             if limits.watch or size < NEAR:
                 cost = system.cost(curve)
                 limits.tell(cost * problem.scale.cost, size)
-            if size < NEAR:
-                break
-            before = size / 2.0
+            if not size < NEAR or steps <= ROUGH:
+                continue
+            if system.largest_turn(curve, jacobian) > meshes.COARSEST:
+                curve = curve.on(meshes.laid(problem, curve), STAGES)
+                system, before = System(problem, curve.mesh, STAGES), float("inf")
+            elif negative_directions(problem, curve, linearised.matching):
+                return None
+            else:
+                return Attempt(curve, Reason.MINIMUM, steps, cost, hard=False, linearised=linearised)
         except np.linalg.LinAlgError:
             return None
-    else:
-        return None
-    try:
-        minimum = negative_directions(problem, curve, linearised.matching) == 0
-    except np.linalg.LinAlgError:
-        return None
-    if not minimum or system.largest_turn(curve, jacobian) > meshes.COARSEST:
-        return None
-    return Attempt(curve, Reason.MINIMUM, steps, cost, hard=False, linearised=linearised)
+    return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -61,8 +62,10 @@ class Curve:
         tau = np.asarray(tau, dtype=float)
         interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
         table = lagrange(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
-        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2).transpose(1, 0, 2)
-        values: Array = (known[interval] @ table[:, :, None])[..., 0].T
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
+        values, begun = np.empty((len(self.nodes), len(tau))), np.flatnonzero(np.diff(interval, prepend=-1)).tolist()
+        for first, last in pairwise([*begun, len(tau)]):  # times in one interval after the other
+            values[:, first:last] = known[:, interval[first]] @ table[first:last].T
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:

@@ -20,8 +20,8 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
 
-POINTS = 16
-"""Of each interval."""
+POINTS, MORE = 16, 24
+"""Of each interval, at first and where polynomials through so many leave out too little for a finer mesh."""
 
 MOST = 6
 CONTRACTION = 0.1
@@ -57,7 +57,7 @@ class Corrected:
     """The latter interval by interval, shape (N,)."""
 
 
-def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> Corrected | None:
+def correct_defects(curve: Curve, linearised: Linearised, tolerance: float, points: int = POINTS) -> Corrected | None:
     """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
 
     Parameters
@@ -66,17 +66,19 @@ def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> C
         The linearised equations there or nearby, on the same mesh with the same stages.
     tolerance
         Largest error.
+    points
+        Of each interval.
 
     Returns
     -------
-    Sharpened or None
+    Corrected or None
         ``None`` where corrections are not finite or do not shrink.
     """
-    system = System(linearised.system.problem, curve.mesh, POINTS)
-    onto = interpolation(curve.order, POINTS)
+    system = System(linearised.system.problem, curve.mesh, points)
+    onto = interpolation(linearised.system.order, points)
     fundamental = linearised.fundamental(onto)
     inverse = _inverted(fundamental)
-    fine, before = curve.with_stages(POINTS), float("inf")
+    fine, before = curve.with_stages(points), float("inf")
     small = _faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
     for _ in range(MOST):
         step = _correction(system, fine, linearised, onto, fundamental, inverse)
@@ -95,7 +97,11 @@ def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> C
         if size < max(CONTRACTION * tolerance, ROUNDING):
             break
     omitted = left_out(fine, small)
-    return Corrected(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+    found = Corrected(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+    # What is left out falls by the same factor with every point.
+    if points < MORE and found.error > tolerance > found.error ** (MORE / points):
+        return correct_defects(fine, linearised, tolerance, MORE) or found
+    return found
 
 
 def resolved(problem: TwoPoint, curve: Curve, rough: float) -> Corrected | None:

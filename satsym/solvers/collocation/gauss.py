@@ -52,12 +52,13 @@ def lagrange(stages: int, places: Array) -> Array:
     By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
     """
     own = scheme(stages)
-    off = places[:, None] - np.concatenate([[0.0], own.nodes])
-    there = off == 0.0
-    table: Array = own.barycentric / np.where(there, 1.0, off)
-    known = there.any(axis=1)
-    table[known] = there[known]
-    table /= table.sum(axis=1, keepdims=True)
+    table: Array = places[:, None] - np.concatenate([[0.0], own.nodes])
+    at, node = np.nonzero(table == 0.0)
+    table[at, node] = 1.0
+    np.divide(own.barycentric, table, out=table)
+    table[at] = 0.0
+    table[at, node] = 1.0
+    table /= table @ np.ones((stages + 1, 1))
     return table
 
 

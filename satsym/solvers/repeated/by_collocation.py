@@ -60,7 +60,7 @@ class ByCollocation:
             return None
         problem, mesh = replace(self._good[0], instance=case), self._good[1].mesh
         free = problem.relaxed(float("inf"))
-        found = straight_through(paths.on(free, paths.first(free), mesh), System(free, mesh, STAGES), limits)
+        found = straight_through(free, paths.on(free, paths.first(free), mesh), limits)
         return self._sound(problem, found, limits) if found else None
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:

@@ -18,10 +18,8 @@ from satsym.solvers.cold_start.paths import first
 from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.following import follow
-from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
 
@@ -110,7 +108,7 @@ def _least_effort(instance: Instance, duration: float, limits: Limits) -> Smooth
     fixed = replace(regularised(instance, 1.0, 0.0), tf=instance.t0 + duration, tf_guess=None)
     problem = two_point(fixed, duration).relaxed(float("inf"))
     line = as_curve(problem, first(problem))
-    found = straight_through(line, System(problem, line.mesh, STAGES), limits)
+    found = straight_through(problem, line, limits)
     return None if found is None else Smoothed(problem, found.curve, _normalised(problem, found.curve))
 
 
