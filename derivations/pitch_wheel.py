@@ -187,6 +187,8 @@ pitch_scaled_time = Problem(
 
 TRANSLATIONS = {
     "id": {
+        "body": "benda",
+        "wheel": "roda",
         "Pitch axis of a satellite with a reaction wheel": "Sumbu angguk satelit dengan roda reaksi",
         "Pitch axis under a proportional and differential law, critically damped": (
             "Sumbu angguk dengan hukum proporsional-diferensial, teredam kritis"

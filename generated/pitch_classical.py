@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: a041fae3f9cd392109d3297e5d2c0b0e252c4b8235a40827cb0a84d1decc5af5
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: 3a1164827e4f3d9691531b22b19bb99d76cc5a0ac2b3df8aef7bdc4b823a01f7
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: a2f74abbee7b54fe6571bc927732a2cb40b1fead43e2f602a32e7ff92e2c6588
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: c3875127fc9ca9ca4c8101c78c41053c4ac34de6783a7a4e02289262bb074938
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: 1323f496e70e4b9e99b2b7a936973d9a10a081230c30fc28fd3f48d5d01e6283
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: a1fa2e3cd519c24f8399d365936d8a59e90d90cebd2d7a3f50670fa7c294ce84
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: 5b8ebbfe87e2d69906409a5c8c9e9e01243a5a434da6df1a69ba006daba402cb
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: 18abb6ac0ea06d423083c037b16bca0120f3fd5baff528708f8cf3e8fd7ad73e
 """
 
 import math

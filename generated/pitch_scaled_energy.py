@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: 8223e873849ee4572f6719662ed393d1c32e9418b6e91e555e7771c165662559
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: 08b3984be7f0d6f39c5c6267f78cc9f5094d429ba21c00ba8a8a118dc8dd1d1b
 """
 
 import math

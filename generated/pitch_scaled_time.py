@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: 5519ff6daa0afe1b1b17eb2b64df6a85f814433a76ebef0386ad569cf8379b2c
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: 9091203b3e77f4545fa194ea4eafd12fa5deaae6c95f929a16ce21f5bdc10437
 """
 
 import math

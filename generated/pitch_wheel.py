@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
-Digest: c12db1393229e05d286ab8a7d86589b60d179fba70b3274c16ccb25f141f0a6b
+Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
+Digest: e87fbb04693ee8ed45d83cf4e1c23ec6f1ffa4eff841dd786433d835c8cf169c
 """
 
 import math

@@ -203,11 +203,11 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
             notation[n.given(state).name] = rf"g_{{{own}}}"
             notation[n.on_reference(state).name] = rf"\rho_{{{own}}}"
             notation[n.target(state).name] = rf"\bar{{{own}}}"
-            notation[n.residual_of(state).name] = rf"B_{{{own}}}"
-            notation[n.residual_of(n.costate_of(state)).name] = rf"B_{{\lambda_{{{own}}}}}"
+            notation[n.residual_of(state).name] = rf"\mathcal{{B}}_{{{own}}}"
+            notation[n.residual_of(n.costate_of(state)).name] = rf"\mathcal{{B}}_{{\lambda_{{{own}}}}}"
     for k, multiplier in enumerate(n.multipliers(problem) if problem else (), start=1):
         notation[multiplier.name] = rf"\nu_{{{k}}}"
-        notation[n.residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
+        notation[n.residual_of(multiplier).name] = rf"\mathcal{{B}}_{{\psi_{{{k}}}}}"
     notation |= switching_notation.names(problem) if problem else {}
     if problem:
         notation |= principle_notation.product_names(problem) | path_notation.names(problem)

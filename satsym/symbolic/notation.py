@@ -59,7 +59,7 @@ FIXED = {
     ECCENTRICITY_ALONG: r"\mathbf{e} \cdot \mathbf{r}",
     RUNNING_COST: "L",
     TERMINAL_COST: "S",
-    RESIDUAL_TIME: "B_{t_f}",
+    RESIDUAL_TIME: r"\mathcal{B}_{t_f}",
     ENERGY: r"\mathcal{E}",
     ANGULAR_MOMENTUM: r"\ell",
     JACOBI_INTEGRAL: r"\mathcal{J}",

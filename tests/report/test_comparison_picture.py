@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 import satsym
+from satsym import instance
 from satsym.analysis.comparison import case_of
 from satsym.report.plots import comparison, style
+from satsym.report.results.unit_names import times
+from satsym.report.terminal.comparison import unit_of
+
+
+def test_units_of_what_is_summed_up_over_time_are_shortened() -> None:
+    assert times("km/s**2", "s") == "km/s"
+    assert times("N*m", "N*m", "s") == "N**2*m**2*s"
+    assert unit_of([case_of(instance.load("lapan-classical"))], "impulse") == "N*m*s"
 
 
 @pytest.mark.parametrize(("start", "hidden"), [(1.0005, True), (1.5, False)])

@@ -240,6 +240,36 @@ def test_rendering_is_byte_identical_for_every_hash_seed(file: str) -> None:
     assert len(texts) == 1
 
 
+def test_no_page_of_the_table_has_one_quantity_of_a_group_alone() -> None:
+    table = render(shared.shipped("polar_orbit")).partition(r"\endfoot")[2].partition(r"\end{longtable}")[0]
+    groups = [part.strip().splitlines() for part in table.split(r"\addlinespace")]
+    ends = [[re.search(r"\\\\(\*?)$", line)[1] for line in lines] for lines in groups]
+    assert ends[0] == ["*", "*", "", "*", ""]
+    assert all(each == ["*", ""] for each in ends if len(each) == 2)
+
+
+def test_works_are_listed_in_the_order_in_which_they_are_cited() -> None:
+    text = render(shared.shipped("polar_orbit"))
+    cited = [key for keys in re.findall(r"\\cite\{([^}]*)\}", text) for key in keys.split(",")]
+    assert re.findall(r"\\bibitem\{([^}]*)\}", text) == list(dict.fromkeys(cited)) != sorted(cited)
+
+
+def test_what_bounds_of_controls_leave_as_it_is_is_shown_once() -> None:
+    derivation = shared.shipped("inspection")
+    text, step = render(derivation), derivation.step("mixed_costates")
+    shown = re.findall(r"\\label\{inspection:mixed_costates\.(\w+)\}", text)
+    states = len(derivation.model.states)
+    assert shown == [e.name for e in step.equations][:states]
+    assert len(step.equations) == 4 * states
+
+
+def test_bodies_are_named_in_the_language_of_the_document() -> None:
+    text = render(shared.shipped("pitch_wheel"), "id")
+    assert r"\mathrm{roda}" in text
+    assert r"\mathrm{wheel}" not in text
+    assert r"\mathrm{wheel}" in render(shared.shipped("pitch_wheel"))
+
+
 def test_measured_noise_is_not_printed() -> None:
     derivation = derived("double_integrator")
     noisy = tuple(replace(s, checks=tuple(replace(c, error=c.error * 1.7) for c in s.checks)) for s in derivation.steps)
@@ -254,6 +284,7 @@ def test_what_people_write_is_escaped() -> None:
     assert tex.escape("é ö ß ž") == "é ö ß ž"
     assert tex.escape("α Ω Ο") == r"\ensuremath{\alpha} \ensuremath{\Omega} \texttt{U+039F}"
     assert tex.escape("日\n\t\x07x\x00") == r"\texttt{U+65E5} x"
+    assert tex.escape("a pole at -E, well-known") == r"a pole at \ensuremath{-}E, well-known"
     assert tex.escape("--- – “x”") == r"-{}-{}- \textendash{} ``x''"
 
 

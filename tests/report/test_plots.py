@@ -20,7 +20,7 @@ from satsym import units
 from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels, load
 from satsym.report import display
-from satsym.report.look import Look
+from satsym.report.look import SIZES, Look
 from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
@@ -265,6 +265,21 @@ def test_what_a_failed_run_left_behind_is_drawn_as_far_as_it_goes(x: np.ndarray)
         assert page is not None
         assert "non-finite" in dict(page_texts(page))
         assert style.rendered(page, "png").startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_title_and_facts_of_an_overview_are_whole_at_any_size(size: str) -> None:
+    from satsym.report.plots import pages
+
+    title = "As high as 0.4 of the mass as fuel takes a rocket whose dynamic pressure is bounded"
+    found = solution(dataclasses.replace(case(model(2, 1)), title=title))
+    with style.applied(Look(size=size)):
+        page = pages.overview(Scene.of(found))
+        assert page is not None
+        written = [" ".join(text.split()) for text, _ in page_texts(page)]
+    assert title in written
+    (facts,) = (text for text in written if text.startswith("model "))
+    assert all(fact in facts for fact in ("iteration", "$J$", "$t_f$"))
 
 
 def test_a_failed_run_gives_all_pictures_if_it_had_a_trajectory(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ objects, and carries its address as its label.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
@@ -21,6 +22,9 @@ from satsym.symbolic.model import translated
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
+
+_NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*(?=\})")
+"""At the foot of a symbol: what the model calls a part of it."""
 
 
 def render(derivation: Derivation, language: str = "en", standalone: bool = True) -> str:
@@ -51,6 +55,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     texts = in_language(derivation, language)
     composer, name = _Composer(derivation, texts), tex.label(derivation.name)
     body = "\n\n".join(composer.paragraphs())
+    body = _NAME.sub(lambda found: texts.phrase(found[0]), body)
     body, works = cited(body, name)
     source = f"% Written by satsym from the derivation of {name}. Do not edit.\n"
     macros, end = preamble.macros(name, texts), composer.checks()

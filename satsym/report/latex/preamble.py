@@ -27,6 +27,7 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt plus 2pt}
 \setlength{\emergencystretch}{5em}\tolerance=2000 \hbadness=3000
+\AtBeginDocument{\abovedisplayshortskip=6pt plus 3pt}
 \widowpenalty=10000 \clubpenalty=10000 \displaywidowpenalty=10000
 """
 
@@ -48,10 +49,11 @@ MACROS = r"""\makeatletter
 \def\satsymchecked#1#2{\par\hangindent 2.2em\hangafter1\noindent\refstepcounter{satsymcheck}\label{#1:checks}%
   \hbox to 2.2em{\ref{#1}\hfil}#2}
 % {back}{labels}: labels for things that share the number of an equation, counted back from the last one
-\def\satsymalso#1#2{\begingroup\addtocounter{equation}{-#1}%
+\def\satsymalso#1#2{\par\skip@\lastskip\vskip-\skip@ % the space below stays the last thing
+  \begingroup\addtocounter{equation}{-#1}%
   \protected@edef\@currentlabel{\theequation}\def\@currentHref{equation.\csname theHequation\endcsname}%
   \protected@edef\@currentHref{\@currentHref}%
-  \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup}
+  \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup\vskip\skip@}
 % keeps a list on one page
 \def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
 \makeatother

@@ -22,15 +22,15 @@ WORKS = {
     "hughes": r"P.~C. Hughes, \emph{Spacecraft Attitude Dynamics}, Wiley, New York, 1986.",
     "kane": r"T.~R. Kane and D.~A. Levinson, \emph{Dynamics: Theory and Applications}, McGraw-Hill, New York, 1985.",
 }
-"""Key -> what is printed, in the order in which they are listed."""
+"""Key -> what is printed."""
 
 _CITED = re.compile(r"\\cite\{([^}]*)\}")
 
 
 def cited(body: str, name: str) -> tuple[str, str]:
-    """The body with keys that are those of its document alone, and the list of what it cites."""
-    keys = {key for keys in _CITED.findall(body) for key in keys.split(",")}
-    items = [rf"\bibitem{{{name}:{key}}} {work}" for key, work in WORKS.items() if key in keys]
+    """The body with keys that are those of its document alone, and the list of what it cites, in that order."""
+    keys = dict.fromkeys(key for keys in _CITED.findall(body) for key in keys.split(","))
+    items = [rf"\bibitem{{{name}:{key}}} {WORKS[key]}" for key in keys]
     own = _CITED.sub(lambda m: rf"\cite{{{','.join(f'{name}:{key}' for key in m[1].split(','))}}}", body)
     listed = "\n".join([r"\begin{thebibliography}{9}", *items, r"\end{thebibliography}"])
     return own, listed if items else ""

@@ -181,7 +181,7 @@ def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 
 
 def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
-    """All quantities in one table that may run over several pages."""
+    """All quantities in one table that may run over several pages, none of which has one of a group alone."""
     point = texts.get("words", "point")
     heads = [texts.get("words", key) for key in ("symbol", "name", "unit", "default", "meaning")]
     lines = [r"\toprule", " & ".join(heads) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot"]
@@ -189,7 +189,7 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
         if variables:
             lines += [r"\addlinespace"] if place else []
             lines.append(rf"\multicolumn{{5}}{{@{{}}l}}{{\textit{{{texts.get('words', group)}}}}} \\*")
-        for v in variables:
+        for k, v in enumerate(variables):
             cells = (
                 f"${v.latex}$",
                 tex.name(v.symbol),
@@ -197,7 +197,8 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
                 tex.number(v.default, point),
                 tex.escape(texts.phrase(v.meaning)),
             )
-            lines.append(" & ".join(cells) + r" \\")
+            together = "*" if k < len(variables) - 1 and k in (0, len(variables) - 2) else ""
+            lines.append(f"{' & '.join(cells)} \\\\{together}")
     body = "\n".join(lines)
     columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.42\linewidth}@{}"
     return f"\\begin{{longtable}}{{{columns}}}\n{body}\n\\end{{longtable}}"

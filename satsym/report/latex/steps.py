@@ -53,7 +53,19 @@ def shown(context: Context, step: Step) -> Shown:
 def _as_they_stand(context: Context, step: Step) -> Shown:
     if any(e.rhs.is_Matrix for e in step.equations):
         return _with_whole_matrices(context, step)
-    return _display([row_of(context, step, e) for e in step.equations])
+    return _once([row_of(context, step, e) for e in step.equations])
+
+
+def _once(rows: Sequence[Row]) -> Shown:
+    """What several of them say alike is shown the first time, and has its number for all of them."""
+    first: dict[tuple[object, ...], Row] = {}
+    same = [(row, first.setdefault((row.left, row.right), row)) for row in rows]
+    shown, places = list(first.values()), {row.address: k for k, row in enumerate(reversed(first.values()))}
+    found = _display(shown)
+    also = [
+        rf"\satsymalso{{{places[old.address]}}}{{{tex.label(row.address)}}}%" for row, old in same if row is not old
+    ]
+    return replace(found, body="\n".join([found.body, *also]))
 
 
 def _with_whole_matrices(context: Context, step: Step) -> Shown:

@@ -50,8 +50,8 @@ _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?
 def escape(text: str) -> str:
     """Any text, so that LaTeX prints it and nothing more; what its fonts lack appears by its code point."""
     escaped = "".join(map(_character, unicodedata.normalize("NFC", " ".join(text.split()))))
-    # hyphens stay hyphens: TeX would join them to a dash
-    return re.sub("-(?=-)", "-{}", escaped)
+    # hyphens stay hyphens: TeX would join them to a dash; before a name or number alone they are signs
+    return re.sub(r"(?<=\s)-(?=\w)", r"\\ensuremath{-}", re.sub("-(?=-)", "-{}", escaped))
 
 
 def bookmark(text: str) -> str:

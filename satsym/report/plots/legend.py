@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.plots import style
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.series import Series
+from satsym.report.plots.series import PASSED, SWITCHED, Series
 from satsym.report.said import say
 
 if TYPE_CHECKING:
@@ -43,7 +43,17 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if any(q.active is not None and q.active.any() for q in quantities):
         found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), say("saturated")))
+    found += [(line(color=shade, **style.SWITCHING), text) for shade, text in _marked(quantities, colour)]
     return found
+
+
+def _marked(quantities: Iterable[Series], colour: str) -> list[tuple[str, str]]:
+    """What the lines across mean, which have the colours of their curves."""
+    meant = {q.said for q in quantities if q.switching}
+    return [
+        *([(style.STATE, say("point on the way"))] if PASSED in meant else []),
+        *([(colour, say("switching time"))] if SWITCHED in meant else []),
+    ]
 
 
 def below(page: Figure, entries: list[Entry]) -> None:

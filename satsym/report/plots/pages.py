@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.display import labelled, number, shortened, unit_text
+from satsym.report.display import labelled, number, unit_text
 from satsym.report.plots import legend, series, style
 from satsym.report.plots.curves import clean
 from satsym.report.plots.orbits import scenes as space
@@ -17,6 +19,7 @@ from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
 from satsym.report.said import counted, decimal, message, say
 from satsym.solution import Solution
+from satsym.status import Status
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,8 +107,9 @@ def overview(scene: Scene) -> Figure | None:
     page = style.figure(style.WIDTH, height)
     right: Figure | SubFigure = page
     if style.with_titles() or not scene.result.status.answered:
-        head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
-        _heading(page, head, scene)
+        heading = _Heading.of(page, scene)
+        head, right = _split(page, (2, 1), height_ratios=[heading.height, height - heading.height])
+        heading.write(head, scene.result.status)
     if shown is not None:
         apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
         left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
@@ -130,31 +134,38 @@ def _space(part: SubFigure, shown: space.Orbit) -> None:
     space.from_reference(below, shown)
 
 
-def _heading(page: Figure, part: SubFigure, scene: Scene) -> None:
-    """Title of the instance, and the facts of the result below it."""
-    result = scene.result
-    fit = page.get_figwidth() / style.sheet().letters / style.WIDTH
-    name = shortened(scene.title, int(80 * fit))
-    look: dict[str, Any] = {"ha": "left", "va": "center", "x": 0.012}
-    if style.with_titles():
-        part.text(y=0.7, s=name, fontsize=style.points(14.0), fontweight="bold", parse_math=False, **look)
-    part.text(
-        y=0.24,
-        s=shortened("     ".join(_facts(scene)), int(130 * fit)),
-        fontsize=style.points(10.5),
-        color=style.SOFT,
-        **look,
-    )
-    if not result.status.answered:
-        part.text(
-            x=0.988,
-            y=0.7,
-            s=message(result.status.value),
-            ha="right",
-            va="center",
-            color=style.ALARM,
-            fontweight="bold",
-        )
+@dataclass(frozen=True)
+class _Heading:
+    """Title of the instance, and below it the facts of the result, on as many lines as the page needs."""
+
+    title: str
+    facts: str
+
+    @classmethod
+    def of(cls, page: Figure, scene: Scene) -> _Heading:
+        fit = page.get_figwidth() / style.sheet().letters / style.WIDTH
+        title = textwrap.fill(scene.title, int(86 * fit), max_lines=3, placeholder="\N{HORIZONTAL ELLIPSIS}")
+        first, *others = _facts(scene)
+        facts = [first]
+        for fact in others:
+            longer = f"{facts[-1]}     {fact}"
+            facts[-1:] = [longer] if len(longer) <= 130 * fit else [facts[-1], fact]
+        return cls(title if style.with_titles() else "", "\n".join(facts))
+
+    @property
+    def height(self) -> float:
+        """In inches on a screen."""
+        return 0.75 + 0.3 * (self.title.count("\n") + self.facts.count("\n"))
+
+    def write(self, part: SubFigure, status: Status) -> None:
+        """Put it on its part of a page, with the status of what is no answer."""
+        edge = 0.12 / self.height
+        bold: dict[str, Any] = {"fontweight": "bold"}
+        part.text(0.012, 1.0 - edge, self.title, va="top", fontsize=style.points(14.0), parse_math=False, **bold)
+        part.text(0.012, edge, self.facts, va="bottom", fontsize=style.points(10.5), color=style.SOFT)
+        if not status.answered:
+            said = message(status.value)
+            part.text(0.988, 1.0 - edge, said, ha="right", va="top", color=style.ALARM, **bold)
 
 
 def _facts(scene: Scene) -> list[str]:

@@ -22,6 +22,10 @@ ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
 
 
+SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
+"""What is said of times of a quantity, in English."""
+
+
 @dataclass(frozen=True, eq=False)
 class Series:
     """One quantity against time."""
@@ -48,7 +52,7 @@ class Series:
     """Nodes at which it is on a bound."""
     switching: tuple[float, ...] = ()
     """Times at which it meets or leaves a bound, as in the scene."""
-    said: str = "switching at <times>"
+    said: str = SWITCHED
     """What is said of these, in English."""
     size: float = 0.0
     """What counts as large for it, where its values may be nothing but rounding errors."""
@@ -78,7 +82,7 @@ def states(scene: Scene) -> list[Series]:
             target=target(scene, i),
             angle=v.kind == "angle",
             switching=passed,
-            said="points passed at <times>",
+            said=PASSED,
         )
         for i, v in enumerate(scene.spec.states)
     ]

@@ -49,9 +49,14 @@ def of_regulator(spec: ProblemSpec, inputs: Collection[str], relative: bool) -> 
         return time
     if len(shared) > 1:
         return COST
-    total = Counter(expressions.factors(time))
-    for _ in range(2):
-        total.update(expressions.factors(*shared))
+    return times(time, *2 * [*shared])
+
+
+def times(*units: str) -> str:
+    """The product of units, shortened."""
+    total = Counter[str]()
+    for unit in units:
+        total.update(expressions.factors(unit))
     return expressions.expression(total)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.objects import file_of, head, plain
-from satsym.report.results.unit_names import units
+from satsym.report.results.unit_names import times, units
 from satsym.report.said import each, message, say
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table, wrapped
@@ -110,5 +110,6 @@ def unit_of(cases: Sequence[Case], key: str) -> str:
         spec = case.instance.model.spec
         for v in (*spec.states, *spec.quantities, *spec.controls):
             if v.symbol == name and v.unit != "1":
-                return {"total": f"{v.unit}*s", "effort": f"({v.unit})**2*s", "energy": "J"}.get(kind, v.unit)
-    return f"{cases[0].instance.model.spec.controls[0].unit}*s" if key == "impulse" else ""
+                known = {"total": times(v.unit, "s"), "effort": times(v.unit, v.unit, "s"), "energy": "J"}
+                return known.get(kind, v.unit)
+    return times(cases[0].instance.model.spec.controls[0].unit, "s") if key == "impulse" else ""

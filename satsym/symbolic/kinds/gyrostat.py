@@ -131,11 +131,10 @@ class Gyrostat(Model):
         """Bodies that turn about one axis, and the torques on them."""
         bodies, torques = [], []
         for name, (inertia, spin) in self.bodies.items():
-            label = rf"\mathrm{{{name}}}"
-            bodies.append(Line("bodies", f"I_{{{label}}}", inertia, f"inertia.{name}"))
-            bodies.append(Line("bodies", rf"\omega_{{{label}}}", spin, f"rate.{name}"))
+            bodies.append(Line("bodies", "I", inertia, f"inertia.{name}", name))
+            bodies.append(Line("bodies", r"\omega", spin, f"rate.{name}", name))
             if name in self.torques:
-                torques.append(Line("torques", f"T_{{{label}}}", self.torques[name], f"torque.{name}"))
+                torques.append(Line("torques", "T", self.torques[name], f"torque.{name}", name))
         return (Paragraph("bodies", lines=(*bodies, *torques)),)
 
 

@@ -101,11 +101,15 @@ def weights(model: Model) -> dict[str, str]:
     return notation
 
 
+CONTROLLABLE, OBSERVABLE = r"\mathcal{C}", r"\mathcal{O}"
+"""The matrices whose columns and rows span what inputs reach and outputs show; C and R are others."""
+
+
 def _of_ports(model: Model) -> dict[str, str]:
-    notation = {"controllability": "R", "observability": "O"}
+    notation = {"controllability": CONTROLLABLE, "observability": OBSERVABLE}
     for kind, letter, ports in (
-        ("controllability", "R", model.controls),
-        ("observability", "O", tuple(o.variable for o in model.outputs)),
+        ("controllability", CONTROLLABLE, model.controls),
+        ("observability", OBSERVABLE, tuple(o.variable for o in model.outputs)),
     ):
         for port in (None, *ports):
             notation |= _of_port(kind, letter, port)
