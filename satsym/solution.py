@@ -251,7 +251,7 @@ class Simulation:
     invariants
         By name: of the motion without control, and balances that hold under every control.
     metrics
-        Numbers that describe the flight, by name.
+        Numbers that describe the motion, by name.
     """
 
     instance: Instance

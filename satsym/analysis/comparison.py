@@ -1,4 +1,4 @@
-"""Several ways to do the same, each flown or solved as its instance says, and described by the same numbers."""
+"""Several ways to do the same, each simulated or solved as its instance says, and described by the same numbers."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Case:
 
 
 def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lambda name: None) -> list[Case]:
-    """Fly or solve each instance.
+    """Simulate or solve each instance.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: Accurate) -> Extremal:
-    """Find an extremal of low order without bounds from nothing, its duration where that is free, and make it accurate.
+    """Find an extremal of low order without bounds, its duration where that is free, and make it accurate.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Motion without control is Kepler's: simulated flights against the closed-form solution, for every conic."""
+"""Motion without control is Kepler's: simulations against the closed-form solution, for every conic."""
 
 from __future__ import annotations
 
@@ -35,29 +35,29 @@ def of_orbit(start: State, tf: float, mu: float = 1.0, t0: float = 0.0, steps: i
     return replace(base, initial=start, t0=t0, tf=tf)
 
 
-def exact(flight: Simulation, mu: float) -> np.ndarray:
-    start, t0 = flight.instance.initial, flight.instance.t0
-    return np.transpose([propagate(mu, start, t - t0) for t in flight.times])
+def exact(simulation: Simulation, mu: float) -> np.ndarray:
+    start, t0 = simulation.instance.initial, simulation.instance.t0
+    return np.transpose([propagate(mu, start, t - t0) for t in simulation.times])
 
 
-def error(flight: Simulation, mu: float) -> float:
+def error(simulation: Simulation, mu: float) -> float:
     """Largest error of each state, relative to its size."""
-    known = exact(flight, mu)
-    return float((np.abs(flight.x - known).max(axis=1) / np.abs(known).max(axis=1)).max())
+    known = exact(simulation, mu)
+    return float((np.abs(simulation.x - known).max(axis=1) / np.abs(known).max(axis=1)).max())
 
 
 def assert_kepler(start: State, tf: float, mu: float = 1.0, t0: float = 0.0) -> Simulation:
-    flight = simulate(of_orbit(start, tf, mu, t0))
-    assert flight.status is Status.CONVERGED
-    assert error(flight, mu) <= 1e-9
-    assert not flight.u.any()
-    energies, momenta = flight.invariants["energy"], flight.invariants["angular_momentum"]
+    simulation = simulate(of_orbit(start, tf, mu, t0))
+    assert simulation.status is Status.CONVERGED
+    assert error(simulation, mu) <= 1e-9
+    assert not simulation.u.any()
+    energies, momenta = simulation.invariants["energy"], simulation.invariants["angular_momentum"]
     kinetic = energy(mu, start) + mu / start[0]
     assert abs(energies.initial - energy(mu, start)) <= 1e-14 * kinetic
     assert abs(momenta.initial / angular_momentum(start) - 1.0) <= 1e-14
-    assert energies.drift <= 1e-9 * max(kinetic, mu / flight.x[0].min())
+    assert energies.drift <= 1e-9 * max(kinetic, mu / simulation.x[0].min())
     assert momenta.drift <= 1e-9 * abs(momenta.initial)
-    return flight
+    return simulation
 
 
 anomalies = st.floats(-3.1, 3.1)
@@ -66,21 +66,21 @@ sizes = st.floats(0.5, 2.0)
 
 @examples(25)
 @given(st.floats(0.001, 0.7), sizes, anomalies, st.floats(0.1, 2.5), st.floats(0.3, 3.0), st.booleans())
-def test_on_any_ellipse_the_flight_is_the_closed_form(e, p, anomaly, turns, mu, backwards):
+def test_on_any_ellipse_the_simulation_is_the_closed_form(e, p, anomaly, turns, mu, backwards):
     period = 2.0 * math.pi * math.sqrt((p / (1.0 - e**2)) ** 3 / mu)
     assert_kepler(conic(mu, p, e, anomaly, backwards), turns * period, mu)
 
 
 @examples(15)
 @given(sizes, st.floats(-2.2, 2.2), st.floats(0.5, 40.0), st.booleans())
-def test_on_any_parabola_the_flight_is_the_closed_form(p, anomaly, duration, backwards):
-    flight = assert_kepler(conic(1.0, p, 1.0, anomaly, backwards), duration)
-    assert abs(flight.invariants["energy"].initial) <= 1e-14 / flight.x[0, 0]
+def test_on_any_parabola_the_simulation_is_the_closed_form(p, anomaly, duration, backwards):
+    simulation = assert_kepler(conic(1.0, p, 1.0, anomaly, backwards), duration)
+    assert abs(simulation.invariants["energy"].initial) <= 1e-14 / simulation.x[0, 0]
 
 
 @examples(15)
 @given(st.floats(1.05, 5.0), sizes, st.floats(-0.85, 0.85), st.floats(0.5, 40.0), st.floats(0.3, 3.0), st.booleans())
-def test_on_any_hyperbola_the_flight_is_the_closed_form(e, p, fraction, duration, mu, backwards):
+def test_on_any_hyperbola_the_simulation_is_the_closed_form(e, p, fraction, duration, mu, backwards):
     assert_kepler(conic(mu, p, e, fraction * math.acos(-1.0 / e), backwards), duration, mu)
 
 
@@ -95,7 +95,7 @@ def test_on_any_hyperbola_the_flight_is_the_closed_form(e, p, fraction, duration
         pytest.param(conic(EARTH, 2.4 * 6778.0, 1.4, -1.7, False), 86400.0, id="hyperbolic flyby"),
     ],
 )
-def test_flights_round_the_earth_in_kilometres_and_seconds_are_the_closed_form(start, tf):
+def test_simulations_round_the_earth_in_kilometres_and_seconds_are_the_closed_form(start, tf):
     assert_kepler(start, tf, EARTH)
 
 
@@ -111,10 +111,10 @@ def test_the_start_of_the_thesis_is_parabolic_and_after_60_it_is_25_away():
     # Barker's equation: D + D^3/3 = 2 t + 4/3, and 7 + 7^3/3 = 2 * 60 + 4/3
     end = (25.0, 7.0 / 25.0, 1.0 + 2.0 * (math.atan(7.0) - math.atan(1.0)), 1.0 / 625.0)
     assert np.allclose(propagate(1.0, start, 60.0), end, rtol=1e-15, atol=0.0)
-    flight = simulate(shipped("its-thesis", tolerance=1e-11))
-    assert flight.status is Status.CONVERGED
-    assert flight.invariants["energy"].initial == 0.0
-    assert np.allclose(flight.x[:, -1], end, rtol=1e-11, atol=0.0)
+    simulation = simulate(shipped("its-thesis", tolerance=1e-11))
+    assert simulation.status is Status.CONVERGED
+    assert simulation.invariants["energy"].initial == 0.0
+    assert np.allclose(simulation.x[:, -1], end, rtol=1e-11, atol=0.0)
 
 
 @examples(50)
@@ -131,7 +131,7 @@ def test_the_closed_form_obeys_newtons_law(e, p, fraction, time, backwards):
 
 @examples(50)
 @given(st.floats(0.0, 3.0), sizes, st.floats(-0.85, 0.85), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
-def test_the_closed_form_flown_in_two_parts_is_the_whole(e, p, fraction, first, second):
+def test_the_closed_form_simulated_in_two_parts_is_the_whole(e, p, fraction, first, second):
     start = conic(1.0, p, e, fraction * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * fraction, False)
     halfway = propagate(1.0, start, first)
     both, whole = propagate(1.0, halfway, second), propagate(1.0, start, first + second)

@@ -286,19 +286,19 @@ def test_batches_do_not_depend_on_units():
 
 
 def test_the_nonlinear_motion_costs_nearly_what_the_linear_one_would(tmp_path: Path):
-    flight = simulate(case(tmp_path, r=1.001), "lqr")
-    assert flight.status is Status.CONVERGED
-    assert flight.feedback == "lqr"
-    assert flight.metrics["lqr_cost"] == pytest.approx(flight.metrics["lqr_cost_linear"], rel=0.01)
-    assert np.abs(flight.x[[0, 1, 3], -1] - [1.0, 0.0, 1.0]).max() < 1e-6
-    assert not flight.u[0].any()
-    assert flight.u[1].any()
+    simulated = simulate(case(tmp_path, r=1.001), "lqr")
+    assert simulated.status is Status.CONVERGED
+    assert simulated.feedback == "lqr"
+    assert simulated.metrics["lqr_cost"] == pytest.approx(simulated.metrics["lqr_cost_linear"], rel=0.01)
+    assert np.abs(simulated.x[[0, 1, 3], -1] - [1.0, 0.0, 1.0]).max() < 1e-6
+    assert not simulated.u[0].any()
+    assert simulated.u[1].any()
 
 
-def test_the_error_of_a_flight_under_a_law_is_below_its_tolerance(tmp_path: Path):
+def test_the_error_of_a_simulation_under_a_law_is_below_its_tolerance(tmp_path: Path):
     """Against SciPy's Radau, from the same law written out by hand."""
     given_case = case(tmp_path, r=1.1, tf=5.0)
-    flight, K = simulate(given_case, "lqr"), lqr(THESIS, np.eye(4), [1.0]).K[0]
+    simulated, K = simulate(given_case, "lqr"), lqr(THESIS, np.eye(4), [1.0]).K[0]
 
     def rates(t, x):
         r, v, theta, w = x
@@ -306,19 +306,19 @@ def test_the_error_of_a_flight_under_a_law_is_below_its_tolerance(tmp_path: Path
         return [v, r * w * w - 1.0 / r**2, w, (u2 - 2.0 * v * w) / r]
 
     theirs = solve_ivp(rates, (0.0, 5.0), given_case.initial, method="Radau", rtol=1e-11, atol=1e-12).y[:, -1]
-    assert np.abs(flight.x[:, -1] - theirs).max() < 1e-8
+    assert np.abs(simulated.x[:, -1] - theirs).max() < 1e-8
 
 
 def test_bounds_hold_under_the_law(tmp_path: Path):
-    flight = simulate(case(tmp_path, r=1.1, more="[control]\nu2 = [-0.1, 0.05]\n"), "lqr")
-    assert (flight.u[1].min(), flight.u[1].max()) == (-0.1, 0.05)
-    assert flight.status is Status.CONVERGED
+    simulated = simulate(case(tmp_path, r=1.1, more="[control]\nu2 = [-0.1, 0.05]\n"), "lqr")
+    assert (simulated.u[1].min(), simulated.u[1].max()) == (-0.1, 0.05)
+    assert simulated.status is Status.CONVERGED
 
 
 def test_a_law_drives_the_motion_out_of_its_basin_too_and_says_so(tmp_path: Path):
     """From r = 2, further out than the basin, the thesis's law throws the nonlinear satellite out."""
-    flight = simulate(case(tmp_path, r=2.0, tf=45.0), "lqr")
-    assert flight.metrics["r_max"] > 1e6
+    simulated = simulate(case(tmp_path, r=2.0, tf=45.0), "lqr")
+    assert simulated.metrics["r_max"] > 1e6
 
 
 def test_a_motion_that_leaves_its_domain_under_a_law_ends_there(tmp_path: Path):
@@ -326,17 +326,17 @@ def test_a_motion_that_leaves_its_domain_under_a_law_ends_there(tmp_path: Path):
     given_case = case(tmp_path, r=1.0, tf=2.0)
     straight = given_case.model.functions | {"dynamics": lambda t, x, u, p: (x[1], u[0], 0.0, 0.0)}
     falling = replace(given_case, model=replace(given_case.model, functions=straight))
-    flight = fly(falling, Law("inwards", lambda t, x: (-2.0, 0.0)))
-    assert flight.status is Status.LEFT_DOMAIN
-    last = np.flatnonzero(np.isfinite(flight.x[0]))[-1]
-    assert flight.times[last] == pytest.approx(1.0, abs=0.01)  # 1 - t^2
-    assert np.abs(flight.x[0, :last] - (1.0 - flight.times[:last] ** 2)).max() < 1e-9
+    simulated = fly(falling, Law("inwards", lambda t, x: (-2.0, 0.0)))
+    assert simulated.status is Status.LEFT_DOMAIN
+    last = np.flatnonzero(np.isfinite(simulated.x[0]))[-1]
+    assert simulated.times[last] == pytest.approx(1.0, abs=0.01)  # 1 - t^2
+    assert np.abs(simulated.x[0, :last] - (1.0 - simulated.times[:last] ** 2)).max() < 1e-9
 
 
 def test_a_finite_horizon_pays_what_it_predicts(tmp_path: Path):
-    flight = simulate(case(tmp_path, r=1.0001, tf=3.0, more="horizon = 3.0\n"), "lqr")
-    assert flight.metrics["lqr_cost"] == pytest.approx(flight.metrics["lqr_cost_linear"], rel=1e-3)
-    assert np.abs(flight.u[:, -1]).max() < 1e-12
+    simulated = simulate(case(tmp_path, r=1.0001, tf=3.0, more="horizon = 3.0\n"), "lqr")
+    assert simulated.metrics["lqr_cost"] == pytest.approx(simulated.metrics["lqr_cost_linear"], rel=1e-3)
+    assert np.abs(simulated.u[:, -1]).max() < 1e-12
 
 
 def test_responses_are_the_same_where_deviations_are_small(tmp_path: Path):

@@ -193,16 +193,18 @@ def test_the_three_orbits_of_the_paper_are_what_they_are(name: str) -> None:
 
     years = 3.154e7 * (30.0 if found.period is None else 2.5)
     start = [R0, 0.0, 0.0, 0.0, PRINTED[name], 0.0]
-    flown = solve_ivp(orbital_equation, (0.0, years), start, rtol=1e-9, atol=1e-3, method="DOP853", dense_output=True)
-    distance = np.linalg.norm(flown.sol(np.linspace(0.0, years, 4001))[:3], axis=0) / 1e3
+    simulated = solve_ivp(
+        orbital_equation, (0.0, years), start, rtol=1e-9, atol=1e-3, method="DOP853", dense_output=True
+    )
+    distance = np.linalg.norm(simulated.sol(np.linspace(0.0, years, 4001))[:3], axis=0) / 1e3
     if found.period is None:
         assert (np.diff(distance) > 0.0).all()
-        left = flown.y[3:, -1] @ flown.y[3:, -1] - 2.0 * mu_si / np.linalg.norm(flown.y[:3, -1])
+        left = simulated.y[3:, -1] @ simulated.y[3:, -1] - 2.0 * mu_si / np.linalg.norm(simulated.y[:3, -1])
         assert math.sqrt(left) / 1e3 == pytest.approx(found.excess_speed, rel=1e-6)
     else:
         assert distance.min() == pytest.approx(found.periapsis, rel=1e-6)
         assert distance.max() == pytest.approx(found.apoapsis, rel=1e-6)
-        assert flown.sol(found.period * 1.0)[:3] == pytest.approx([R0, 0.0, 0.0], abs=1e-6 * R0)
+        assert simulated.sol(found.period * 1.0)[:3] == pytest.approx([R0, 0.0, 0.0], abs=1e-6 * R0)
 
 
 def test_the_inclined_orbit_is_a_molniya_orbit() -> None:

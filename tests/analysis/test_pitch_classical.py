@@ -1,4 +1,4 @@
-"""The classical law flown: closed forms, filtered differentiators, conserved momentum, limits, and refusals."""
+"""The classical law simulated: closed forms, filtered differentiators, conserved momentum, limits, and refusals."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ ROUNDING = 1e-9
 """Agreement asked for between closed forms and simulations."""
 
 
-def test_the_flight_agrees_with_the_closed_forms() -> None:
-    flight = simulate(classical())
-    s = DAMPING * flight.times
+def test_the_simulation_agrees_with_the_closed_forms() -> None:
+    simulation = simulate(classical())
+    s = DAMPING * simulation.times
     theta = STEP * (1.0 + np.exp(-s) * (s - 1.0))
     speed = BODY / WHEEL * STEP * DAMPING * np.exp(-s) * (2.0 - s)
     torque = BODY * STEP * DAMPING**2 * np.exp(-s) * (s - 3.0)
-    assert np.abs(flight.x[0] - theta).max() <= ROUNDING * STEP
-    assert np.abs(flight.x[2] - speed).max() <= ROUNDING * speed[0]
-    assert np.abs(flight.u[0] - torque).max() <= ROUNDING * -torque[0]
+    assert np.abs(simulation.x[0] - theta).max() <= ROUNDING * STEP
+    assert np.abs(simulation.x[2] - speed).max() <= ROUNDING * speed[0]
+    assert np.abs(simulation.u[0] - torque).max() <= ROUNDING * -torque[0]
 
 
-def test_the_metrics_of_the_flight_are_those_of_the_closed_forms() -> None:
+def test_the_metrics_of_the_simulation_are_those_of_the_closed_forms() -> None:
     metrics = simulate(classical(tf=4000.0)).metrics
     unit = STEP * BODY * DAMPING
     assert metrics["first_reached"] == pytest.approx(1.0 / DAMPING, rel=ROUNDING)
@@ -52,24 +52,24 @@ def test_the_metrics_of_the_flight_are_those_of_the_closed_forms() -> None:
 
 def test_totals_do_not_depend_on_the_nodes_of_the_grid() -> None:
     damping = 5.0  # all is over before the third of 200 nodes
-    flight = simulate(classical(tf=300.0, damping=damping))
+    simulation = simulate(classical(tf=300.0, damping=damping))
     unit = STEP * BODY * damping
-    assert flight.metrics["wheel_torque_total"] == pytest.approx(unit * (4.0 + 2.0 * math.exp(-3.0)), rel=1e-12)
-    assert flight.metrics["overshoot"] == pytest.approx(math.exp(-2.0), rel=ROUNDING)
+    assert simulation.metrics["wheel_torque_total"] == pytest.approx(unit * (4.0 + 2.0 * math.exp(-3.0)), rel=1e-12)
+    assert simulation.metrics["overshoot"] == pytest.approx(math.exp(-2.0), rel=ROUNDING)
 
 
 @pytest.mark.parametrize("lag", [0.5, 5.0, 40.0])
 def test_a_differentiator_that_lags_behind_flies_as_python_control_says(lag: float) -> None:
-    flight = simulate(classical(tf=600.0, differentiator=lag))
+    simulation = simulate(classical(tf=600.0, differentiator=lag))
     k1, k2 = 2.0 * DAMPING * BODY, DAMPING**2 * BODY
     action = control.tf([k1 + k2 * lag, k2], [lag, 1.0])
     whole = control.feedback(control.tf([1.0], [BODY, 0.0, 0.0]) * action, 1)
-    expected = control.step_response(whole, flight.times).outputs * STEP
-    assert np.abs(flight.x[0] - expected).max() <= ROUNDING * STEP
-    exact = law.loop(flight.instance).linear(np.zeros(3), flight.times)
-    assert np.abs(flight.x - exact[:3]).max(axis=1) == pytest.approx(0.0, abs=ROUNDING * 4.0)
-    assert flight.metrics["impulse"] == 0.0
-    assert math.isfinite(flight.metrics["power_energy"])
+    expected = control.step_response(whole, simulation.times).outputs * STEP
+    assert np.abs(simulation.x[0] - expected).max() <= ROUNDING * STEP
+    exact = law.loop(simulation.instance).linear(np.zeros(3), simulation.times)
+    assert np.abs(simulation.x - exact[:3]).max(axis=1) == pytest.approx(0.0, abs=ROUNDING * 4.0)
+    assert simulation.metrics["impulse"] == 0.0
+    assert math.isfinite(simulation.metrics["power_energy"])
 
 
 @pytest.mark.slow
@@ -103,8 +103,8 @@ def test_the_momentum_of_body_and_wheel_changes_by_gravity_alone(
 
 def test_the_momentum_is_kept_without_any_law_as_well() -> None:
     case = replace(classical(tf=3000.0), initial=(0.02, 1e-4, 1.0))
-    flight = simulate(case, "none")
-    assert flight.invariants["angular_momentum"].drift <= 1e-12 * WHEEL * NOMINAL
+    simulation = simulate(case, "none")
+    assert simulation.invariants["angular_momentum"].drift <= 1e-12 * WHEEL * NOMINAL
     names = case.model.spec.parameter_names
     turned = tuple(400.0 if name == "I_x" else v for name, v in zip(names, case.parameters, strict=True))
     assert simulate(replace(case, parameters=turned), "none").invariants["angular_momentum"].drift <= 1e-8
@@ -114,14 +114,16 @@ def test_what_gravity_does_is_undone_by_the_law_but_for_its_cubic_part() -> None
     case = classical(tf=3000.0)
     names = case.model.spec.parameter_names
     turned = tuple(400.0 if name == "I_x" else v for name, v in zip(names, case.parameters, strict=True))
-    flight, symmetric = simulate(replace(case, parameters=turned)), simulate(case)
-    assert np.abs(flight.x[0] - symmetric.x[0]).max() < 1e-3 * STEP
+    simulation, symmetric = simulate(replace(case, parameters=turned)), simulate(case)
+    assert np.abs(simulation.x[0] - symmetric.x[0]).max() < 1e-3 * STEP
     # holding the angle against gravity speeds the wheel up all the time
     torque = 3.0 * 7.26e-5**2 * (400.0 - 1356.0) * STEP
-    assert flight.x[2, -1] - flight.x[2, -2] == pytest.approx(torque * np.diff(flight.times)[-1] / WHEEL, rel=1e-3)
+    assert simulation.x[2, -1] - simulation.x[2, -2] == pytest.approx(
+        torque * np.diff(simulation.times)[-1] / WHEEL, rel=1e-3
+    )
 
 
-def test_gains_that_are_given_are_flown() -> None:
+def test_gains_that_are_given_are_simulated() -> None:
     k1, k2 = 20.0, 0.05
     case = classical(tf=800.0, damping=None, gains=(k1, k2))
     expected = control.step_response(control.tf([k1, k2], [BODY, k1, k2]), simulate(case).times).outputs * STEP
@@ -134,22 +136,22 @@ def test_the_feedback_of_an_instance_with_a_law_is_that_law_unless_another_is_as
 
 
 def test_a_wheel_that_is_driven_past_its_limit_is_reported_with_the_limit() -> None:
-    flight = simulate(classical(command=0.1))
-    assert "wheel_speed reaches 15.0667 rad/s, past its limit of 10.472" in flight.message
+    simulation = simulate(classical(command=0.1))
+    assert "wheel_speed reaches 15.0667 rad/s, past its limit of 10.472" in simulation.message
     assert "limit" not in simulate(classical()).message
 
 
 def test_a_loop_that_has_not_settled_says_so() -> None:
-    flight = simulate(classical(tf=200.0))
-    assert math.isnan(flight.metrics["settling_time"])
-    assert "theta has not settled by the final time" in flight.message
+    simulation = simulate(classical(tf=200.0))
+    assert math.isnan(simulation.metrics["settling_time"])
+    assert "theta has not settled by the final time" in simulation.message
     assert "settled" not in simulate(classical()).message
 
 
 def test_a_command_to_stay_leaves_everything_at_rest() -> None:
-    flight = simulate(classical(command=0.0))
-    assert not flight.x.any()
-    assert not flight.u.any()
+    simulation = simulate(classical(command=0.0))
+    assert not simulation.x.any()
+    assert not simulation.u.any()
 
 
 @pytest.mark.parametrize("options", [{"damping": 1e6}, {"differentiator": 1e-9}])
@@ -189,6 +191,6 @@ def test_what_makes_no_law_is_refused_in_one_line(
     assert "\n" not in said
 
 
-def test_a_law_is_not_flown_where_none_is_stated(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_law_is_not_simulated_where_none_is_stated(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "return-to-orbit", "--feedback", "classical"]) == 3
     assert "no [classical] table" in capsys.readouterr().err

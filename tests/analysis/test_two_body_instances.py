@@ -39,11 +39,11 @@ def test_earths_go_where_the_paper_integrates_them(name: str) -> None:
 
     start = np.array(case.initial) * 1e3
     expected = solve_ivp(rates, (0.0, 3.154e7), start, method="DOP853", rtol=1e-12, atol=1e-3).y[:, -1] / 1e3
-    flight = simulate(case)
-    assert flight.status is Status.CONVERGED
-    np.testing.assert_allclose(flight.x[:3, -1], expected[:3], atol=1e-9 * np.linalg.norm(expected[:3]))
-    np.testing.assert_allclose(flight.x[3:, -1], expected[3:], atol=1e-9 * np.linalg.norm(expected[3:]))
-    for kept in flight.invariants.values():
+    simulated = simulate(case)
+    assert simulated.status is Status.CONVERGED
+    np.testing.assert_allclose(simulated.x[:3, -1], expected[:3], atol=1e-9 * np.linalg.norm(expected[:3]))
+    np.testing.assert_allclose(simulated.x[3:, -1], expected[3:], atol=1e-9 * np.linalg.norm(expected[3:]))
+    for kept in simulated.invariants.values():
         assert kept.drift <= 1e-9 * (1.0 + abs(kept.initial))
 
 
@@ -57,9 +57,9 @@ def test_molniya_is_an_inclined_ellipse_that_closes() -> None:
     assert math.isclose(np.linalg.norm(eccentricity), 0.74, rel_tol=1e-6)
     assert math.isclose(momentum[2] / np.linalg.norm(momentum), 1.0 / math.sqrt(5.0), rel_tol=1e-9)
     assert math.isclose(2.0 * 2.0 * math.pi * math.sqrt(axis**3 / strength), case.tf or 0.0, rel_tol=1e-6)
-    flight = simulate(case)
-    assert flight.status is Status.CONVERGED
-    assert np.abs(flight.x[:3, -1] - position).max() <= 1e-5 * np.linalg.norm(position)
+    simulated = simulate(case)
+    assert simulated.status is Status.CONVERGED
+    assert np.abs(simulated.x[:3, -1] - position).max() <= 1e-5 * np.linalg.norm(position)
 
 
 @pytest.mark.parametrize("value", ["0.0", "-1.0", "nan", "inf", '"1 kg"'])
@@ -78,8 +78,8 @@ def test_a_state_that_is_no_number_is_refused(tmp_path: Path, key: str) -> None:
 
 def test_starting_in_the_centre_is_not_finite(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = two_body_case(tmp_path, x=0.0)
-    flight = simulate(instance.load(str(path)))
-    assert (flight.status, flight.invariants) == (Status.NON_FINITE, {})
+    simulated = simulate(instance.load(str(path)))
+    assert (simulated.status, simulated.invariants) == (Status.NON_FINITE, {})
     assert main(["simulate", str(path)]) == 4
     assert "not finite" in capsys.readouterr().out
 
@@ -89,7 +89,7 @@ def test_falling_into_the_centre_is_no_answer(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(
         "satsym.solvers.simulation.simulating.MOST_STEPS", 2**13
     )  # a million would take a while, to no avail
-    flight = simulate(instance.load(str(two_body_case(tmp_path, v_y=0.0))))
-    assert flight.status in (Status.NOT_CONVERGED, Status.NON_FINITE)
-    assert "singularity" in flight.message or "not finite" in flight.message
-    assert flight.metrics["steps"] <= 2**12, "given up before the steps are used up: they could not become enough"
+    simulated = simulate(instance.load(str(two_body_case(tmp_path, v_y=0.0))))
+    assert simulated.status in (Status.NOT_CONVERGED, Status.NON_FINITE)
+    assert "singularity" in simulated.message or "not finite" in simulated.message
+    assert simulated.metrics["steps"] <= 2**12, "given up before the steps are used up: they could not become enough"

@@ -142,7 +142,7 @@ def run(what: str, count: int) -> None:
     if not np.isnan(ratios).all():
         known = ratios[~np.isnan(ratios)]
         good, better = (known < 1.0 + COST_MARGIN).mean(), (known < 1.0 - COST_MARGIN).mean()
-        print(f"  no dearer than the best of eight starts: {good:.2%} (cheaper: {better:.2%})")
+        print(f"  no costlier than the best of eight starts: {good:.2%} (cheaper: {better:.2%})")
 
 
 def main() -> None:

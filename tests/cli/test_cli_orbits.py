@@ -207,7 +207,7 @@ def test_the_orbit_is_drawn_to_scale_in_the_unit_on_its_axes(name: str, unit: st
             assert any(math.hypot(*point) == pytest.approx(apse) for point in points)
 
 
-def test_an_escape_is_drawn_with_what_is_flown_of_it() -> None:
+def test_an_escape_is_drawn_with_what_is_simulated_of_it() -> None:
     found = survey(instance.load("itb-earth-escape"))
     drawn = conics.Drawn.of(found)
     assert drawn.travelled is not None

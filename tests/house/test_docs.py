@@ -68,11 +68,11 @@ def test_the_notebook_runs_from_top_to_bottom_and_shows_what_each_cell_ends_with
         assert isinstance(last, ast.Expr)
         exec(compile(ast.Module(before, []), "notebook", "exec"), known)  # noqa: S102
         shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), known))  # noqa: S307
-    solution, verdict, _, equation, dearer = shown
+    solution, verdict, _, equation, costlier = shown
     assert "<table>" in solution._repr_html_()
     assert verdict == ("certified", pytest.approx(0.0031946551089, rel=1e-10))  # of CasADi with Ipopt
     assert equation._repr_latex_().startswith("$")
-    assert dearer
+    assert costlier
 
 
 def test_the_readmes_show_the_same_commands() -> None:

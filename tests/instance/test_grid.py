@@ -1,4 +1,4 @@
-"""Grids: quadrature is exact where it claims to be, and kinks become nodes without tiny steps."""
+"""Grids: quadrature is exact where it claims to be, and corners become nodes without tiny steps."""
 
 from __future__ import annotations
 
@@ -68,32 +68,32 @@ def test_simpson_quadrature_is_fourth_order_and_acts_on_the_last_axis():
     assert (order < 4.1).all()
 
 
-def test_a_kink_in_the_middle_of_a_step_becomes_a_node():
+def test_a_corner_in_the_middle_of_a_step_becomes_a_node():
     grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.5])
     assert grid.nodes.tolist() == [0.0, 1.0, 1.5, 2.0, 3.0, 4.0]
     assert grid.corners == (1.5,)
 
 
-def test_a_node_near_a_kink_moves_there():
+def test_a_node_near_a_corner_moves_there():
     grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.1, 2.9])
     assert grid.nodes.tolist() == [0.0, 1.1, 2.0, 2.9, 4.0]
     assert grid.corners == (1.1, 2.9)
 
 
-def test_ends_stay_and_a_kink_too_close_to_what_cannot_move_is_left_out():
+def test_ends_stay_and_a_corner_too_close_to_what_cannot_move_is_left_out():
     grid = Grid.uniform(0.0, 4.0, 4).with_corners([0.1, 3.9, -1.0, 5.0, 0.0, 4.0, 1.5, 1.6])
     assert grid.nodes.tolist() == [0.0, 1.0, 1.5, 2.0, 3.0, 4.0]
     assert grid.corners == (1.5,)
 
 
-def test_an_earlier_kink_stays_when_later_ones_are_inserted():
+def test_an_earlier_corner_stays_when_later_ones_are_inserted():
     grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.1]).with_corners([1.2, 1.6])
     assert 1.1 in grid.nodes
     assert grid.corners == (1.1, 1.6)
 
 
 @given(points_inside)
-def test_inserting_kinks_keeps_the_spacing_and_accounts_for_every_point(points):
+def test_inserting_corners_keeps_the_spacing_and_accounts_for_every_point(points):
     before = Grid.uniform(0.0, 3.0, 6)
     after = before.with_corners(points)
     rounding = 1e-12
@@ -108,7 +108,7 @@ def test_inserting_kinks_keeps_the_spacing_and_accounts_for_every_point(points):
 
 
 @given(points_inside)
-def test_refining_halves_every_step_and_keeps_kinks(points):
+def test_refining_halves_every_step_and_keeps_corners(points):
     coarse = Grid.uniform(0.0, 3.0, 4).with_corners(points)
     fine = coarse.refine()
     assert fine.steps == 2 * coarse.steps

@@ -168,7 +168,7 @@ def test_both_backends_agree_on_trajectories(orbit: Kernels, compiled: Kernels):
         assert np.abs(plain - fast).max() <= 1e-12
 
 
-def test_both_backends_agree_on_a_grid_with_kinks(orbit: Kernels, compiled: Kernels):
+def test_both_backends_agree_on_a_grid_with_corners(orbit: Kernels, compiled: Kernels):
     grid = GRID.with_corners([0.0333, 2.7071, 5.99])
     for plain, fast in zip(sweep(orbit, grid), sweep(compiled, grid), strict=True):
         assert np.abs(plain - fast).max() <= 1e-12

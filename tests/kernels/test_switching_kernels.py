@@ -74,8 +74,8 @@ def test_no_admissible_control_makes_h_smaller(built: dict[str, Kernels], name: 
         [low, high, min(max(0.0, low), high), *np.linspace(low, high, 5)]
         for low, high in zip(box[:m], box[m:], strict=True)
     ]
-    rivals = [model.hamiltonian(0.0, x, rival, lam, p) for rival in itertools.product(*levels)]
-    assert min(rivals) >= best - 1e-12 * (1.0 + abs(best))
+    competitors = [model.hamiltonian(0.0, x, competitor, lam, p) for competitor in itertools.product(*levels)]
+    assert min(competitors) >= best - 1e-12 * (1.0 + abs(best))
 
 
 @pytest.mark.parametrize("name", PROBLEMS)

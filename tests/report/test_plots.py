@@ -206,7 +206,7 @@ def test_pictures_are_the_same_bytes_each_time_whatever_the_user_s_settings(tmp_
         assert one.read_bytes() == other.read_bytes(), one.name
 
 
-def test_a_flight_without_control_has_no_pictures_of_controls(tmp_path: Path) -> None:
+def test_a_simulation_without_control_has_no_pictures_of_controls(tmp_path: Path) -> None:
     assert stems(save(simulate(instances.load("soft-return")), tmp_path)) == [
         "overview",
         "orbit",
@@ -215,7 +215,7 @@ def test_a_flight_without_control_has_no_pictures_of_controls(tmp_path: Path) ->
     ]
 
 
-def test_a_flight_with_feedback_shows_its_controls(tmp_path: Path) -> None:
+def test_a_simulation_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "states", "controls"]
 
 
@@ -308,9 +308,9 @@ def test_pyplot_is_never_imported_and_matplotlib_only_to_draw(repository: Path) 
 import sys
 from satsym import instance, solvers
 from satsym.report import plots
-flight = solvers.simulate(instance.load("soft-return"))
+simulation = solvers.simulate(instance.load("soft-return"))
 assert "matplotlib" not in sys.modules
-assert plots.pictures(flight)
+assert plots.pictures(simulation)
 assert "matplotlib" in sys.modules
 assert not sys.modules.keys() & {"matplotlib.pyplot", "scipy", "sympy", "tkinter"}
 """

@@ -1,4 +1,4 @@
-"""JSON objects, result files and summaries of solutions and flights."""
+"""JSON objects, result files and summaries of solutions and simulations."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SOLUTION_KEYS = (
     "satsym schema command model instance status units instance_file method message boundary_type objective t_final "
     "x_final costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
 ).split()
-FLIGHT_KEYS = (
+SIMULATION_KEYS = (
     "satsym schema command model instance status units instance_file feedback t_final x_final invariants metrics"
 ).split()
 STATES = ["r", "r_dot", "theta", "theta_dot"]
@@ -63,7 +63,7 @@ def failed(solution: Solution) -> Solution:
 
 
 @pytest.fixture
-def flight(case: Instance) -> Simulation:
+def simulation(case: Instance) -> Simulation:
     return Simulation(
         instance=case,
         feedback="none",
@@ -99,12 +99,12 @@ def test_switching_times_of_all_controls_are_one_sorted_list(solution: Solution)
     assert solution_object(solution)["switching_times"] == [15.25, 30.5]
 
 
-def test_numbers_that_are_not_finite_are_null(failed: Solution, flight: Simulation) -> None:
+def test_numbers_that_are_not_finite_are_null(failed: Solution, simulation: Simulation) -> None:
     found = solution_object(failed)
     assert found["objective"] is None
     assert set(found["x_final"].values()) == set(found["costate_initial"].values()) == {None}
-    assert simulation_object(flight)["metrics"] == {"r_min": 1.0, "odd": None}
-    json.dumps([found, simulation_object(flight)], allow_nan=False)
+    assert simulation_object(simulation)["metrics"] == {"r_min": 1.0, "odd": None}
+    json.dumps([found, simulation_object(simulation)], allow_nan=False)
 
 
 def test_zero_has_no_sign(solution: Solution) -> None:
@@ -132,9 +132,9 @@ def test_every_status_is_spelt_as_the_contract_has_it(solution: Solution) -> Non
     ]
 
 
-def test_flight_has_the_keys_of_the_contract_in_their_order(flight: Simulation) -> None:
-    found = simulation_object(flight)
-    assert list(found) == FLIGHT_KEYS
+def test_simulation_has_the_keys_of_the_contract_in_their_order(simulation: Simulation) -> None:
+    found = simulation_object(simulation)
+    assert list(found) == SIMULATION_KEYS
     assert list(found["x_final"]) == STATES
     assert found["invariants"] == {"energy": {"initial": -0.5, "drift": 1e-15}}
 
@@ -182,8 +182,8 @@ def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: P
     np.testing.assert_array_equal(columns, np.vstack([solution.times, solution.x, solution.u, solution.lam]))
 
 
-def test_trajectory_of_a_flight_has_no_costates(flight: Simulation, tmp_path: Path) -> None:
-    sets.write(tmp_path, {}, trajectory.contents(flight))
+def test_trajectory_of_a_simulation_has_no_costates(simulation: Simulation, tmp_path: Path) -> None:
+    sets.write(tmp_path, {}, trajectory.contents(simulation))
     assert "lambda" not in (tmp_path / "trajectory.csv").read_text(encoding="utf-8")
     with np.load(tmp_path / "trajectory.npz") as stored:
         assert "lam" not in stored
@@ -252,8 +252,8 @@ def test_status_is_coloured_on_request(solution: Solution, failed: Solution) -> 
     assert "\x1b[31mnon-finite\x1b[0m" in solution_text(failed, colour=True)
 
 
-def test_summary_of_a_flight_tells_what_is_conserved(flight: Simulation) -> None:
-    told = simulation_text(flight)
+def test_summary_of_a_simulation_tells_what_is_conserved(simulation: Simulation) -> None:
+    told = simulation_text(simulation)
     assert "energy" in told
     assert "1e-15" in told
     assert "costate" not in told

@@ -224,7 +224,7 @@ def test_pictures_speak_indonesian_with_decimal_commas(name: str) -> None:
     assert not [text for text in shown if re.search(r"\d\.\d", text)]
 
 
-def test_a_picture_of_a_flight_says_how_it_ends_in_indonesian() -> None:
+def test_a_picture_of_a_simulation_says_how_it_ends_in_indonesian() -> None:
     with spoken("id"):
         shown = words(plots.figures(simulate(instance.load("its-thesis"))))
     assert any(text.startswith("akhir ") for text in shown)

@@ -32,7 +32,7 @@ def solution() -> Solution:
 
 
 @pytest.fixture(scope="module")
-def flight() -> Simulation:
+def simulation() -> Simulation:
     return simulate(instance.load("its-thesis"))
 
 
@@ -43,7 +43,7 @@ def folder(solution: Solution, tmp_path: Path) -> Path:
 
 
 def kept(found: Solution | Simulation) -> dict[str, Any]:
-    """The fields of a result that are saved, arrays as lists; of a flight, why it failed is not."""
+    """The fields of a result that are saved, arrays as lists; of a simulation, why it failed is not."""
     left_out = {"instance", "certificate"} | ({"message"} if isinstance(found, Simulation) else set())
     fields = {name: value for name, value in vars(found).items() if name not in left_out}
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in fields.items()}
@@ -57,11 +57,11 @@ def test_a_solution_comes_back_with_every_number(solution: Solution, folder: Pat
     assert kept(found) == kept(solution)
 
 
-def test_a_flight_comes_back_with_every_number(flight: Simulation, tmp_path: Path) -> None:
-    save(tmp_path, simulation_object(flight), trajectory_files(tmp_path, flight, look=None))
-    found, _ = trajectory.read(flight.instance, tmp_path)
+def test_a_simulation_comes_back_with_every_number(simulation: Simulation, tmp_path: Path) -> None:
+    save(tmp_path, simulation_object(simulation), trajectory_files(tmp_path, simulation, look=None))
+    found, _ = trajectory.read(simulation.instance, tmp_path)
     assert isinstance(found, Simulation)
-    assert kept(found) == kept(flight)
+    assert kept(found) == kept(simulation)
 
 
 def plotted(*arguments: str | Path) -> str:

@@ -25,7 +25,7 @@ def texts() -> dict[str, object]:
     cases = [instance.load(name) for name in ("soft-return", "lapan-minimum-time", "its-thesis")]
     return {
         "solution": solve(instance.load("soft-return-geo")),
-        "flight": simulate(instance.load("its-thesis")),
+        "simulation": simulate(instance.load("its-thesis")),
         "orbit": survey(instance.load("itb-earth")),
         "models": models,
         "cases": cases,
@@ -37,7 +37,7 @@ def test_summaries_and_lists_fit(texts: dict, columns: int, monkeypatch: pytest.
     def shown() -> list[str]:
         return [
             solution_text(texts["solution"]),
-            simulation_text(texts["flight"]),
+            simulation_text(texts["simulation"]),
             orbit_text(texts["orbit"]),
             listing.models_text(texts["models"]),
             listing.instances_text(texts["cases"]),

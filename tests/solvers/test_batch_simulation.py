@@ -106,12 +106,12 @@ def test_models_without_controls_and_parameters_fly_too():
     )
     pendulum = from_text(module.render(derived(motion), "a test"), "motion")
     x0, times = np.array([[0.5, 1.0], [0.0, 0.1]]), [0.0, 3.0, 1.0]
-    flights = [batch.simulate(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
+    simulations = [batch.simulate(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
     tail = pendulum.forward(np.linspace(0.0, 1.0, 201), (1.0, 0.1), np.zeros((0, 201)), np.zeros((0, 200)), ())[0][
         :, -1
     ]
-    assert max(np.abs(flight[:, 1] - tail).max() for flight in flights) <= 1e-6
-    assert np.ptp(flights, axis=0).max() <= 1e-6
+    assert max(np.abs(simulated[:, 1] - tail).max() for simulated in simulations) <= 1e-6
+    assert np.ptp(simulations, axis=0).max() <= 1e-6
 
 
 def test_more_columns_than_a_block_holds_are_all_there_and_the_starts_untouched(orbit: Kernels):

@@ -37,7 +37,7 @@ QUICK = Problem(name="quick", title="Minimum time", model=POINT, running_cost=1,
 RING = Problem(
     name="ring", title="In a ring", model=POINT, running_cost=EFFORT, control_sets={"jet": Annulus("ux", "uy")}
 )
-FLIGHT = """
+SIMULATED = """
 [initial]
 x = 1.0
 y = 0.0
@@ -56,7 +56,7 @@ tf = {tf}
 
 
 def case(folder: Path, problem: Problem, tf: str, limits: str) -> Instance:
-    return build(folder, problem, FLIGHT.format(tf=tf, limits=limits))
+    return build(folder, problem, SIMULATED.format(tf=tf, limits=limits))
 
 
 def certified(instance: Instance) -> Solution:
@@ -70,14 +70,14 @@ def certified(instance: Instance) -> Solution:
 def reached(slopes: np.ndarray, tf: float, least: float, largest: float) -> tuple[np.ndarray, float]:
     """Where a thrust against p = a + b t, its size |p| within limits, leads; and half its square, integrated."""
     a, b = slopes[:2], slopes[2:]
-    kinks = [0.0, tf]
+    corners = [0.0, tf]
     for limit in (least, largest):
         polynomial = np.array([b @ b, 2.0 * a @ b, a @ a - limit**2])
-        kinks += [t.real for t in np.roots(polynomial) if abs(t.imag) < 1e-12 and 0.0 < t.real < tf]
-    kinks.append(float(np.clip(-(a @ b) / (b @ b), 0.0, tf)))
+        corners += [t.real for t in np.roots(polynomial) if abs(t.imag) < 1e-12 and 0.0 < t.real < tf]
+    corners.append(float(np.clip(-(a @ b) / (b @ b), 0.0, tf)))
     nodes, weights = np.polynomial.legendre.leggauss(80)
     end, effort = np.array([1.0, tf, 0.0, 1.0]), 0.0
-    for low, high in zip(sorted(kinks)[:-1], sorted(kinks)[1:], strict=True):
+    for low, high in zip(sorted(corners)[:-1], sorted(corners)[1:], strict=True):
         t, w = low + (high - low) * (nodes + 1.0) / 2.0, (high - low) / 2.0 * weights
         p = a[:, None] + b[:, None] * t
         norm = np.sqrt((p * p).sum(axis=0))

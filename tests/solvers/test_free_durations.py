@@ -30,7 +30,7 @@ AROUND = (0.7, 0.98, 1.02, 1.4)
 """Shares of the best final time at which it is held against given ones; efforts of the first two kinds have one
 valley, that of free ends has two."""
 
-FROM_NOTHING = tuple(np.geomspace(0.01, 14.0, 24).tolist())
+COLD_START = tuple(np.geomspace(0.01, 14.0, 24).tolist())
 """Given times at which free ends are looked at as well."""
 
 WEIGHTS = np.geomspace(1e-3, 100.0, 20).tolist()
@@ -68,7 +68,7 @@ def assert_least(found: Solution, name: str, c0: float) -> None:
     assert found.status is Status.CONVERGED, found.message
     assert found.objective == pytest.approx(c0 * tf + effort(name, tf), rel=1e-7)
     others = [fraction * tf for fraction in AROUND]
-    for other in (*others, *FROM_NOTHING) if name == FIVE else others:
+    for other in (*others, *COLD_START) if name == FIVE else others:
         assert c0 * other + effort(name, other) > found.objective
 
 

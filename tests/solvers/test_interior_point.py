@@ -110,10 +110,10 @@ def test_a_saddle_is_left(begun: float):
     def on_bound(time: float) -> float:
         return (start + 1 / 0.3) * math.exp(0.3 * time) - 1 / 0.3
 
-    def kink(time: float) -> float:
+    def corner(time: float) -> float:
         return 4 * math.tan(4 * (1 - time)) * on_bound(time) - (1 + 0.3 * on_bound(time))
 
-    left = brentq(kink, 1 - math.pi / 8 + 1e-6, 1.0, xtol=1e-15)
+    left = brentq(corner, 1 - math.pi / 8 + 1e-6, 1.0, xtol=1e-15)
     size = on_bound(left) / math.cos(4 * (1 - left))
     first = quad(lambda s: (1 + 0.3 * on_bound(s)) ** 2 / 2 - 8 * on_bound(s) ** 2, 0.0, left, epsabs=1e-13)[0]
     then = quad(lambda s: 8 * size**2 * (math.sin(4 * s) ** 2 - math.cos(4 * s) ** 2), 0.0, 1 - left, epsabs=1e-13)[0]

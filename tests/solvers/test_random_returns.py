@@ -47,11 +47,11 @@ def scaled(number: int) -> TwoPoint:
         for number, first in enumerate(range(0, STUDY, EACH))
     ],
 )
-def test_hard_returns_are_solved_from_nothing(first: int) -> None:
+def test_hard_returns_are_solved_from_a_cold_start(first: int) -> None:
     check(HARD, range(first, first + EACH))
 
 
-def test_easy_returns_are_solved_from_nothing() -> None:
+def test_easy_returns_are_solved_from_a_cold_start() -> None:
     check(EASY, range(20))
 
 

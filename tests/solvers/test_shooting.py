@@ -206,7 +206,7 @@ def test_no_compiler_is_started_for_one_solve(tmp_path: Path):
 
 
 def test_compiled_arcs_are_the_same_arcs():
-    """On a kink the law has two derivatives, and which of them a first stage takes is a matter of rounding."""
+    """On a corner the law has two derivatives, and which of them a first stage takes is a matter of rounding."""
     pytest.importorskip("numba")
     cases = [straight("return-to-orbit", 5, 3, compiled) for compiled in (False, True)]
     for (plain, fast), close in ((cases, 1e-12), ([held(compiled) for compiled in (False, True)], 1e-4)):
@@ -217,7 +217,7 @@ def test_compiled_arcs_are_the_same_arcs():
 
 
 def test_compiled_arcs_need_no_node_where_a_bound_is_met():
-    """A step ends at the kink, so the order is kept; the other arcs lose it."""
+    """A step ends at the corner, so the order is kept; the other arcs lose it."""
     pytest.importorskip("numba")
     solved = held(False)
     whole = {"mesh": solved.mesh[[0, -1]], "nodes": solved.nodes[:, [0, -1]], "steps": 40}

@@ -1,4 +1,4 @@
-"""The sweep with bounds: switching times, admissible controls, and fourth order with nodes at the kinks."""
+"""The sweep with bounds: switching times, admissible controls, and fourth order with nodes at the corners."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ BOUNDS: tuple[Bounds, ...] = (
     ((0.0, 0.0), (1.0, 0.005)),
 )
 SEPARATE = BOUNDS[1:3]
-"""Those whose kinks lie far enough apart for 40 steps."""
+"""Those whose corners lie far enough apart for 40 steps."""
 
 
 @cache
 def known(bounds: Bounds) -> Extremal:
-    """By shooting over arcs between the kinks."""
+    """By shooting over arcs between the corners."""
     orbit = Orbit(lower=bounds[0], upper=bounds[1])
     return shooting(orbit, collocation(orbit, 1e-6).costate)
 
@@ -54,7 +54,7 @@ def wanted(bounds: Bounds, y: np.ndarray) -> np.ndarray:
 
 
 def on_uniform_grid(case: Instance) -> Sweep:
-    """The first round of a solution, before any node is moved to a kink."""
+    """The first round of a solution, before any node is moved to a corner."""
     assert case.tf is not None
     problem = SweepProblem(case, case.model, Grid.uniform(case.t0, case.tf, case.solver.steps))
     none = np.clip(np.zeros((2, len(problem.times))), *(np.array(side)[:, None] for side in (case.lower, case.upper)))
@@ -84,7 +84,7 @@ def test_switching_times_cost_and_costates_are_those_of_shooting(bounds):
 
 
 @pytest.mark.parametrize("bounds", BOUNDS)
-def test_the_control_is_admissible_everywhere_and_its_kinks_are_nodes(bounds):
+def test_the_control_is_admissible_everywhere_and_its_corners_are_nodes(bounds):
     solution = solved(bounds)
     for row, low, high, switches in zip(solution.u, *bounds, solution.switching_times, strict=True):
         assert (row >= low).all()
@@ -96,7 +96,7 @@ def test_the_control_is_admissible_everywhere_and_its_kinks_are_nodes(bounds):
 
 
 @pytest.mark.parametrize("bounds", SEPARATE)
-def test_with_nodes_at_the_kinks_bounds_leave_it_fourth_order(bounds):
+def test_with_nodes_at_the_corners_bounds_leave_it_fourth_order(bounds):
     steps, errors = (40, 80, 160, 320, 640), []
     for n in steps:
         solution = solve(bounded(bounds, steps=n, tolerance=1e-10))
@@ -115,8 +115,8 @@ def test_with_nodes_at_the_kinks_bounds_leave_it_fourth_order(bounds):
 
 
 @pytest.mark.slow
-def test_without_nodes_at_the_kinks_it_is_second_order():
-    """A step across a kink is wrong by its square; J, being least at the optimum, only by the square of that."""
+def test_without_nodes_at_the_corners_it_is_second_order():
+    """A step across a corner is wrong by its square; J, being least at the optimum, only by the square of that."""
     steps, errors = tuple(round(40 * 2 ** (i / 2)) for i in range(9)), []
     for n in steps:
         sweep = on_uniform_grid(bounded(BOUNDS[0], steps=n, tolerance=1e-9))
@@ -130,7 +130,7 @@ def test_without_nodes_at_the_kinks_it_is_second_order():
             ]
         )
     states, costates, cost = slopes(steps, errors)
-    # measured: 2.1, 2.2 and 3.8, with ups and downs as the kink lies in its step
+    # measured: 2.1, 2.2 and 3.8, with ups and downs as the corner lies in its step
     assert 1.5 <= states <= 2.8
     assert 1.5 <= costates <= 2.8
     assert 3.0 <= cost <= 5.0

@@ -92,7 +92,7 @@ class Extremal:
 
 
 def collocation(orbit: Orbit, tolerance: float = 1e-10) -> Extremal:
-    """By solve_bvp from the flight without control; for bounds only as good as kinks allow."""
+    """By solve_bvp from the simulation without control; for bounds only as good as corners allow."""
 
     def rates(_: Array, y: Array) -> Array:
         u = np.array([np.clip(v, a, b) for v, a, b in zip(orbit.wanted(y), orbit.lower, orbit.upper, strict=True)])
@@ -104,8 +104,8 @@ def collocation(orbit: Orbit, tolerance: float = 1e-10) -> Extremal:
 
     times = np.linspace(0.0, orbit.tf, 201)
     y0 = (*orbit.start, 0.0, 0.0, 0.0, 0.0, 0.0)
-    flight = solve_ivp(lambda t, y: rates(t, y[:, None])[:, 0], (0.0, orbit.tf), y0, t_eval=times, rtol=1e-8)
-    found = solve_bvp(rates, residual, times, flight.y, tol=tolerance, max_nodes=200_000)
+    simulation = solve_ivp(lambda t, y: rates(t, y[:, None])[:, 0], (0.0, orbit.tf), y0, t_eval=times, rtol=1e-8)
+    found = solve_bvp(rates, residual, times, simulation.y, tol=tolerance, max_nodes=200_000)
     assert found.success, found.message
     return Extremal(found.y[8, -1] + orbit.terminal_cost(found.y[:4, -1]), found.y[4:8, 0], ((), ()), found.sol)
 

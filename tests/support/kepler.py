@@ -1,4 +1,4 @@
-"""Kepler motion in closed form, from the textbook and from nothing of satsym: what flights are compared with.
+"""Kepler motion in closed form, from the textbook and from nothing of satsym: what simulations are compared with.
 
 Conventions as in Battin, An Introduction to the Mathematics and Methods of Astrodynamics, chapter 4. The angle counts
 turns, so it can be compared as it stands.

@@ -1,4 +1,4 @@
-"""Least time flown as a feedback: by the switching curve with a deadband, and by pulses from the position alone."""
+"""Least time simulated as a feedback: by the switching curve with a deadband, and by pulses from the position alone."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def test_the_relay_takes_least_time_but_for_its_deadband(
 ) -> None:
     of = case((q, v), (q_f, v_f), bounds, deadband=1e-6)
     assume(abs(generated("beyond_switching_curve", (q, v), of)) > 1e-2)
-    flight = simulate(of, "switching")
-    assert flight.status is Status.CONVERGED
-    assert flight.metrics["switches"] <= 1.0
-    assert abs(flight.metrics["q_residual"]) <= 1.001e-6
-    assert abs(flight.metrics["q_dot_residual"]) <= 1e-9
-    assert flight.metrics["arrival_time"] == pytest.approx(least((q, v), (q_f, v_f), bounds)[0], abs=1e-3)
+    simulation = simulate(of, "switching")
+    assert simulation.status is Status.CONVERGED
+    assert simulation.metrics["switches"] <= 1.0
+    assert abs(simulation.metrics["q_residual"]) <= 1.001e-6
+    assert abs(simulation.metrics["q_dot_residual"]) <= 1e-9
+    assert simulation.metrics["arrival_time"] == pytest.approx(least((q, v), (q_f, v_f), bounds)[0], abs=1e-3)
 
 
 def test_the_time_converges_with_the_first_order_of_the_deadband() -> None:
@@ -52,35 +52,35 @@ def test_the_time_converges_with_the_first_order_of_the_deadband() -> None:
     assert orders == pytest.approx([1.0] * 3, abs=0.01)
 
 
-def test_from_rest_the_relay_flies_as_if_the_way_were_longer_by_the_deadband() -> None:
-    flight = simulate(case(deadband=0.21), "switching")
-    assert flight.metrics["arrival_time"] == pytest.approx(2.0 * math.sqrt(1.21), rel=1e-12)
-    assert flight.metrics["q_residual"] == pytest.approx(-0.21, rel=1e-9)
-    assert flight.metrics["u1_total"] == pytest.approx(2.2, rel=1e-9)
+def test_from_rest_the_relay_acts_as_if_the_way_were_longer_by_the_deadband() -> None:
+    simulation = simulate(case(deadband=0.21), "switching")
+    assert simulation.metrics["arrival_time"] == pytest.approx(2.0 * math.sqrt(1.21), rel=1e-12)
+    assert simulation.metrics["q_residual"] == pytest.approx(-0.21, rel=1e-9)
+    assert simulation.metrics["u1_total"] == pytest.approx(2.2, rel=1e-9)
 
 
 def test_a_start_beside_the_curve_needs_no_switch() -> None:
-    flight = simulate(case((0.4996, -1.0)), "switching")
-    assert flight.metrics["switches"] == 0.0
-    assert flight.metrics["arrival_time"] == pytest.approx(1.0, rel=1e-12)
-    assert flight.metrics["q_residual"] == pytest.approx(-4e-4, rel=1e-9)
+    simulation = simulate(case((0.4996, -1.0)), "switching")
+    assert simulation.metrics["switches"] == 0.0
+    assert simulation.metrics["arrival_time"] == pytest.approx(1.0, rel=1e-12)
+    assert simulation.metrics["q_residual"] == pytest.approx(-4e-4, rel=1e-9)
 
 
 def test_with_a_final_time_the_relay_coasts_within_the_deadband() -> None:
-    flight = simulate(case(tf=5.0), "switching")
-    assert flight.times[-1] == 5.0
-    assert flight.metrics["arrival_time"] == pytest.approx(2.0 * math.sqrt(1.001), rel=1e-12)
-    assert abs(flight.x[0, -1]) <= 1.001e-3
-    assert flight.u[0, -1] == 0.0
+    simulation = simulate(case(tf=5.0), "switching")
+    assert simulation.times[-1] == 5.0
+    assert simulation.metrics["arrival_time"] == pytest.approx(2.0 * math.sqrt(1.001), rel=1e-12)
+    assert abs(simulation.x[0, -1]) <= 1.001e-3
+    assert simulation.u[0, -1] == 0.0
     short = simulate(case(tf=1.5), "switching")
     assert "arrival_time" not in short.metrics
     assert "not within the deadband" in short.message
 
 
 def test_a_deadband_that_is_lost_in_rounding_is_said_to_be() -> None:
-    flight = simulate(case((1.0, 0.3), bounds=(-0.7, 1.1), deadband=1e-300), "switching")
-    assert flight.status is Status.NOT_CONVERGED
-    assert "lost in rounding" in flight.message
+    simulation = simulate(case((1.0, 0.3), bounds=(-0.7, 1.1), deadband=1e-300), "switching")
+    assert simulation.status is Status.NOT_CONVERGED
+    assert "lost in rounding" in simulation.message
 
 
 # position alone
@@ -88,48 +88,48 @@ def test_a_deadband_that_is_lost_in_rounding_is_said_to_be() -> None:
 
 def test_from_rest_a_pair_of_pulses_is_least_time_as_the_solver_finds_it() -> None:
     solved = solve.solve(PITCH)
-    flight = simulate(PITCH, "pulses")
-    assert flight.metrics["pairs"] == 1.0
-    assert flight.metrics["arrival_time"] == pytest.approx(solved.times[-1], rel=1e-9)
-    assert abs(flight.metrics["theta_residual"]) < 1e-12
-    assert abs(flight.metrics["theta_dot_residual"]) < 1e-14
+    simulation = simulate(PITCH, "pulses")
+    assert simulation.metrics["pairs"] == 1.0
+    assert simulation.metrics["arrival_time"] == pytest.approx(solved.times[-1], rel=1e-9)
+    assert abs(simulation.metrics["theta_residual"]) < 1e-12
+    assert abs(simulation.metrics["theta_dot_residual"]) < 1e-14
     relay = simulate(replace(PITCH, deadband=1e-9), "switching")
     assert relay.metrics["arrival_time"] == pytest.approx(solved.times[-1], rel=1e-7)
-    assert flight.metrics["wheel_torque_total"] == pytest.approx(5.085e-3 * solved.times[-1], rel=1e-9)
+    assert simulation.metrics["wheel_torque_total"] == pytest.approx(5.085e-3 * solved.times[-1], rel=1e-9)
 
 
 @settings(max_examples=15, deadline=None)
 @given(q=SPEED, q_f=SPEED, bounds=BOUNDS)
 def test_pulses_arrive_from_rest_whatever_the_bounds(q: float, q_f: float, bounds: tuple[float, float]) -> None:
     assume(abs(q - q_f) > 1e-2)
-    flight = simulate(case((q, 0.0), (q_f, 0.0), bounds), "pulses")
-    assert flight.metrics["arrival_time"] == pytest.approx(least((q, 0.0), (q_f, 0.0), bounds)[0], rel=1e-9)
-    assert flight.metrics["q_residual"] == pytest.approx(0.0, abs=1e-10)
-    assert flight.metrics["q_dot_residual"] == pytest.approx(0.0, abs=1e-10)
+    simulation = simulate(case((q, 0.0), (q_f, 0.0), bounds), "pulses")
+    assert simulation.metrics["arrival_time"] == pytest.approx(least((q, 0.0), (q_f, 0.0), bounds)[0], rel=1e-9)
+    assert simulation.metrics["q_residual"] == pytest.approx(0.0, abs=1e-10)
+    assert simulation.metrics["q_dot_residual"] == pytest.approx(0.0, abs=1e-10)
 
 
 def test_a_rate_that_is_not_measured_stays_and_carries_the_position_off() -> None:
     of = case((1.0, 0.05))
-    flight = simulate(of, "pulses")
-    assert flight.metrics["q_dot_residual"] == pytest.approx(0.05, rel=1e-9)
-    assert flight.metrics["q_residual"] == pytest.approx(0.05 * 2.0, rel=1e-9)
-    assert "not at rest" in flight.message
+    simulation = simulate(of, "pulses")
+    assert simulation.metrics["q_dot_residual"] == pytest.approx(0.05, rel=1e-9)
+    assert simulation.metrics["q_residual"] == pytest.approx(0.05 * 2.0, rel=1e-9)
+    assert "not at rest" in simulation.message
     relay = simulate(of, "switching")  # which looks at the rate as well
     assert abs(relay.metrics["q_dot_residual"]) < 1e-9
 
 
 def test_no_number_of_pairs_takes_an_initial_rate_away() -> None:
-    flight = simulate(case((0.0, 0.01), deadband=0.02, tf=40.0), "pulses")
-    assert flight.metrics["pairs"] > 3.0
-    assert flight.times[-1] == 40.0
-    rests = flight.u[0] == 0.0
-    assert np.abs(flight.x[1, rests] - 0.01).max() < 1e-12
+    simulation = simulate(case((0.0, 0.01), deadband=0.02, tf=40.0), "pulses")
+    assert simulation.metrics["pairs"] > 3.0
+    assert simulation.times[-1] == 40.0
+    rests = simulation.u[0] == 0.0
+    assert np.abs(simulation.x[1, rests] - 0.01).max() < 1e-12
 
 
 def test_pulses_wait_where_the_error_is_allowed() -> None:
-    flight = simulate(case((0.01, 0.0), deadband=0.02, tf=3.0), "pulses")
-    assert flight.metrics["pairs"] == 0.0
-    assert not flight.u.any()
+    simulation = simulate(case((0.01, 0.0), deadband=0.02, tf=3.0), "pulses")
+    assert simulation.metrics["pairs"] == 0.0
+    assert not simulation.u.any()
 
 
 # bad input
@@ -192,14 +192,14 @@ def test_a_table_for_a_model_without_a_curve_is_refused(tmp_path: Path) -> None:
         instance.load(path)
 
 
-def test_the_command_prints_the_flight(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_the_simulation(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "double-integrator-time", "--feedback", "pulses", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["feedback"] == "pulses"
     assert found["metrics"]["arrival_time"] == pytest.approx(2.0)
 
 
-def test_a_flight_is_sampled_within_its_bounds() -> None:
-    flight: Simulation = simulate(case(bounds=(-0.3, 0.7)), "switching")
-    assert {*flight.u[0].tolist()} == {-0.3, 0.7}
-    assert flight.x.shape == (2, LINE.solver.steps + 1)
+def test_a_simulation_is_sampled_within_its_bounds() -> None:
+    simulation: Simulation = simulate(case(bounds=(-0.3, 0.7)), "switching")
+    assert {*simulation.u[0].tolist()} == {-0.3, 0.7}
+    assert simulation.x.shape == (2, LINE.solver.steps + 1)

@@ -179,7 +179,7 @@ def test_an_orbit_is_raised_in_least_time_by_two_thrusters(tmp_path: Path) -> No
     found = solve.solve(build(tmp_path, raising, text))
     assert found.status is Status.CONVERGED, found.message
     assert_certified(found)
-    # The controls as constants between their switching times, flown by other means, lead to the goal.
+    # The controls as constants between their switching times, simulated by other means, lead to the goal.
     edges = sorted({0.0, float(found.times[-1]), *(t for own in found.switching_times for t in own)})
     state = np.array([1.0, 0.0, 1.0])
     for start, end in pairwise(edges):

@@ -144,7 +144,7 @@ def simulated(
     return y, times
 
 
-def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_flies_along_the_singular_surface():
+def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_follows_the_singular_surface():
     """Half the initial weight of drag, then the surface, 0.6 of the mass, and the top: nothing has to be iterated."""
     legs = (
         (rocket(3.5), lambda y: drag(y[0], y[1]) - 0.5, (0.01, 0.02)),

@@ -54,7 +54,7 @@ def function_of(derivation: Derivation, expressions: Any, **values: float) -> Ca
     return lambda **point: np.array(numeric(*(({**values, **point})[name] for name, _ in names)), dtype=float)
 
 
-def flight(derivation: Derivation, start: list[float], until: float, costates: bool = False, **values: float) -> Any:
+def simulated(derivation: Derivation, start: list[float], until: float, costates: bool = False, **values: float) -> Any:
     """Integrate the derived first-order form (and the costates), from time zero."""
     names = [v.symbol for v in derivation.model.states]
     rates = list(derivation.rhs("first_order"))
@@ -274,7 +274,7 @@ def test_thrust_stands_apart_from_gravity() -> None:
     assert symbols_of(cartesian("x1 y1").controls)[0] in found.args
 
 
-def test_polar_flight_is_the_cartesian_one(polar: Derivation) -> None:
+def test_polar_simulation_is_the_cartesian_one(polar: Derivation) -> None:
     """Thrust on, both ways round: the same place at the same time."""
     radial, tangential, until = 0.03, -0.05, 5.0
 
@@ -287,7 +287,7 @@ def test_polar_flight_is_the_cartesian_one(polar: Derivation) -> None:
     cartesian_end = solve_ivp(
         in_the_plane, (0, until), [1.2, 0.0, 0.1, 0.8], method="DOP853", rtol=1e-12, atol=1e-13
     ).y[:, -1]
-    r, r_dot, theta, theta_dot = flight(
+    r, r_dot, theta, theta_dot = simulated(
         polar, [1.2, 0.1, 0.0, 0.8 / 1.2], until, sigma=1.0, omega=1.0, u1=radial, u2=tangential
     ).y[:, -1]
     polar_end = [
@@ -299,8 +299,8 @@ def test_polar_flight_is_the_cartesian_one(polar: Derivation) -> None:
     np.testing.assert_allclose(polar_end, cartesian_end, atol=1e-10)
 
 
-def test_linearisation_predicts_neighbouring_flights(polar: Derivation) -> None:
-    """Transition matrix of A(t), from the variational equation, against differences of flights."""
+def test_linearisation_predicts_neighbouring_simulations(polar: Derivation) -> None:
+    """Transition matrix of A(t), from the variational equation, against differences of simulations."""
     n, start, until = 4, np.array([1.1, 0.02, 0.0, 0.9]), 2.0
     values = {"sigma": 1.0, "omega": 1.0, "u1": 0.02, "u2": -0.01}
     names = [v.symbol for v in polar.model.states]
@@ -314,7 +314,7 @@ def test_linearisation_predicts_neighbouring_flights(polar: Derivation) -> None:
     first = np.concatenate([start, np.eye(n).ravel()])
     transition = solve_ivp(variational, (0, until), first, method="DOP853", rtol=1e-11, atol=1e-12).y[n:, -1]
     h = 1e-5
-    ends = [flight(polar, list(start + s * h * e), until, **values).y[:, -1] for e in np.eye(n) for s in (1, -1)]
+    ends = [simulated(polar, list(start + s * h * e), until, **values).y[:, -1] for e in np.eye(n) for s in (1, -1)]
     differences = np.array([(ends[2 * i] - ends[2 * i + 1]) / (2 * h) for i in range(n)]).T
     np.testing.assert_allclose(transition.reshape(n, n), differences, rtol=1e-6, atol=1e-7)
 
@@ -346,13 +346,13 @@ def test_symmetry_finds_what_is_conserved(name: str, expected: set[str]) -> None
 
 
 @pytest.mark.parametrize("name", [POLAR.name, "cartesian 3-D", "spherical", "rotating axes"])
-def test_conserved_quantities_are_constant_in_flight(name: str) -> None:
+def test_conserved_quantities_are_constant_in_simulation(name: str) -> None:
     found = derived(name)
     values = {"mu": 1.3, "sigma": 1.2, "omega": 0.8, "Omega": 0.4}
     values |= {v.symbol: 0.0 for v in found.model.controls}
     names = [v.symbol for v in found.model.states]
     start = {"r": 1.1, "theta_dot": 0.9, "r_dot": 0.1, "x1": 1.0, "y1": 0.2, "vy": 1.0, "phi": 0.3, "phi_dot": 0.2}
-    path = flight(found, [start.get(s, 0.1) for s in names], 6.0, **values)
+    path = simulated(found, [start.get(s, 0.1) for s in names], 6.0, **values)
     quantities = function_of(found, found.rhs("conserved"), **values)
     along = np.array([quantities(**dict(zip(names, path.sol(s), strict=True))) for s in np.linspace(0, 6, 25)])
     np.testing.assert_allclose(along - along[0], 0, atol=1e-8)
@@ -513,10 +513,10 @@ def test_control_law_beats_every_admissible_control(problem: Problem) -> None:
         # small costates for half of the points, so that bounds are active in some and idle in others
         point |= {s: point[s] * (0.2 if index % 2 else 1.0) for s in point if s.startswith("lambda_")}
         chosen = law(**point, **bounds)
-        rivals = hamiltonian_by_hand(problem.name, {**point, **dict(zip(names, grid, strict=True))})
+        competitors = hamiltonian_by_hand(problem.name, {**point, **dict(zip(names, grid, strict=True))})
         best = hamiltonian_by_hand(problem.name, {**point, **dict(zip(names, chosen, strict=True))})
-        assert best <= rivals.min() + 1e-12
-        np.testing.assert_allclose(chosen, grid[:, rivals.argmin()], atol=6e-3)
+        assert best <= competitors.min() + 1e-12
+        np.testing.assert_allclose(chosen, grid[:, competitors.argmin()], atol=6e-3)
         active += bool(
             np.isclose(np.abs(chosen), [bounds[f"{u}_max"] for u in names]).any()
             or np.isclose(np.abs(chosen), 0.4).any()
@@ -529,7 +529,7 @@ def test_hamiltonian_changes_only_as_time_enters() -> None:
     """Along an extremal dH/dt is the explicit slope of H, which for Van der Pol here is not zero."""
     found = derive(replace(van_der_pol, control_set="free"))
     names = ["q1", "v1", "lambda_q1", "lambda_v1"]
-    path = flight(found, [0.8, 0.1, 0.3, -0.2], 2.0, costates=True, k=0.7)
+    path = simulated(found, [0.8, 0.1, 0.3, -0.2], 2.0, costates=True, k=0.7)
     h = found.equation("minimised_hamiltonian.H_star").rhs
     value, slope = (function_of(found, [e], k=0.7) for e in (h, sp.diff(h, t)))
 
@@ -547,11 +547,11 @@ def optimum(found: Derivation, start: list[float], final_time: float, weight: fl
     end = function_of(found, [found.equation(f"boundary_conditions.lambda_{s}").rhs for s in ("q1", "v1")], k=weight)
 
     def miss(lam: np.ndarray) -> np.ndarray:
-        y = flight(found, [*start, *lam], final_time, costates=True).y[:, -1]
+        y = simulated(found, [*start, *lam], final_time, costates=True).y[:, -1]
         return y[2:] - end(t=final_time, **dict(zip(names, y, strict=True)))
 
     lam = root(miss, [0.0, 0.0], tol=1e-12).x
-    path = flight(found, [*start, *lam], final_time, costates=True)
+    path = simulated(found, [*start, *lam], final_time, costates=True)
     last = dict(zip(names, path.y[:, -1], strict=True)) | {"t": final_time}
     nodes, weights = np.polynomial.legendre.leggauss(12)
     u = -path.sol(final_time * (nodes + 1) / 2)[3]

@@ -109,7 +109,7 @@ def seen(state: np.ndarray, radius: float, rate: float, time: float) -> np.ndarr
 
 
 def test_neighbouring_orbits_follow_the_transition_matrix_to_second_order() -> None:
-    """Flights of the exact two-body problem: ten times the deviation, a hundred times the error."""
+    """Simulations of the exact two-body problem: ten times the deviation, a hundred times the error."""
     radius, rate, until = 1.3, 0.7, 9.0
     mu = radius**3 * rate**2
     model = kernels.load("hill")

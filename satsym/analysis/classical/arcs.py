@@ -150,7 +150,7 @@ def plant(instance: Instance, feedback: str) -> Plant:
 def simulation_of(
     plant: Plant, feedback: str, arcs: Sequence[Arc], metrics: dict[str, float], message: str, answered: bool
 ) -> Simulation:
-    """The flight that arcs make, with its totals; `answered` tells whether the feedback did what it is for."""
+    """The simulation that arcs make, with its totals; `answered` tells whether the feedback did what it is for."""
     case, spec = plant.instance, plant.instance.model.spec
     begins = np.array([arc.start for arc in arcs])
     times = np.linspace(arcs[0].start, arcs[-1].end, case.solver.steps + 1)
@@ -181,7 +181,7 @@ def simulation_of(
 
 
 def within_already(plant: Plant) -> BadInput:
-    """That there is nothing to fly."""
+    """That there is nothing to simulate."""
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
         f"{case.name}: [initial] {name} lies within the deadband of its target already; state another one, or a "

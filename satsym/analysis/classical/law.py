@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-13
 """Of each step of the integration, relative to the size of each state."""
 MOST_STEPS = 10_000
-"""As many times as the fastest motion of the loop may decay to 1/e in the time that is flown."""
+"""As many times as the fastest motion of the loop may decay to 1/e in the time that is simulated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,11 +133,11 @@ def loop(instance: Instance) -> Loop:
 
 @np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance) -> Simulation:
-    """Fly an instance under its classical law.
+    """Simulate an instance under its classical law.
 
     Returns
     -------
-    Flight
+    Simulation
         Its controls leave out the impulse at the beginning; `metrics` has it.
 
     Raises

@@ -17,11 +17,11 @@ from satsym.status import BadInput
 
 
 def simulate(instance: Instance) -> Simulation:
-    """Fly an instance with pairs of pulses: one pair, or until its final time.
+    """Simulate an instance with pairs of pulses: one pair, or until its final time.
 
     Returns
     -------
-    Flight
+    Simulation
         Its metrics have ``arrival_time``, when the last pair is over, ``pairs``, and what is left of position and
         rate at the end, ``_residual``.
 

@@ -19,11 +19,11 @@ SLACK = 1e-6
 
 
 def simulate(instance: Instance) -> Simulation:
-    """Fly an instance by its switching curve until it is within the deadband, or at its final time.
+    """Simulate an instance by its switching curve until it is within the deadband, or at its final time.
 
     Returns
     -------
-    Flight
+    Simulation
         Its metrics have ``arrival_time`` after the beginning (where it arrives), ``switches``, and what is left of
         position and rate at the end, ``_residual``. With a final time the motion coasts from its arrival on.
 

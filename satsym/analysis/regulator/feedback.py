@@ -86,9 +86,9 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
 
     Returns
     -------
-    Flight
+    Simulation
         With ``"lqr"`` its metrics have ``lqr_cost``, the integral of x'Qx + u'Ru for the deviation x along the
-        flight, and ``lqr_cost_linear``, what the linear system would pay from the same start.
+        simulation, and ``lqr_cost_linear``, what the linear system would pay from the same start.
 
     Raises
     ------

@@ -31,7 +31,7 @@ def matlab(lines: str | Sequence[str], **given: Any) -> Record:
 
 
 def iterates() -> Family:
-    """Controls before and after an iteration, which changed by shares of their size from nothing to all of it."""
+    """Controls before and after an iteration, which changed by shares of their size between none and all of it."""
     rng, members = np.random.default_rng(_SEED), []
     for share in (0.0, 0.001, 0.003, 0.009, 0.011, 0.03, 0.1, 0.5, 1.0):
         new = rng.uniform(0.1, 1.0, 20)

@@ -1,4 +1,4 @@
-"""Pictures of a solution or a flight, for any model: PNG files, and on request PDF and SVG.
+"""Pictures of a solution or a simulation, for any model: PNG files, and on request PDF and SVG.
 
 matplotlib is imported when the first picture is drawn, without pyplot.
 """
@@ -30,10 +30,10 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     -------
     dict
         Name -> content of each file, the overview first. A picture that would show nothing is left out: ``orbit`` where
-        the model has no position vector, ``controls`` where a flight has none, ``constraints`` where the model has no
-        path constraints, ``costates`` for a flight,
-        ``invariants`` where the model has none, ``convergence`` for fewer than three iterations, and all but that where
-        there is no trajectory.
+        the model has no position vector, ``controls`` where a simulation has none, ``constraints`` where the model has
+        no path constraints, ``costates`` for a simulation, ``invariants`` where
+        the model has none, ``convergence`` for fewer than three iterations, and all but that where there is no
+        trajectory.
     """
     from satsym.report.plots import style
 

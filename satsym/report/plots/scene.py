@@ -17,7 +17,7 @@ from satsym.spec import ProblemSpec
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A solution or a flight, and what is drawn beside it."""
+    """A solution or a simulation, and what is drawn beside it."""
 
     result: Solution | Simulation
     """What was solved or simulated."""
@@ -31,7 +31,7 @@ class Scene:
     x: Array
     u: Array
     lam: Array | None
-    """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight."""
+    """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a simulation."""
     reference: Array | None
     free: Array | None
     """States of the reference curve and of the motion without control at the nodes; ``None`` where there is none or,

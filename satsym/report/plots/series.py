@@ -89,7 +89,7 @@ def states(scene: Scene) -> list[Series]:
 
 
 def controls(scene: Scene) -> list[Series]:
-    """The controls with their bounds, also their norm where it is bounded; none of a flight without control."""
+    """The controls with their bounds, also their norm where it is bounded; none of a simulation without control."""
     instance, spec = scene.instance, scene.spec
     if isinstance(scene.result, Simulation) and scene.coasting:
         return []
@@ -158,7 +158,7 @@ def constraints(scene: Scene) -> list[Series]:
 
 
 def costates(scene: Scene) -> list[Series]:
-    """The costates and the Hamiltonian; nothing for a flight."""
+    """The costates and the Hamiltonian; nothing for a simulation."""
     if scene.lam is None:
         return []
     model, p = scene.instance.model, scene.instance.parameters

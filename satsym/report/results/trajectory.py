@@ -81,7 +81,7 @@ class _Result(msgspec.Struct):
 
 
 def contents(found: Solution | Simulation) -> dict[str, Content]:
-    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
+    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a simulation.
 
     The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), the names in
     ``states`` and ``controls``, and the ``status``; for a solution also ``history`` (2, K), cost and residual of each

@@ -1,4 +1,4 @@
-"""What a solution or a flight says to people, as plain text."""
+"""What a solution or a simulation says to people, as plain text."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
 
 
 def simulation_text(simulation: Simulation, colour: bool = False) -> str:
-    """Summary of a flight; see :func:`solution_text`."""
+    """Summary of a simulation; see :func:`solution_text`."""
     instance = simulation.instance
     unit = time_unit(instance.model.spec)
     facts = [(say("final time"), f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]

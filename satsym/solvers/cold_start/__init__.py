@@ -1,1 +1,1 @@
-"""From nothing to an extremal: initial guesses, and paths of easier problems."""
+"""From a cold start to an extremal: initial guesses, and paths of easier problems."""

@@ -1,4 +1,4 @@
-"""From nothing to an extremal whose controls are directions: angles, or vectors of full length in a ball.
+"""From a cold start to an extremal whose controls are directions: angles, or vectors of full length in a ball.
 
 The law of a direction says nothing where costates vanish, which is where every cold start begins. In the regularised
 problem, directions may be shorter and their squares cost a little: without bounds it is one of least effort, which is

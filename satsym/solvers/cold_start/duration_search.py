@@ -219,7 +219,7 @@ class Search:
         return self.tries[-1].floor > 0.0 and self.cheapest.cost + self.trials.credit > 0.0
 
     def _solved(self, duration: float, near: Try) -> Try | None:
-        """The problem of a duration near another one: from nothing where that is easy, else from that extremal."""
+        """The problem of a duration near another one: from a cold start where that is easy, else from that extremal."""
         found = None if near.start.found.hard else self.trials.cold(duration, self._quick)
         return found or self.trials.beside(near, duration)
 

@@ -107,7 +107,7 @@ class Trials:
         return two_point(fixed, duration).relaxed(float("inf"))
 
     def cold(self, duration: float, quick: bool) -> Try | None:
-        """Solved from nothing, with the first way of the cold start only or with all."""
+        """Solved from a cold start, by the first of its methods only or with all."""
         problem = self.given(duration)
         start = cold_start(problem, self.limits, quick)
         self.steps += start.steps

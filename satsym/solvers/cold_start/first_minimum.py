@@ -1,4 +1,4 @@
-"""From nothing to an extremal: a straight line where that goes straight, else a path of easier problems.
+"""From a cold start to an extremal: a straight line where that goes straight, else a path of easier problems.
 
 Where the motion without control looks the same after a rotation, spirals of the likeliest numbers of turns come
 first. Else first Newton's method from what is guessed, or from the straight line in the state space (or, where nothing

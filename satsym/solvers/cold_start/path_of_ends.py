@@ -22,7 +22,7 @@ def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], At
     problem
         Without bounds, with a given final time.
     solve
-        How the problem with free angles is minimised from nothing.
+        How the problem with free angles is minimised from a cold start.
     """
     spec, final = problem.instance.model.spec, problem.instance.final
     angles = [i for i, state in enumerate(spec.states) if state.kind == "angle" and state.symbol in final]
@@ -76,7 +76,7 @@ def along_durations(
     problem
         With a given final time.
     solve
-        How the shorter problem is minimised from nothing.
+        How the shorter problem is minimised from a cold start.
     """
     if problem.free_time:
         return None

@@ -30,7 +30,7 @@ class Arcs:
     problem: TwoPoint
     """The two-point problem."""
     mesh: Array
-    """Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
+    """Nodes in [0, 1], shape (N+1,). Corners must be among them, or the order is lost; with compiled kernels only the
     path between the nodes asks for that."""
     nodes: Array
     """Values there, shape (2n, N+1)."""

@@ -62,7 +62,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
 
     Returns
     -------
-    Flight
+    Simulation
         At the instance's number of steps; ``metrics`` has the steps that were needed and the estimated
         error, relative to the size of each state or, where more, to the size at which rounding alone
         causes that error.

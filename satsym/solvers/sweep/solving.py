@@ -26,7 +26,7 @@ ROUNDS = 6
 """Times that nodes are moved to the corners, at the most."""
 
 SETTLED = 1e-9
-"""Kinks that move by less than this share of the horizon stay."""
+"""Corners that move by less than this share of the horizon stay."""
 
 WORTH_COMPILING = 20_000
 """Steps from which compiled kernels pay for their compilation within one run."""

@@ -116,8 +116,8 @@ def control_law(so_far: Derivation) -> Step:
         law = chosen(point)
         best = value({**point, **dict(zip(controls, law, strict=True))})[0]
         return control_sets.slacks(problem.control_set, point, limits, law) + [
-            sign(problem) * (value({**point, **dict(zip(controls, rival, strict=True))})[0] - best)
-            for rival in control_sets.admissible(problem.control_set, point, limits, len(controls), rng, COMPETITORS)
+            sign(problem) * (value({**point, **dict(zip(controls, other, strict=True))})[0] - best)
+            for other in control_sets.admissible(problem.control_set, point, limits, len(controls), rng, COMPETITORS)
         ]
 
     claim, rule = (worded(key, problem) for key in ("cheapest admissible", f"project on {problem.control_set}"))

@@ -227,8 +227,8 @@ def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr
             law = chosen(here)
             best = value({**here, **dict(zip(controls, law, strict=True))})[0]
             found += control_sets.slacks("box", here, limits, law)
-            for rival in _rivals(here, lower, upper, rng):
-                found.append(better * (value({**here, **dict(zip(controls, rival, strict=True))})[0] - best))
+            for other in _competitors(here, lower, upper, rng):
+                found.append(better * (value({**here, **dict(zip(controls, other, strict=True))})[0] - best))
         return found
 
     everything = {*limits, *controls, *costates(so_far)}
@@ -236,7 +236,7 @@ def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr
     return never_below(worded(claim, problem), everything, margins)
 
 
-def _rivals(
+def _competitors(
     point: Point, lower: Sequence[sp.Symbol], upper: Sequence[sp.Symbol], rng: random.Random
 ) -> list[Sequence[Any]]:
     """All corners of the box, its points with controls at rest, and random points of it."""

@@ -1,4 +1,4 @@
-"""The orbit that a motion follows, to scale: the whole conic with its foci and apses, and what is flown of it."""
+"""The orbit that a motion follows, to scale: the whole conic with its foci and apses, and what of it is covered."""
 
 from __future__ import annotations
 

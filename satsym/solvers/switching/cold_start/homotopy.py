@@ -1,4 +1,4 @@
-"""From nothing to smoothed extremals, less and less smoothed.
+"""From a cold start to smoothed extremals, less and less smoothed.
 
 Without bounds the regularised problem is one of least effort, which collocation solves from a cold start. Its bounds
 are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from the last solution.
@@ -46,7 +46,7 @@ TIGHTER = 4.0
 
 @dataclass(frozen=True)
 class Stopped(Exception):
-    """The way from nothing to the problem ends early."""
+    """The path from a cold start to the problem ends early."""
 
     status: Status
     message: str
