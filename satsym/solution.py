@@ -39,14 +39,14 @@ Progress: TypeAlias = Callable[[Iteration], None]
 class Event:
     """What happens along the way: an arc on the boundary of a path constraint begins or ends, or it is touched.
 
-    Or a point is passed that must be.
+    Or a point is passed that must be, or a control jumps from one minimiser of H to another.
 
     Attributes
     ----------
     kind
-        ``"entry"``, ``"exit"``, ``"touch"`` or ``"interior"``.
+        ``"entry"``, ``"exit"``, ``"touch"``, ``"interior"`` or ``"jump"``.
     name
-        Of the constraint, or the point.
+        Of the constraint, the point or the control.
     t
         When.
     """
@@ -200,7 +200,8 @@ class Solution:
     certificate
         ``None`` where there is no answer to certify.
     events
-        Where boundaries of path constraints are entered, left and touched, in order of time.
+        Where boundaries of path constraints are entered, left and touched, and where controls jump between minimisers
+        of H, in order of time.
     intermediate
         Of a continuation: the answers of the problems before this one, in order.
     interval

@@ -10,17 +10,21 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
-from satsym.solution import Iteration, Progress, Solution
+from satsym.solution import Event, Iteration, Progress, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.collocation.continuation import by_bound
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
+from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.control.slopes import continued
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.revolutions import TURN, Best
 from satsym.status import Status
+
+BESIDE = 1e-9
+"""Share of the duration by which nodes lie before and after a jump."""
 
 Method = Callable[[Instance, Limits, bool], Extremal]
 """From an instance to an extremal; the last argument says whether with great effort."""
@@ -78,6 +82,10 @@ def _solution(
     problem, path = extremal.problem, extremal.path
     n, m = problem.states, len(instance.model.spec.controls)
     tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
+    jumped = found(problem, path) if extremal.status.answered else []
+    for jump in jumped:
+        tau = np.append(tau[np.abs(tau - jump.time) > 2.0 * BESIDE], [jump.time - BESIDE, jump.time + BESIDE])
+    tau.sort()
     scaled = limits.in_blocks(path, tau)
     z = scaled * problem.scale.both
     for name, turns in best.turns.items():
@@ -109,6 +117,12 @@ def _solution(
         iterations=extremal.iterations,
         history=history,
         wall_s=time.perf_counter() - began,
+        events=tuple(
+            Event("jump", name, instance.t0 + elapsed * jump.time)
+            for jump in jumped
+            for name, before, after in zip(instance.model.spec.control_names, jump.before, jump.after, strict=True)
+            if before != after
+        ),
     )
 
 

@@ -75,7 +75,8 @@ def solution_object(solution: Solution) -> dict[str, Any]:
     dict
         Keys in a fixed order. States and costates by the state's name; ``None`` where a number is not finite.
         ``switching_times`` are those of all controls together, each once, sorted; ``events`` are entries, exits and
-        touch points of path constraints, and points on the way, in order of time.
+        touch points of path constraints, points on the way, and jumps between
+        minimisers of H, in order of time.
     """
     spec, states = solution.instance.model.spec, solution.instance.model.spec.state_names
     switches = {float(t) for times in solution.switching_times for t in times}

@@ -302,8 +302,10 @@ def _switching(solution: Solution, unit: str) -> list[str]:
 
 
 def _events(solution: Solution, unit: str) -> list[str]:
-    """Where path constraints are met and left, and points on the way passed."""
-    head = say("point on the way") if solution.instance.model.spec.interior else say("path constraint")
+    """Where path constraints are met and left, points on the way passed, and minimisers of H changed."""
+    jumping = any(one.kind == "jump" for one in solution.events)
+    head = say("minimiser of H") if jumping else say("path constraint")
+    head = say("point on the way") if solution.instance.model.spec.interior else head
     rows = [
         (message(one.kind), one.name, say("at <times>", times=f"{figure(one.t, 10)} {unit}".rstrip()))
         for one in solution.events

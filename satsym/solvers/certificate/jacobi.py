@@ -11,7 +11,8 @@ reached yet, stay there. Two phases that pass together are seen as well as one, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,9 @@ TURN = 2.0 * np.pi
 
 TOUCHED = 1e-7
 """Phases this close to a full turn have made it, as far as can be told."""
+
+HALF, FULL = 0.5, 1.0 - 1e-9
+"""How much of a turn the sum of all phases may have moved onwards; by rounding, phases at rest move back."""
 
 AFRESH = 8
 """Steps after which the basis is made orthonormal: within so many it does not become a bad one."""
@@ -61,7 +65,7 @@ class Phases:
         return bool(((turns >= 1.0) & (np.abs(self.values[-1] - turns * TURN) <= TOUCHED)).any())
 
 
-def followed(transition: Array) -> Phases | None:
+def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
     """Phases from station to station.
 
     Parameters
@@ -69,6 +73,9 @@ def followed(transition: Array) -> Phases | None:
     transition
         Symplectic matrices from each station to the next, shape (K-1, 2n, 2n), in each of which the sum of the phases
         turns by less than pi.
+    jumped
+        Those in which the control jumps. The least H of all controls has a concave edge there, so that no phase turns
+        back, and as it has slopes across one direction only, together they turn by less than a full turn.
 
     Returns
     -------
@@ -84,8 +91,8 @@ def followed(transition: Array) -> Phases | None:
         return None
     every = np.linalg.qr(np.array(frames))[0]
     values = [[0.0] * n]
-    for new in _angles(every)[1:].tolist():
-        values.append(_continued(values[-1], new))
+    for k, new in enumerate(_angles(every)[1:].tolist()):
+        values.append(_continued(values[-1], new, FULL if k in jumped else HALF))
     return Phases(np.array(values), every)
 
 
@@ -98,12 +105,15 @@ def _angles(frames: Array) -> Array:
     return found
 
 
-def _continued(before: Sequence[float], angles: Iterable[float]) -> list[float]:
-    """Phases that go on from those before to given angles, keeping their order round the circle."""
+def _continued(before: Sequence[float], angles: Iterable[float], ahead_by: float = HALF) -> list[float]:
+    """Phases that go on from those before to given angles, keeping their order round the circle.
+
+    Their sum moves by less than a turn, of which so much is onwards.
+    """
     count, residues = len(before), [phase % TURN for phase in before]
     order, ahead = sorted(range(count), key=residues.__getitem__), sorted(angles)
-    # Their sum moves by less than half a turn: so many of the largest come from a turn before.
-    shift = -round((sum(ahead) - sum(residues)) / TURN)
+    # So many of the largest come from a turn before.
+    shift = math.ceil((sum(residues) - sum(ahead)) / TURN - (1.0 - ahead_by))
     found = []
     for place, phase in enumerate(order, shift):
         after = ahead[place % count] + TURN * (place // count)
@@ -246,7 +256,7 @@ def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
     along
         Its linearisation, or ``None`` where there is none.
     """
-    phases = None if along is None else followed(along.transition)
+    phases = None if along is None else followed(along.transition, along.jumped)
     if along is None or phases is None:
         return Conjugate(resolved=False)
     time = first_passage(along.times, phases, lambda station, t: between(solution, along, station, t))

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.arrays import Array
-from satsym.solution import Solution
+from satsym.solution import Check, Solution
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.certificate.reintegration.passages import passages
 
-HALVINGS, LEFT = 40, 1e-3
-"""Of each interval, towards where the control moves most, and the share of its move that a jump leaves."""
-
-MOVED = 1e-6
-"""Share of the largest control by which one moves that may have jumped."""
-
+CROSSED = 1e-9
+"""Least rate at which one minimiser of H overtakes another, in units of what the jump changes of the rates."""
 
 LOOKED_AT, GRID = 9, 201
 """Times within a solution and values of a control at which other minimisers of H are looked for."""
@@ -21,29 +18,15 @@ EQUAL, APART = 1e-9, 1e-3
 """Share of H's range by which one may be worse that is as good, and of the control's by which it is another one."""
 
 
-def jumps(solution: Solution) -> int:
-    """How many times controls jump while states and costates move on: on shorter and shorter times by as much."""
-    instance, model = solution.instance, solution.instance.model
-    if not model.spec.stationary:
-        return 0
-    n, t, z = len(solution.x), solution.times, np.concatenate([solution.x, solution.lam])
-
-    def law(share: Array) -> Array:
-        times, at = t[:-1] + share * np.diff(t), z[:, :-1] + share * np.diff(z)
-        bounds = instance.control_set.arguments
-        return np.asarray(model.control_law_batch(times, at[:n], at[n:], instance.parameters, bounds))
-
-    low, high = np.zeros(len(t) - 1), np.ones(len(t) - 1)
-    first, last = law(low), law(high)
-    moved = np.abs(last - first).max(axis=0)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        between = law(middle)
-        later = np.abs(last - between).max(axis=0) > np.abs(between - first).max(axis=0)
-        low, high = np.where(later, middle, low), np.where(later, high, middle)
-        first, last = np.where(later, between, first), np.where(later, last, between)
-    left = np.abs(last - first).max(axis=0)
-    return int(((left > LEFT * moved) & (moved > MOVED * np.abs(solution.u).max())).sum())
+def checks(solution: Solution) -> list[Check]:
+    """What jumps must keep for the second variation to be known, each a deficit that must not be positive."""
+    every, tied = passages(solution), ties(solution)
+    unknown, unit = sum(not one.located for one in every), unit_sizes(solution)
+    crossing = [one.saltation(solution, unit) for one in every if one.located]
+    flat = sum(not -one.speed > CROSSED * float(np.abs(one.leap).max()) for one in crossing)
+    found = [Check("second variation unknown: jumps between minimisers", float(unknown), 0.0)] if unknown else []
+    found += [Check("minimisers of H that a jump joins stay as good", float(flat), 0.0)] if crossing else []
+    return found + ([Check("another minimiser of H stays as good", float(tied), 0.0)] if tied else [])
 
 
 def ties(solution: Solution) -> int:

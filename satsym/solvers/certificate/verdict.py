@@ -8,12 +8,11 @@ from satsym.arrays import Array
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
-from satsym.solvers.certificate import competitors, conditions
+from satsym.solvers.certificate import competitors, conditions, jumps
 from satsym.solvers.certificate.comparison import Comparison, Competitor
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
-from satsym.solvers.certificate.jumps import jumps, ties
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
@@ -169,11 +168,9 @@ def first_order(solution: Solution, recomputed: Flow, defect: str, without: Arra
 
 def _sufficient(solution: Solution, field: Conjugate, close: Neighbours) -> list[Check]:
     """Each is a deficit that must not be positive."""
-    jumped, tied = jumps(solution), ties(solution)
     return [
         Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0),
-        *([Check("second variation unknown: jumps between minimisers", float(jumped), 0.0)] if jumped else []),
-        *([Check("another minimiser of H stays as good", float(tied), 0.0)] if tied else []),
+        *jumps.checks(solution),
         *field.checks,
         *close.checks,
     ]

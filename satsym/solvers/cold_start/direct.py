@@ -21,6 +21,7 @@ from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import on_mesh
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.jumping import found, located
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.collocation.scaling import final_argument
@@ -306,10 +307,13 @@ def _extremal(programme: Programme, unknown: Array) -> tuple[TwoPoint, Start] | 
     z, tau = np.concatenate([x, costates]) / scale.both, np.linspace(0.0, 1.0, len(times))
     for intervals in MESHES:
         mesh = np.linspace(0.0, 1.0, intervals + 1)
-        system = System(problem, mesh, STAGES)
-        outcome = newton(system, on_mesh(problem, tau, z, mesh), most=40)
+        curve = on_mesh(problem, tau, z, mesh)
+        if found(problem, curve):
+            outcome = located(problem, curve, STAGES, intervals)
+        else:
+            outcome = newton(System(problem, mesh, STAGES), curve, most=40)
         if outcome is not None and outcome.solved and outcome.curve.in_domain(problem.positive):
-            cost = system.cost(outcome.curve)
+            cost = System(problem, outcome.curve.mesh, STAGES).cost(outcome.curve)
             attempt = Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, cost)
             return problem, Start(attempt, Origin.DIRECT, outcome.iterations, bounded=True)
     return None

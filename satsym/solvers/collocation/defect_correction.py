@@ -15,6 +15,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.gauss import interpolation, scheme
+from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -74,7 +75,7 @@ def correct_defects(curve: Curve, linearised: Linearised, tolerance: float, poin
     Corrected or None
         ``None`` where corrections are not finite or do not shrink.
     """
-    system = System(linearised.system.problem, curve.mesh, points)
+    system = System(linearised.system.problem, curve.mesh, points, linearised.system.jumps)
     onto = interpolation(linearised.system.order, points)
     fundamental = linearised.fundamental(onto)
     inverse = _inverted(fundamental)
@@ -112,7 +113,7 @@ def resolved(problem: TwoPoint, curve: Curve, rough: float) -> Corrected | None:
     """
     if not left_out(curve).max() < rough:
         return None
-    outcome = newton(System(problem, curve.mesh, POINTS), curve.with_stages(POINTS))
+    outcome = newton(System(problem, curve.mesh, POINTS, found(problem, curve)), curve.with_stages(POINTS))
     if outcome is None or not outcome.solved:
         return None
     omitted = left_out(outcome.curve)

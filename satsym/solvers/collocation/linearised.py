@@ -40,7 +40,10 @@ class Linearised:
     def step(self, residual: Residual) -> Step:
         """The Newton correction for a residual."""
         local = self._local(residual)
-        defects = self.system.scheme.end @ local - residual.ends.T
+        defects = self.system.scheme.end @ local
+        for k, one in self._residual.saltations.items():
+            defects[k] = one.matrix @ defects[k]
+        defects -= residual.ends.T
         nodes, theta = self.matching.correction(defects, residual.start, residual.finish)
         stages = local + self.spread(nodes, theta, None)
         return Step(nodes.T, stages.transpose(2, 0, 1), theta)
@@ -114,6 +117,10 @@ def linearise(
     transition.reshape(count, -1)[:, :: n + 1] += 1.0 - system.scheme.end.sum()
     extra = solved[:, n + 1 :].reshape(count, e, s, n)
     by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
+    for k, one in residual.saltations.items():
+        transition[k], by_theta[k] = one.matrix @ transition[k], one.matrix @ by_theta[k]
+        if system.problem.free_time:
+            by_theta[k, :, -1] += one.leap * (one.drift * system.mesh[k + 1] / one.speed)
     ends = system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta)
     by_end = ends[0] if at_end is None else at_end
     matching = Matching(transition, by_theta, by_end, ends[1], mixed=system.problem.homogeneous)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import UNSMOOTHED, ControlSet, Row
 from satsym.instance import Instance
+from satsym.solvers.control.jumps import Jump, Saltation, saltation
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
 ROUNDING = 1e-10
@@ -173,6 +174,11 @@ class TwoPoint:
             *self._arguments(tau, z, theta), self.control_set.arguments
         )
         return slopes / self.scale.both
+
+    def saltation(self, tau: float, z: Array, theta: Array, jump: Jump) -> Saltation:
+        """How neighbouring extremals pass a jump at ``tau`` and ``z`` (2n,)."""
+        t, unit = self.instance.t0 + self.elapsed(theta) * tau, self.scale.both[:, 0]
+        return saltation(self.instance, t, z * unit, jump, unit, self.scale.cost)
 
     def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
         """The integrand of the cost under the control law, scaled, shape (N,)."""

@@ -12,10 +12,12 @@ from satsym.solvers.collocation.continuation import corners
 from satsym.solvers.collocation.curve import SMALL, Curve
 from satsym.solvers.collocation.defect_correction import correct_defects, left_out, resolved
 from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
+from satsym.solvers.control.jumps import Jump
 
 NEAR = 1e-3
 """Last correction of Newton's method from which defect corrections converge quickly."""
@@ -60,13 +62,15 @@ def refine(
     total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, FINEST)
     for _ in range(ROUNDS):
         if known is None:
-            outcome = newton(System(problem, curve.mesh, STAGES), curve.on(curve.mesh, STAGES), tolerance=NEAR)
+            system = System(problem, curve.mesh, STAGES, found(problem, curve))
+            outcome = newton(system, curve.on(curve.mesh, STAGES), tolerance=NEAR)
             total += outcome.iterations if outcome else 0
             if outcome and outcome.solved:
                 curve, known = outcome.curve, outcome.linearised
         corrected = (correct_defects(curve, known, aim) or resolved(problem, curve, ROUGH)) if known else None
         met = corners(problem, corrected.curve) if corrected and keep_nodes else np.zeros(0)
-        error = max(corrected.error, _misplaced(problem, corrected.curve, met)) if corrected else float("inf")
+        jumps = found(problem, corrected.curve) if corrected else []
+        error = max(corrected.error, _misplaced(problem, corrected.curve, met, jumps)) if corrected else float("inf")
         better = error < 0.5 * best.error
         if corrected and error < best.error:
             reason = Reason.EXTREMAL if error < tolerance else Reason.INACCURATE
@@ -82,7 +86,9 @@ def refine(
         if density.sum() > MOST_INTERVALS:
             break
         curve = corrected.curve if corrected else curve
-        mesh = _followed(_split(curve.mesh, density), met) if keep_nodes else _spread(curve.mesh, density)
+        places = np.union1d(met, [jump.time for jump in jumps])
+        followed = keep_nodes or len(places)
+        mesh = _followed(_split(curve.mesh, density), places) if followed else _spread(curve.mesh, density)
         curve, known = curve.on(mesh, STAGES), None
     cost = System(problem, best.curve.mesh, best.curve.order).cost(best.curve)
     return replace(best, cost=cost, facts=(best.error, len(best.curve.mesh) - 1))
@@ -94,12 +100,15 @@ def _density(omitted: Array, aim: float, order: int) -> Array:
     return found
 
 
-def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
-    """What corners off the nodes leave out: the rates on one side of a corner, followed up to the node beside it."""
+def _misplaced(problem: TwoPoint, curve: Curve, met: Array, jumps: list[Jump]) -> float:
+    """What corners and jumps off the nodes leave out: the rates on one side, followed up to the node beside it."""
+    met = np.append(met, [jump.time for jump in jumps])
     if not len(met):
         return 0.0
     node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
     followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.relaxed(float("inf"))))
+    for k, jump in enumerate(jumps, len(met) - len(jumps)):
+        followed[:, k] = free[:, k] + problem.saltation(jump.time, curve(met[k : k + 1])[:, 0], curve.theta, jump).leap
     n, size = problem.states, np.abs(curve.nodes).reshape(2, -1).max(axis=1)
     jump = np.abs(followed - free).reshape(2, n, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
     return float((jump.max(axis=0) * np.abs(met - node)).max()) * problem.elapsed(curve.theta) / 2.0

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.gauss import Scheme, scheme
 from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.control.jumps import Jump, Saltation
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +27,8 @@ class Residual:
     """At the boundary, shapes (n,) and (n + e,)."""
     rates: Array
     """A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time."""
+    saltations: dict[int, Saltation] = field(default_factory=dict)
+    """Of jumps of the law, by the intervals at whose ends these are."""
 
     @property
     def by_interval(self) -> Array:
@@ -34,10 +38,10 @@ class Residual:
 
 
 class System:
-    """The collocation equations of a problem on a mesh."""
+    """The collocation equations of a problem on a mesh, near nodes of which the law may jump."""
 
-    def __init__(self, problem: TwoPoint, mesh: Array, order: int) -> None:
-        self.problem, self.mesh, self.order = problem, mesh, order
+    def __init__(self, problem: TwoPoint, mesh: Array, order: int, jumps: Sequence[Jump] = ()) -> None:
+        self.problem, self.mesh, self.order, self.jumps = problem, mesh, order, jumps
         self.scheme: Scheme = scheme(order)
         self.widths: Array = np.diff(mesh)
         self.tau: Array = stage_times(mesh, order).ravel()
@@ -58,13 +62,26 @@ class System:
         rates = problem.rates(self.tau, curve.flat, theta).reshape(shape)
         grown = self.widths[:, None] * (rates @ self.scheme.matrix.T)
         differences = curve.stages - curve.nodes[:, :-1, None]
+        ends = curve.nodes[:, :-1] + differences @ self.scheme.end
+        saltations = self._saltations(ends, theta)
+        for k, one in saltations.items():
+            ends[:, k] += one.gap
         return Residual(
             stages=differences - problem.elapsed(theta) * grown,
-            ends=curve.nodes[:, 1:] - curve.nodes[:, :-1] - differences @ self.scheme.end,
+            ends=curve.nodes[:, 1:] - ends,
             start=curve.nodes[: problem.states, 0] - problem.initial,
             finish=problem.boundary(curve.nodes[:, -1], theta),
             rates=grown,
+            saltations=saltations,
         )
+
+    def _saltations(self, ends: Array, theta: Array) -> dict[int, Saltation]:
+        """Of the jumps, by the intervals at whose ends these are; where those end is given, shape (2n, N)."""
+        found = {}
+        for jump in self.jumps:
+            k = int(np.abs(self.mesh[1:] - jump.time).argmin())
+            found[k] = self.problem.saltation(float(self.mesh[k + 1]), ends[:, k], theta, jump)
+        return {k: one for k, one in found.items() if np.isfinite(one.matrix).all()}
 
     def infeasibility(self, residual: Residual) -> Array:
         """Summed violation of what multipliers are for, shape (n + constraints,).

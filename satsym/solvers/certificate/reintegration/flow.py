@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Solution
+from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.control.jumps import beside
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
 
@@ -58,23 +60,42 @@ def flow(solution: Solution) -> Flow | None:
     corners = [t for times in solution.switching_times for t in times if start < t < end]
     stations, size = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), corners])), sizes(solution)
 
-    def rates(t: float, y: Array) -> Array:
+    def rates(t: float, y: Array, held: Array | None) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
-        cost = model.running_cost(t, x, model.control_law(t, x, lam, p, bounds), p)
-        return np.array([*model.canonical(t, x, lam, p, bounds), cost])
+        if held is None:
+            cost = model.running_cost(t, x, model.control_law(t, x, lam, p, bounds), p)
+            return np.array([*model.canonical(t, x, lam, p, bounds), cost])
+        u = tuple(beside(instance, t, y[:-1], held).tolist())
+        return np.array(
+            [*model.dynamics(t, x, u, p), *model.costate_rate(t, x, u, lam, p), model.running_cost(t, x, u, p)]
+        )
 
     values = np.concatenate([instance.initial, solution.lam[:, 0], [0.0]])
     scale = np.append(size, size[:n] @ size[n:])
     found = [values]
     try:
-        for piece in integrate(rates, stations, values, TOLERANCE, scale):
-            found.append(piece.end)
+        for held, part in _parts(solution, stations):
+            for piece in integrate(partial(rates, held=held), part, found[-1], TOLERANCE, scale):
+                found.append(piece.end)
     except FAILURES:
         return None
+    stations = np.unique(np.concatenate([part for _, part in _parts(solution, stations)]))
     table = np.array(found)
     x, lam = table[:, :n].T, table[:, n : 2 * n].T
     cost = float(table[-1, -1]) + float(model.terminal_cost(end, tuple(x[:, -1].tolist()), p))
     return Flow(stations, x, lam, cost)
+
+
+def _parts(solution: Solution, stations: Array) -> list[tuple[Array | None, Array]]:
+    """Stations up to and from the nodes beside each jump, and between these the control near which H is held least."""
+    found: list[tuple[Array | None, Array]] = []
+    for one in (one for one in passages(solution) if one.located):
+        before, after = solution.times[one.node : one.node + 2]
+        found += [(None, np.append(stations[stations < before], before))] if before > stations[0] else []
+        found.append((one.jump.before, np.array([before, one.jump.time])))
+        found.append((one.jump.after, np.array([one.jump.time, after])))
+        stations = np.append(after, stations[stations > after])
+    return [*found, (None, stations)] if len(stations) > 1 else found
 
 
 def undriven(solution: Solution) -> Array | None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.control.slopes import without_poles
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
@@ -57,6 +58,8 @@ class Segments:
     """Indices of the solution's times at which segments begin, and of the last."""
     steps: int
     """In each segment."""
+    jumped: frozenset[int] = frozenset()
+    """The steps in which the control jumps."""
 
     @property
     def growth(self) -> float:
@@ -170,7 +173,8 @@ def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
     dense = np.searchsorted(turned, np.arange(FRACTION * TURN, turned[-1], FRACTION * TURN)) - 1
     switches = np.array([t for own in solution.switching_times for t in own])
     met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
-    return np.unique(np.clip(np.concatenate([[0, last], even, dense, met]), 0, last).astype(np.intp))
+    beside = [node for one in passages(solution) if one.located for node in (one.node, one.node + 1)]
+    return np.unique(np.clip(np.concatenate([[0, last], even, dense, met, beside]), 0, last).astype(np.intp))
 
 
 def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: Array) -> Segments:
@@ -183,7 +187,12 @@ def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: 
     stations = np.append((begun[:, None] + np.arange(steps) * widths[:, None]).ravel(), solution.times[-1])
     every = np.stack(transition, axis=1).reshape(-1, len(scale), len(scale))
     before = np.stack(begins[:-1], axis=2).reshape(len(scale), -1)
-    return Segments(stations, before, every, scale, nodes, steps)
+    jumped = set()
+    for one in (one for one in passages(solution) if one.located):
+        step = (int(np.searchsorted(nodes, one.node)) + 1) * steps - 1
+        every[step] = one.saltation(solution, scale).matrix @ every[step]
+        jumped.add(step)
+    return Segments(stations, before, every, scale, nodes, steps, frozenset(jumped))
 
 
 def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tuple[Array, Array]:

@@ -1,0 +1,86 @@
+"""Extremals along which the control law jumps: nodes that follow the jumps until both stand still."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.solvers.collocation.attempt import Attempt, Reason
+from satsym.solvers.collocation.continuation import corners, through
+from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.linearised import linearise
+from satsym.solvers.collocation.newton import newton, within_domain
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.system import System
+from satsym.solvers.control.jumps import Jump, jumps
+
+SAMPLES, CLEAR = 12, 1e-3
+"""Points in each interval between which jumps are looked for, and what is one, as a share of the largest control."""
+
+STILL, MOST = 1e-12, 25
+"""Share of the horizon by which jumps still move that stand still, and times that nodes follow them."""
+
+ROUGHLY = 1e-6
+"""Change of a curve from which on Newton's method brings it to its end."""
+
+LARGEST = 0.5
+"""Relative change of a curve in one step."""
+
+CLOSE = 1e-6
+"""Share of the horizon within which two jumps leave nothing between them."""
+
+
+def found(problem: TwoPoint, curve: Path) -> list[Jump]:
+    """Where the law of a curve jumps, in order; none where each of its controls has one minimiser."""
+    if not problem.instance.model.spec.stationary:
+        return []
+    inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
+    tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
+    return jumps(lambda at: problem.control(at, curve(at), curve.theta), tau, CLEAR)
+
+
+def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt | None:
+    """The extremal near a curve, with nodes at its jumps and where bounds are met; ``None`` where none is found.
+
+    Jumps follow each step of Newton's method: with nodes that stand still, it would see them move twice.
+
+    Parameters
+    ----------
+    order
+        Stages.
+    count
+        Intervals, about.
+    """
+    met, before, size = found(problem, curve), np.zeros(0), float("inf")
+    for _ in range(MOST):
+        times = np.array([jump.time for jump in met])
+        if (np.diff(times) < CLOSE).any():
+            return None
+        mesh = through(np.union1d(corners(problem, curve, ROUGHLY), times), count)
+        system, curve = System(problem, mesh, order, met), curve.on(mesh, order)
+        if size < ROUGHLY:
+            outcome = newton(system, curve)
+            if outcome is None or not outcome.solved:
+                return None
+            if len(before) == len(times) and np.abs(times - before).max(initial=0.0) < STILL:
+                return outcome
+            curve = outcome.curve
+        else:
+            stepped = _stepped(system, curve)
+            if stepped is None:
+                return None
+            curve, size = stepped
+        before, met = times, found(problem, curve)
+    return Attempt(curve, Reason.UNSETTLED, MOST)
+
+
+def _stepped(system: System, curve: Curve) -> tuple[Curve, float] | None:
+    """After a step of Newton's method, and how large that was."""
+    residual = system.residual(curve)
+    try:
+        step = linearise(system, curve, residual, system.jacobian(curve)).step(residual)
+    except np.linalg.LinAlgError:
+        return None
+    size = step.size(curve)
+    if not np.isfinite(size):
+        return None
+    return curve.moved(step, min(within_domain(system.problem, curve, step), LARGEST / max(size, LARGEST))), size
