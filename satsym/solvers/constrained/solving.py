@@ -21,19 +21,19 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.convexity import convex
-from satsym.solvers.constrained.easing import tightened
 from satsym.solvers.constrained.feasibility import impossible, refuse
-from satsym.solvers.constrained.interior_point import Path, regularised
+from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.newton import cost, from_arcs, from_path, solved
 from satsym.solvers.constrained.recognition import recognised
 from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, wrong
+from satsym.solvers.constrained.search import searched
 from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.structure import Event as Happening
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
-from satsym.solvers.iteration import Limits, Meter, computed, deadline_of, watched
+from satsym.solvers.iteration import Limits, computed, deadline_of, watched
 from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
@@ -45,9 +45,6 @@ DRAWN, COMPARED = 4, 2
 
 WORK = 20_000
 """Columns that may be linearised for one path of the certificate."""
-
-SAME = 1e-6
-"""Relative difference of costs of regularised paths that are one."""
 
 PATH = "a regularised path"
 """Where arcs come from."""
@@ -131,45 +128,15 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
         program = Program(instance, intervals)
         begun = first(program, relaxed)
         starts = [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))]
-        found = _searched(program, starts, worth, limits, begun)
+        found = [one or NO_NUMBERS for one in searched(program, starts, worth, limits, _exactly(program, worth), begun)]
         exact = [one for one in found if isinstance(one, Arcs)]
         if exact or limits.late or _impossible(found[0]):
-            return min(exact, key=cost, default=LATE if LATE in found else found[0])
+            return min(exact, key=cost, default=LATE if limits.late else found[0])
     return found[0]
 
 
 def _impossible(one: Arcs | Stopped) -> bool:
     return isinstance(one, Stopped) and one.status is Status.INFEASIBLE
-
-
-def _searched(
-    program: Program, starts: list[Point], worth: float, limits: Limits, eased: Point | None = None
-) -> list[Arcs | Stopped]:
-    """To what each start leads; what leads to the same regularised path leads to the same extremal.
-
-    From one of them constraints are eased where they are too far from holding.
-
-    Each may do the work that the limits allow. Where time is up that is the last of them.
-    """
-    found: list[Arcs | Stopped] = []
-    known: list[tuple[float, Arcs | Stopped]] = []
-    for start in starts:
-        own = replace(limits, meter=Meter())
-        path = regularised(program, start, worth, own)
-        if start is eased and not path.solved:
-            path = tightened(program, start, worth, own)
-        same = [one for other, one in known if path.solved and abs(path.cost - other) <= SAME * abs(other)]
-        if same:
-            one = same[0]
-        elif not path.solved:
-            one = _unsolved(program, worth)
-        else:
-            one = tried(partial(_exact, program, path, own)) or NO_NUMBERS
-            known.append((path.cost, one))
-        found.append(one)
-        if limits.late:
-            return [*found, LATE]
-    return found
 
 
 def others(instance: Instance, worth: float, seed: int, deadline: float) -> tuple[int, list[float], bool]:
@@ -186,22 +153,23 @@ def others(instance: Instance, worth: float, seed: int, deadline: float) -> tupl
     """
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline, work=WORK)
     with np.errstate(all="ignore"):
-        found = _searched(program, drawn(program, straight(program), COMPARED, seed), worth, limits)
-    answered = [one for one in found if one is not LATE]
-    return len(answered), [cost(one) for one in answered if isinstance(one, Arcs)], limits.late
+        starts = drawn(program, straight(program), COMPARED, seed)
+        found = list(searched(program, starts, worth, limits, _exactly(program, worth)))
+    return len(found), [cost(one) for one in found if isinstance(one, Arcs)], limits.late
 
 
-def _unsolved(program: Program, worth: float) -> Stopped:
-    """Why the regularised problem has no answer."""
-    if convex(program.instance) and (reason := impossible(program, worth)):
-        return Stopped(Status.INFEASIBLE, reason)
-    return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
+def _exactly(program: Program, worth: float) -> Callable[[Path, Limits], Arcs | Stopped]:
+    """Exact arcs from a regularised path, or why it has none."""
 
+    def exact(path: Path, limits: Limits) -> Arcs | Stopped:
+        if path.solved:
+            first = [recognised(program, path, resting=resting) for resting in (False, True)]
+            return revised(first, partial(from_path, program, path.at), limits)
+        if convex(program.instance) and (reason := impossible(program, worth)):
+            return Stopped(Status.INFEASIBLE, reason)
+        return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
 
-def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
-    """Exact arcs from a regularised path."""
-    first = [recognised(program, path, resting=resting) for resting in (False, True)]
-    return revised(first, partial(from_path, program, path.at), limits)
+    return exact
 
 
 def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: Limits) -> Arcs | Stopped:

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
-from satsym.solvers.constrained.easing import tightened
-from satsym.solvers.constrained.interior_point import regularised
+from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.levels.recognition import BRIEF, recognised
+from satsym.solvers.constrained.search import searched
 from satsym.solvers.constrained.starts import drawn, first, straight
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.constrained.violation import VIOLATED, violation
-from satsym.solvers.failures import FAILURES
-from satsym.solvers.iteration import Limits, Meter, deadline_of, watched
+from satsym.solvers.iteration import Limits, deadline_of, watched
 from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.homotopy import Stopped
-from satsym.solvers.switching.structure import BOUNDARY, Guess, constraint_of
+from satsym.solvers.switching.structure import BOUNDARY, constraint_of
 from satsym.status import Status
 
 INTERVALS = (100, 250, 500)
@@ -31,9 +30,6 @@ INTERVALS = (100, 250, 500)
 
 DRAWN, WORK = 2, 20_000
 """Pairs of paths that are drawn by the solver, and columns for one of the certificate's."""
-
-SAME = 1e-6
-"""Relative difference of costs of regularised paths that are one."""
 
 LONGER = 5
 """Intervals up to which a singular arc between bounds may as well be none."""
@@ -89,8 +85,10 @@ def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[fl
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline)
     starts = [one for about in (straight(program), first(program, solution)) for one in drawn(program, about, 1, seed)]
     with np.errstate(all="ignore"):
-        found = list(_searched(program, starts, solution.objective, replace(limits, work=WORK)))
-    return len(found), [one.trajectory.cost(instance) for one in found if one], len(found) < len(starts)
+        found = list(
+            searched(program, starts, solution.objective, replace(limits, work=WORK), partial(_exact, program))
+        )
+    return len(found), [one.trajectory.cost(instance) for one in found if one], limits.late
 
 
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stopped:
@@ -100,7 +98,7 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stop
         program = Program(instance, intervals)
         begun = first(program, relaxed)
         starts = [begun, *drawn(program, begun, DRAWN, 0)]
-        found = [one for one in _searched(program, starts, worth, limits, begun) if one]
+        found = [one for one in searched(program, starts, worth, limits, partial(_exact, program), begun) if one]
         if found:
             return min(found, key=lambda one: one.trajectory.cost(instance))
         if limits.late:
@@ -109,36 +107,13 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stop
     return Stopped(Status.NOT_CONVERGED, message)
 
 
-def _searched(
-    program: Program, starts: list[Point], worth: float, limits: Limits, eased: Point | None = None
-) -> Iterator[Exact | None]:
-    """To what each start leads within these limits; what leads to a known path leads to the same. Ends with time.
-
-    From one of them constraints are eased where they are too far from holding.
-    """
-    known: list[tuple[float, Exact | None]] = []
-    for start in starts:
-        own = replace(limits, meter=Meter())
-        try:
-            path = regularised(program, start, worth, own)
-            if start is eased and not path.solved:
-                path = tightened(program, start, worth, own)
-        except FAILURES:
-            yield None
-            continue
-        same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
-        if not same and path.solved:
-            guesses = (recognised(program, path, shortest) for shortest in (BRIEF, LONGER))
-            same = [next((one for guess in guesses if (one := _exact(program.instance, guess, own))), None)]
-            known.append((path.cost, same[0]))
-        if limits.late:
-            return
-        yield same[0] if same else None
-
-
-def _exact(instance: Instance, guess: Guess, limits: Limits) -> Exact | None:
-    found = attempt(instance, guess, limits)
-    return found and replace(found, origin=Origin.PATH)
+def _exact(program: Program, path: Path, limits: Limits) -> Exact | None:
+    """The first extremal among structures that a regularised path shows."""
+    for shortest in (BRIEF, LONGER) if path.solved else ():
+        found = attempt(program.instance, recognised(program, path, shortest), limits)
+        if found:
+            return replace(found, origin=Origin.PATH)
+    return None
 
 
 def _with_events(instance: Instance, exact: Exact, solution: Solution) -> Solution:
