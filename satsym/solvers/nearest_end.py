@@ -17,17 +17,16 @@ from satsym.control_set import ControlSet
 from satsym.grid import Grid
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.drawn_motions import motions
 from satsym.solvers.iteration import Limits
 
 STEPS = 200
 ROUNDS = 150
 """Iterations from each start."""
 
-DRAWN, PIECES = 4, 5
-"""Starts that are drawn, and constant pieces of each."""
-
-ARRIVED = 1e-4
-"""Relative miss that the grid and the minimisation may leave of none."""
+ARRIVED, CLOSE = 1e-4, 5e-3
+"""Relative miss that the grid and the minimisation may leave of none, and that below which nobody can tell: controls
+that switch between nodes of the grid may do better."""
 
 NO_MOTION = 1e10
 """In place of the miss where a motion is not finite or leaves its domain."""
@@ -53,6 +52,11 @@ class Nearest:
     def arrives(self) -> bool:
         """Whether that is no miss."""
         return self.distance <= ARRIVED
+
+    @property
+    def undecided(self) -> bool:
+        """Whether it may be no miss."""
+        return self.distance <= CLOSE
 
     @property
     def message(self) -> str:
@@ -91,7 +95,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
             raise StopIteration
 
     law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
-    starts = [np.zeros_like(law), law, law / 2.0, *_drawn(problem, reach)]
+    starts = [np.zeros_like(law), law, law / 2.0, *(one.control for one in motions(problem, np.random.default_rng(0)))]
     best, tried = None, 0
     for k, start in enumerate(starts):
         if limits.expired:
@@ -123,23 +127,6 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     names = [*spec.state_names, *(f"the constraint of {v.symbol}" for v in spec.multipliers)]
     missed = {names[i]: float(gap[k] * units[i]) for k, i in enumerate(reach.rows)}
     return Nearest(missed, float(np.abs(gap).max()), tried)
-
-
-def _drawn(problem: TwoPoint, reach: Reach) -> list[Array]:
-    """Controls that are drawn within the bounds, constant for a few pieces each."""
-    rng, nodes = np.random.default_rng(0), len(reach.tau)
-    low, high = np.empty((reach.controls, 1)), np.empty((reach.controls, 1))
-    for places, part in reach.parts:
-        if part.kind == "angle":
-            low[places], high[places] = -np.pi, np.pi
-        elif part.kind == "box":
-            low[places], high[places] = part.box
-        else:
-            low[places], high[places] = -part.radius, part.radius
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        return []
-    piece = np.minimum(np.arange(nodes) * PIECES // nodes, PIECES - 1)
-    return [(low + (high - low) * rng.uniform(size=(reach.controls, PIECES)))[:, piece] for _ in range(DRAWN)]
 
 
 def _lengths(part: ControlSet, size: Array) -> tuple[Array, Array]:

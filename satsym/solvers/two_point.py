@@ -26,6 +26,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
+from satsym.solvers.drawn_motions import motions
 from satsym.solvers.extremal import nothing, solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.nearest_end import nearest
@@ -42,7 +43,8 @@ GUESSED = 1e-2
 """Softness of the bounds with which a guess or a path that is drawn is followed first."""
 
 DRAWN, AMPLITUDES = 4, (0.2, 0.5)
-"""Paths that are drawn where the bounds cannot be brought in, and how far they leave the straight line."""
+"""Paths that are drawn where the bounds cannot be brought in, and how far they leave the straight line. Motions under
+controls that are drawn follow where these lead nowhere."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -180,14 +182,15 @@ def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
     """The cheapest extremal within the bounds to which paths that are drawn lead, or corners of the box, if any."""
     rng, steps = np.random.default_rng(DRAWN), 0
     found: list[tuple[float, Curve]] = []
-    for k in range(DRAWN):
-        path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
-        one = within_bounds(problem, path, limits, GUESSED)
-        steps += one.iterations
-        if one.solved:
-            found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
-        if limits.expired:
-            break
+    bent = [paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)]) for k in range(DRAWN)]
+    for drawn in (lambda: bent, lambda: [motion.path for motion in motions(problem, rng)]):
+        for path in () if found else drawn():
+            one = within_bounds(problem, path, limits, GUESSED)
+            steps += one.iterations
+            if one.solved:
+                found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
+            if limits.expired:
+                break
     corners = (curve for curve in swept(problem, limits) if curve is not None)
     found += [(System(problem, curve.mesh, curve.order).cost(curve), curve) for curve in corners]
     if not found:
@@ -209,6 +212,8 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
         return found
     if near.arrives:
         return replace(found, message=f"{found.message}, though the end can be reached")
+    if near.undecided:
+        return replace(found, message=f"{found.message}; {near.message}, which may be none")
     return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
 
 

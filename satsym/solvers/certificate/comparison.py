@@ -51,6 +51,13 @@ class Compared:
     interrupted: bool
     """Whether time was up before all were tried."""
 
+    def joined(self, other: Compared) -> Compared:
+        """With what others of the kind came to."""
+        least = min(self, other, key=lambda one: one.margin)
+        count, solved = (getattr(self.summary, name) + getattr(other.summary, name) for name in ("tried", "solved"))
+        summary = Competitors(self.summary.kind, count, solved, least.summary.cheapest)
+        return Compared(summary, least.margin, least.cheapest, self.interrupted or other.interrupted)
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:

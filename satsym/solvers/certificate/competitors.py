@@ -78,6 +78,9 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
         if found is None:
             missing.append(kind)
             continue
+        if kind is Kind.STARTS and 2 * found.summary.solved < found.summary.tried and not found.interrupted:
+            more = _tried(solution, kind, _from_motions(solution, seed), deadline)
+            found = found if more is None else found.joined(more)
         kinds.append(found)
         if found.interrupted or not found.summary.solved:
             missing.append(kind)
@@ -195,6 +198,20 @@ def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: floa
         return None if found is None else _accurate(*found, cost)
 
     return attempt
+
+
+def _from_motions(solution: Solution, seed: int) -> list[Search]:
+    """The minima within the bounds to which motions under controls that are drawn lead."""
+    from satsym.solvers.collocation.scaling import two_point
+    from satsym.solvers.drawn_motions import motions
+
+    instance, spec = solution.instance, solution.instance.model.spec
+    if spec.directional or spec.stationary:
+        return []
+    lasting = float(solution.times[-1]) - instance.t0
+    problem = two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess()), lasting)
+    drawn = motions(problem, np.random.default_rng(seed))
+    return [_from_path(problem, motion.path, SOFT[-1], solution.objective) for motion in drawn]
 
 
 def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Search:

@@ -153,7 +153,7 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
         return stopped
     problem, curve = stopped.problem, stopped.curve
     near = tried(lambda: nearest(problem, curve, limits))
-    if near is None or near.arrives or limits.expired:
+    if near is None or near.arrives or near.undecided or limits.expired:
         return stopped
     return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
 
