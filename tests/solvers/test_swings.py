@@ -36,8 +36,8 @@ PENDULUM, OSCILLATOR = _swing("pendulum", -sin(a)), _swing("oscillator", -a)
 
 
 def _case(folder: Path, problem: Problem, end: float, duration: float, bounds: tuple[float, float]) -> Instance:
-    text = f"[initial]\na = 0\nb = 0\n[final]\na = {end}\nb = 0\n[time]\ntf = {duration}\n[control]\nw = {list(bounds)}\n"
-    return build(folder, problem, text)
+    ends = f"[initial]\na = 0\nb = 0\n[final]\na = {end}\nb = 0\n"
+    return build(folder, problem, f"{ends}[time]\ntf = {duration}\n[control]\nw = {list(bounds)}\n")
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 """A regularised path: the program by a primal-dual interior-point method, its barrier weighed less and less.
 
 Waechter and Biegler, Mathematical Programming 106, 2006, in short: slacks, steps to the boundary, a filter, and
-curvature added where steps would not descend.
+curvature added where steps would not descend. Where no step is accepted slacks are opened anew, which lets go of the
+multipliers that grew as these closed too early: on the way past an obstacle, say, from a path through its middle.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ first comes too close to boundaries too early, and stays there."""
 
 STEPS = 100
 """Linear systems at most."""
+
+OPENED, NARROWER, REOPENED = 0.1, 0.5, 8
+"""Least slack with which one begins, relative to the largest value of its constraint, the share of it that each later
+opening has, and how many of these there are."""
 
 CURVED, MOST_CURVED = 1e-4, 1e8
 """Curvature that is added first where the Lagrangian is not convex, and at most, relative to the sizes of what it is
@@ -61,9 +66,9 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     unit, units = max(abs(worth), 1e-12) / program.intervals, Units.of(program, start)
     g = program.constraints(start)
     room = np.abs(g).max(axis=1, keepdims=True)
-    at = replace(start, s=np.maximum(-g, 0.1 * np.where(room > 0.0, room, units.g)))
+    at = replace(start, s=np.maximum(-g, OPENED * np.where(room > 0.0, room, units.g)))
     weight, at = FIRST * unit, replace(at, z=FIRST * unit / at.s)
-    filtered, curved = list[tuple[float, float]](), 0.0
+    filtered, curved, reopened = list[tuple[float, float]](), 0.0, 0
     for step in range(STEPS):
         slopes = Slopes.of(program, at)
         error, violation = _error(program, at, slopes, weight, unit, units)
@@ -76,10 +81,21 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
             break
         moved = _stepped(program, at, slopes, weight, filtered, curved, units)
         limits.spend(program.intervals)
-        if moved is None:
+        if moved is not None:
+            at, curved = moved
+        elif reopened < REOPENED:
+            reopened += 1
+            at, filtered = _reopened(program, at, weight, OPENED * NARROWER**reopened), []
+        else:
             break
-        at, curved = moved
     return Path(at, program.cost(at), False, _violation(program, at, units), STEPS)
+
+
+def _reopened(program: Program, at: Point, weight: float, share: float) -> Point:
+    """The same path with slacks of at least this share of constraints' largest values, multipliers to match."""
+    g = program.constraints(at)
+    s = np.maximum(np.maximum(-g, at.s), share * np.abs(g).max(axis=1, keepdims=True))
+    return replace(at, s=s, z=weight / s, y=0.0 * at.y)
 
 
 def _error(
