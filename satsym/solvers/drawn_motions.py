@@ -107,8 +107,9 @@ def _nearest(problem: TwoPoint, limits: tuple[Array, Array], law: Law) -> Motion
                 rates = partial(instance.model.dynamics_batch, u=controls[-1], p=instance.parameters)
                 states.append(_stepped(rates, t, states[-1], (instance.tf - instance.t0) / STEPS))
         x = np.array(states) / unit
-        good = np.isfinite(x).all(axis=(0, 1)) & (x[:, list(problem.positive)] > 0.0).all(axis=(0, 1))
-        misses = [_miss(problem, end) if fine else np.inf for end, fine in zip(x[-1].T, good.tolist(), strict=True)]
+        bad = ~np.isfinite(x).all(axis=(0, 1)) | ~(x[:, list(problem.positive)] > 0.0).all(axis=(0, 1))
+        misses = np.array([_miss(problem, end) for end in x[-1].T])
+    misses[bad] = np.inf
     best = int(np.argmin(misses))
     return Motion(np.array(controls)[:, :, best].T, x[:, :, best].T) if np.isfinite(misses[best]) else None
 
