@@ -16,7 +16,7 @@ from typing import Any, cast
 import click
 
 from satsym import __version__
-from satsym.cli.help import Explained, wanted_language
+from satsym.cli.help import Explained, show_usage, wanted_language
 from satsym.cli.options import language_option, shared_options
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.stopping import comes_of_a_stop, stopped
@@ -137,7 +137,7 @@ def _run(argv: Sequence[str] | None) -> int:
             outcome = program.main(arguments, prog_name="satsym", standalone_mode=False)
     except click.ClickException as error:
         with unless_unwritable():
-            error.show()
+            show_usage(error)
         return error.exit_code
     except click.Abort as error:  # what click makes of an interruption
         return stopped(error.__cause__ or error)

@@ -112,7 +112,7 @@ def _extras(stated: list[Requirement]) -> Iterator[Finding]:
         if not members:
             continue
         note = f"{purpose}; without {', '.join(absent)} (pip install 'satsym[{extra}]')" if absent else purpose
-        yield Finding(f"extra {extra}", f"{len(members) - len(absent)} of {len(members)}", not absent, note=note)
+        yield Finding(f"extra {extra}", f"{len(members) - len(absent)}/{len(members)}", not absent, note=note)
 
 
 def _program(name: str, commands: tuple[str, ...], purpose: str) -> Finding:

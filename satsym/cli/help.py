@@ -14,7 +14,7 @@ from typing import Any
 
 import click
 
-from satsym.report.said import explained, language
+from satsym.report.said import explained, language, message
 
 _AS_IT_IS = "\b\n"
 """Begins paragraphs whose lines click leaves alone."""
@@ -108,6 +108,18 @@ def _write(formatter: click.HelpFormatter, text: str | None) -> None:
 def command(epilog: str) -> Callable[[Callable[..., Any]], click.Command]:
     """A command with such help; ``epilog`` has its examples."""
     return click.command(cls=Explained, epilog=epilog)
+
+
+def show_usage(error: click.ClickException) -> None:
+    """What is wrong with a command line, on stderr; the words of click are known again as those of other refusals."""
+    if language() == "en":
+        error.show()
+        return
+    where = error.ctx if isinstance(error, click.UsageError) else None
+    if where is not None:
+        hint = message(f"Try '{where.command_path} --help' for help.")
+        click.echo(f"{where.get_usage()}\n{hint}\n", err=True)
+    click.echo(f"{message('Error')}: {message(error.format_message())}", err=True)
 
 
 def wanted_language(arguments: list[str], known: tuple[str, ...]) -> str | None:

@@ -22,8 +22,9 @@ from satsym.report.said import counted, decimal, message, numbers, say, spoken, 
 from satsym.solvers import simulate, solve
 from satsym.spec import ProblemSpec
 from satsym.status import Status, Verdict
+from satsym.symbolic.dimension_algebra import _TOLD
 from tests.cli.test_cli import Run, case, run
-from tests.support.said import HOLE, anonymous, looked_up, written
+from tests.support.said import HOLE, anonymous, looked_up, refused, written
 
 __all__ = ["case", "run"]
 
@@ -71,7 +72,7 @@ def test_every_text_that_is_looked_up_has_a_translation_with_the_same_places() -
 def test_nothing_is_translated_that_is_nowhere_said() -> None:
     known = {*AUTHORED, *written(), *(one.value for one in EVERY), *(anonymous(text) for text in COMPOSED)}
     helping = said.group("id", "help")
-    assert [text for text in INDONESIAN.keys() - helping.keys() if anonymous(text) not in known] == []
+    assert sorted(text for text in INDONESIAN.keys() - helping.keys() if anonymous(text) not in known) == []
     assert [
         text for text in helping if not any(map(said._pattern(text).fullmatch, HELP | {*COMPOSED, *looked_up()}))
     ] == []
@@ -103,6 +104,10 @@ COMPOSED = (
     "[lqr] <key>: the model has no control <name>; controls here: <names>",
     "[classical] <key>: <value> are not both positive; the loop would not settle",
     *"Usage Options Commands [OPTIONS]".split(),
+    *(f"<value> is not a valid {kind}." for kind in ("integer", "integer range", "float", "float range")),
+    *("Missing argument <name>.", "Missing option <name>.", "Try '<command>' for help.", "one of <names>"),
+    *(f"the expression {what}" for what in _TOLD.values()),
+    "without <names>",
     *("COMMAND [ARGS]...", "Show this message and exit.", "Show the version and exit."),
 )
 """What stands nowhere as it is said."""
@@ -124,6 +129,21 @@ def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None
     with spoken("id"):
         wanted = say(text, **{name: message(part) for name, part in holes.items()})
         assert message(english) != english or text in SAME or wanted == english
+
+
+MADE_OF_PARTS = {
+    "<>: no results <>in <>; `satsym <> <> --plot` writes them, or say with --from where they are",
+    "[time] <>: <> <> t0 = <>; write a later, reachable time",
+}
+"""Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
+
+
+@pytest.mark.parametrize("text", sorted(refused() - MADE_OF_PARTS))
+def test_no_refusal_stays_english(text: str) -> None:
+    """With a name in each of its places, or a text that is translated where a place is a clause of its own."""
+    filled = re.sub(r"(^|; |: )<>(?=$|;)", r"\1converged", text).replace("<>", "X7")
+    with spoken("id"):
+        assert message(filled) != filled
 
 
 def test_all_titles_that_are_shipped_are_translated_and_meanings_of_the_satellites() -> None:
@@ -188,6 +208,20 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
     shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\](?: \w+)?|(?<=: )\w+:|bukan TOML yang sah: [^;]*", "", other[2]))
     assert not ENGLISH.search(shown), other[2]
     assert other[2] != english[2]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        *("solve", "solve soft-return --bogus", "frobnicate", "plot soft-return --size huge"),
+        *("solve soft-return other", "solve soft-return --steps many", "latex"),
+    ],
+)
+def test_wrong_usage_is_said_in_indonesian(run: Run, arguments: str) -> None:
+    english, other = (run(*arguments.split(), "--lang", each) for each in ("en", "id"))
+    assert (english[0], other[0]) == (2, 2)
+    assert other[2].splitlines()[-1].startswith("Galat: ")
+    assert not ENGLISH.search(re.sub(r"'[^']*'|--\w+", "", other[2]))
 
 
 @pytest.mark.parametrize("command", ["", *program.commands])

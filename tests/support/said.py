@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import click
+
 import satsym
 
 SOURCE = Path(satsym.__file__).parent
@@ -62,15 +64,48 @@ def looked_up() -> frozenset[str]:
 
 @cache
 def written() -> frozenset[str]:
-    """Every text in the source, with ``<>`` where a formatted one has a value."""
+    """Every text in the source, and in that of click, with ``<>`` where a formatted one has a value."""
     found = set[str]()
-    for module in _trees():
+    used = (ast.parse(path.read_text("utf-8")) for path in Path(click.__file__).parent.glob("*.py"))
+    for module in (*_trees(), *used):
         for node in ast.walk(module):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 found.add(anonymous(node.value))
             elif isinstance(node, ast.JoinedStr):
                 found.add(template(node))
-    return frozenset(found | {text.removeprefix(before) for text in found for before in ("<> ", "<>; ")})
+    found |= {text.removeprefix(before) for text in found for before in ("<> ", "<>; ")}
+    return frozenset(found.union(*map(runs_of_clauses, found)))
+
+
+REFUSALS = {
+    *("BadInput", "DerivationError", "Disagreement", "MissingText", "NotAFormula", "Refused", "Stopped"),
+    *("TooManyTerms", "Unexpected", "WrongKey", "WrongScope", "again", "unusable", "_bad", "_refusal"),
+}
+"""What carries a text to people; the other errors are for callers in Python, or become one of these."""
+
+
+@cache
+def refused() -> frozenset[str]:
+    """Texts that refusals are raised with, with ``<>`` for each value; what has no space is a key."""
+    found = set[str]()
+    for tree in _trees():
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Raise) or not isinstance(node.exc, ast.Call):
+                continue
+            raised = node.exc.func
+            name = raised.id if isinstance(raised, ast.Name) else getattr(raised, "attr", "")
+            given = [*node.exc.args, *(word.value for word in node.exc.keywords)] if name in REFUSALS else []
+            texts = [text for argument in given for text in _literals(argument)]
+            texts += [template(argument) for argument in given if isinstance(argument, ast.JoinedStr)]
+            found.update(text for text in texts if " " in text and re.search("[a-z]{3}", text))
+    return frozenset(found)
+
+
+def runs_of_clauses(text: str) -> set[str]:
+    """Its clauses, and what neighbours among them say together."""
+    parts = re.split(r"(; |(?<=[.:]) )", text)
+    ends = range(0, len(parts), 2)
+    return {"".join(parts[begin : end + 1]) for begin in ends for end in ends if begin <= end}
 
 
 def anonymous(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import emit, emit_json, live
-from satsym.report.said import each, say
+from satsym.report.said import each, message, say
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -31,6 +31,6 @@ def doctor(as_json: bool) -> ExitCode:
     if as_json:
         emit_json({"healthy": healthy, "findings": [finding.as_object() for finding in findings]})
     else:
-        rows = [(f.mark, f.name, f.value, f.note) for f in findings]
+        rows = [tuple(map(message, (f.mark, f.name, f.value, f.note))) for f in findings]
         emit("\n".join(table([("", *each("what", "found", "note")), *rows], indent="")))
     return ExitCode.DONE if healthy else ExitCode.UNFORESEEN

@@ -24,9 +24,14 @@ VARIABLE = "SATSYM_LANG"
 
 _BREAK = re.compile(r"(; |(?<=[.:]) )")
 """Between clauses and sentences of a message, each of which may be a text of its own."""
-_PLACE = re.compile(r"(?:\[[\w.]+\] )?\S+:")
+_PLACE = re.compile(r"(?:(?:\[[\w.]+\]|--[\w-]+) )?\S+:")
 """What a message may begin with that is no text: a file, an instance, a key."""
 _HOLE = re.compile(r"<([a-z_]+)>")
+_SENTENCE = re.compile(r"\b(?:the|is|are|has|have|not|no|which|with|must|cannot|be)\b")
+"""English that no name has."""
+_QUOTED = re.compile(r"`[^`]*`|\"[^\"]*\"|'[^']*'")
+_FOREIGN = "error"
+"""The place of what a library says, which nobody translates."""
 _TEXT_PLACE = "said_"
 """Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
 _ASKED: ContextVar[str | None] = ContextVar("language", default=None)
@@ -140,14 +145,19 @@ def _translated(text: str, asked: str, name: str = "messages") -> str | None:
 
 def _filled_in(text: str, asked: str, name: str) -> str | None:
     """The translation of the text whose filled in form it is."""
-    for pattern, translation in _patterns(asked, name):
-        if found := pattern.fullmatch(text):
-            parts = {
-                k: _inside(part, asked) if k.startswith(_TEXT_PLACE) else part for k, part in found.groupdict().items()
-            }
+    for most, english, translation in _with_places(asked, name):
+        if most in text and (found := _pattern(english).fullmatch(text)):
+            parts = {k: _part(k, part, asked) for k, part in found.groupdict().items()}
             if None not in parts.values():  # else half of it would stay English
                 return _filled(translation, parts)
     return None
+
+
+def _part(place: str, text: str, asked: str) -> str | None:
+    """What fills a place, translated where it is a text; nothing where it is a sentence and is to be a name."""
+    if place.startswith(_TEXT_PLACE):
+        return _inside(text, asked)
+    return None if place != _FOREIGN and _SENTENCE.search(_QUOTED.sub("", text)) else text
 
 
 def _inside(text: str, asked: str) -> str | None:
@@ -189,29 +199,28 @@ def _of_models(asked: str) -> Iterator[tuple[str, str]]:
 
 @cache
 def group(asked: str, name: str) -> Mapping[str, str]:
-    """The texts of one file; none where there is no such file.
+    """The texts of the files whose names begin so; none where there is no such file.
 
     ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``messages`` is known again in
     whatever way it is filled in, and so are ``items``, which lists in such texts consist of, and ``help``.
     """
     import tomllib  # nothing of this for English
 
-    try:
-        content = (Path(__file__).parent / asked / f"{name}.toml").read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return {}
-    return {english: text for table in tomllib.loads(content).values() for english, text in table.items()}
+    files = sorted((Path(__file__).parent / asked).glob(f"{name}*.toml"))
+    tables = (table for file in files for table in tomllib.loads(file.read_text(encoding="utf-8")).values())
+    return {english: text for table in tables for english, text in table.items()}
 
 
 @cache
-def _patterns(asked: str, name: str) -> list[tuple[re.Pattern[str], str]]:
-    """Texts with places in them as patterns, what says most of itself first."""
+def _with_places(asked: str, name: str) -> list[tuple[str, str, str]]:
+    """Texts with places in them, what says most of itself first: its longest part without one, it, its translation."""
     phrases = group(asked, name)
-    with_places = {english: text for english, text in phrases.items() if _HOLE.search(english)}
-    by_length = sorted(with_places, key=lambda english: -len(_HOLE.sub("", english)))
-    return [(_pattern(english), with_places[english]) for english in by_length]
+    with_places = [english for english in phrases if _HOLE.search(english)]
+    with_places.sort(key=lambda english: -len(_HOLE.sub("", english)))
+    return [(max(_HOLE.split(english)[::2], key=len), english, phrases[english]) for english in with_places]
 
 
+@cache
 def _pattern(english: str) -> re.Pattern[str]:
     """What matches a text however it is filled in; a place that comes twice is the same both times."""
     parts, seen = [], set[str]()
@@ -219,7 +228,7 @@ def _pattern(english: str) -> re.Pattern[str]:
         if k % 2 == 0:
             parts.append(re.escape(part))
         else:
-            inside = "." if part.startswith(_TEXT_PLACE) else "[^;]"  # names and numbers end where their clause does
+            inside = "." if part.startswith(_TEXT_PLACE) else "(?:(?!: )[^;])"  # names end where their clause does
             parts.append(f"(?P={part})" if part in seen else f"(?P<{part}>{inside}*?)")
             seen.add(part)
     return re.compile("".join(parts))
