@@ -31,6 +31,9 @@ CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
 
 
+STRICT = 1e-12
+"""Share of its largest slope by a control with which H falls beyond a bound that holds it."""
+
 BOUNDARY, STATIONARITY, HAMILTONIAN = "boundary residual", "stationarity", "hamiltonian drift"
 OF_FLOW, OF_SEGMENTS, OF_NODES = "dynamics defect", "junction defect", "node defect"
 """What checks are called. The last three are distances of the solution from the flow from the initial costates, of
@@ -147,7 +150,8 @@ def legendre_clebsch(solution: Solution) -> float:
     """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds.
 
     Of a vector of full length on which H depends linearly it is that of H on the sphere: the length of its slope over
-    its own. It may vanish for an instant, such as at an end that leaves velocities free.
+    its own. It may vanish for an instant, such as at an end that leaves velocities free. A control that H holds at a
+    bound, falling beyond it, may be curved as it likes.
     """
     instance, model = solution.instance, solution.instance.model
     along = solution.times, solution.x, solution.u, solution.lam, instance.parameters
@@ -157,6 +161,12 @@ def legendre_clebsch(solution: Solution) -> float:
             rows = list(places)
             slope, u = np.asarray(model.stationarity_batch(*along))[rows], solution.u[rows]
             hessian[rows, rows] -= (slope * u).sum(axis=0) / np.maximum((u * u).sum(axis=0), 1e-300)
+    if model.spec.stationary and instance.lower:
+        slope = np.broadcast_to(model.stationarity_batch(*along), solution.u.shape)
+        low, high = (np.array(ends)[:, None] for ends in (instance.lower, instance.upper))
+        outwards = np.where(solution.u >= high, -slope, np.where(solution.u <= low, slope, 0.0))
+        free = ~(outwards > STRICT * np.abs(slope).max(axis=1, keepdims=True))
+        hessian = hessian * (free[:, None] & free) + np.eye(len(free))[:, :, None] * ~free * np.abs(hessian).max()
     smallest = np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min(axis=1) if len(hessian) else np.full(1, np.inf)
     open_ones = np.atleast_1d(undecided(instance, solution.times, solution.x, solution.lam).any(axis=0))
     beside = np.append(open_ones[1:], False) | np.append(False, open_ones[:-1])

@@ -9,13 +9,14 @@ Newton's method goes on with the law itself. It starts from controls that are dr
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.control_set import UNSMOOTHED
+from satsym.grid import interleave
 from satsym.instance import Instance
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import on_mesh
@@ -28,11 +29,14 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
-KNOTS, STEPS = 25, 4
-"""Of the controls, and steps of the simulation from one to the next."""
+KNOTS, STEPS, FINER = 25, 4, 2
+"""Of the controls, steps of the simulation from one to the next, and how often knots are put between them."""
 
 DRAWN, STARTS, WAVES = 60, 4, 2
 """Controls that are drawn, those of them from which one starts, and their waves."""
+
+SMALLER = 0.05
+"""Share of them that is drawn where the motion leaves all bounds under the first ones."""
 
 LONGEST, LOOKED = 30.0, 400
 """Free durations are looked for up to so many of the motion's own time scales, at so many times."""
@@ -56,6 +60,8 @@ class Programme:
     instance: Instance
     size: Array
     """Of each state, shape (n,)."""
+    knots: int = KNOTS
+    """Of the controls."""
 
     @cached_property
     def fixed(self) -> list[int]:
@@ -78,7 +84,7 @@ class Programme:
         """Controls at nodes and midpoints, shape (m, 2 N + 1), and the duration."""
         m, free = len(self.scales), self.instance.tf is None
         duration = float(unknown[-1]) if free else float(self.instance.tf - self.instance.t0)  # type: ignore[operator]
-        return (unknown[: m * KNOTS].reshape(m, KNOTS) * self.scales[:, None]) @ _hats(), duration
+        return (unknown[: m * self.knots].reshape(m, self.knots) * self.scales[:, None]) @ _hats(self.knots), duration
 
     def simulated(self, u: Array, duration: float) -> tuple[Array, Array, Array, float]:
         """Times, states at nodes and midpoints, and the whole cost."""
@@ -95,6 +101,14 @@ class Programme:
         """What squares of controls cost besides, if the problem is regularised."""
         smoothing = self.instance.control_set.smoothing
         return smoothing if smoothing > UNSMOOTHED else 0.0
+
+    def finer(self, unknown: Array) -> tuple[Programme, Array]:
+        """The same with a knot between any two, and what the unknowns are there."""
+        m = len(self.scales)
+        halves = interleave(
+            controls := unknown[: m * self.knots].reshape(m, -1), (controls[:, 1:] + controls[:, :-1]) / 2
+        )
+        return replace(self, knots=halves.shape[1]), np.append(halves, unknown[m * self.knots :])
 
     def along(self, unknown: Array) -> tuple[Array, Array, Array, float]:
         """What :meth:`simulated` finds for the unknowns; the last ones are remembered, as cost and ends both ask."""
@@ -134,7 +148,7 @@ class Programme:
         tau, states = np.empty(u.shape[1]), np.empty((n, u.shape[1]))
         tau[::2], tau[1::2] = times, (times[1:] + times[:-1]) / 2.0
         states[:, ::2], states[:, 1::2] = x, x_mid
-        onto = self._weights(len(tau), duration)[:, None] * _hats().T
+        onto = self._weights(len(tau), duration)[:, None] * _hats(self.knots).T
         rows: list[Array] = []
         nodes: list[Array] = []
         for end in ends:
@@ -168,15 +182,15 @@ class Programme:
             [None if not np.isfinite(v) else float(v / scale) for v in pair]
             for *pair, scale in zip(*_ends(self.instance), self.scales, strict=True)
         ]
-        found = [(low, high) for low, high in both for _ in range(KNOTS)]
+        found = [(low, high) for low, high in both for _ in range(self.knots)]
         return found + ([(SMALLEST, None)] if self.instance.tf is None else [])
 
 
 @cache
-def _hats() -> Array:
+def _hats(knots: int) -> Array:
     """The share of each knot in the control at nodes and midpoints, shape (knots, 2 N + 1)."""
-    tau = np.linspace(0.0, 1.0, 2 * STEPS * (KNOTS - 1) + 1)
-    return np.array([np.interp(tau, np.linspace(0.0, 1.0, KNOTS), row) for row in np.eye(KNOTS)])
+    tau = np.linspace(0.0, 1.0, 2 * STEPS * (knots - 1) + 1)
+    return np.array([np.interp(tau, np.linspace(0.0, 1.0, knots), row) for row in np.eye(knots)])
 
 
 def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint, Start] | None:
@@ -191,6 +205,7 @@ def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint,
     """
     if instance.model.spec.multipliers or any(isinstance(v, str) for v in instance.final.values()):
         return None
+    found: list[tuple[float, Programme, Array]] = []
     for programme, start in _starts(instance, seed):
         if limits.expired:
             break
@@ -201,6 +216,23 @@ def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint,
             if extremal is not None:
                 return extremal
             start = start if solved is None else solved
+        if solved is not None:
+            found.append((float(programme.values(solved)[0]), programme, solved))
+    return _finer(*min(found, key=lambda one: one[0])[1:], limits) if found else None
+
+
+def _finer(programme: Programme, unknown: Array, limits: Limits) -> tuple[TwoPoint, Start] | None:
+    """The extremal to which more and more knots lead."""
+    for _ in range(FINER):
+        if limits.expired:
+            break
+        programme, unknown = programme.finer(unknown)
+        limits.spend(programme.knots * STEPS * PROGRAMMES)
+        solved = _solved(programme, unknown, FLAT[-1])
+        extremal = None if solved is None else _extremal(programme, solved)
+        if extremal is not None:
+            return extremal
+        unknown = unknown if solved is None else solved
     return None
 
 
@@ -209,14 +241,16 @@ def _starts(instance: Instance, seed: int) -> Iterator[tuple[Programme, Array]]:
     rng, tau = np.random.default_rng(seed), np.linspace(0.0, 1.0, KNOTS)
     low, high = _ends(instance)
     found: list[tuple[float, Programme, Array]] = []
-    for _ in range(DRAWN):
-        knots = []
+    for k in range(2 * DRAWN):
+        knots, size = [], 1.0 if k < DRAWN else SMALLER
+        if k == DRAWN and found:
+            break
         for a, b in zip(low, high, strict=True):
             waves = rng.uniform(-0.5, 0.5) + sum(rng.normal() / (k + 2) * np.cos(k * np.pi * tau) for k in (1, WAVES))
             if np.isfinite(b - a):
-                knots.append(np.clip(((a + b) / 2.0 + (b - a) / 2.0 * waves) / ((b - a) / 2.0), *_unit(a, b)))
+                knots.append(np.clip(size * ((a + b) / (b - a) + waves), *_unit(a, b)))
             else:
-                knots.append(np.clip(2.0 * waves, a, b))
+                knots.append(np.clip(2.0 * size * waves, a, b))
         one = _begun(instance, np.concatenate(knots))
         if one is not None:
             found.append(one)

@@ -19,7 +19,7 @@ SAMPLES, CLEAR = 12, 1e-3
 STILL, MOST = 1e-12, 25
 """Share of the horizon by which jumps still move that stand still, and times that nodes follow them."""
 
-ROUGHLY = 1e-6
+ROUGHLY = 1e-4
 """Change of a curve from which on Newton's method brings it to its end."""
 
 LARGEST = 0.5
@@ -35,7 +35,12 @@ def found(problem: TwoPoint, curve: Path) -> list[Jump]:
         return []
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
     tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
-    return jumps(lambda at: problem.control(at, curve(at), curve.theta), tau, CLEAR)
+
+    def joins(jump: Jump) -> bool:  # and not only because the curve itself is torn at a node
+        apart = problem.between(jump.time, curve(np.array([jump.time]))[:, 0], curve.theta, jump)
+        return apart > CLEAR * max(float(np.abs(jump.before).max()), float(np.abs(jump.after).max()))
+
+    return [one for one in jumps(lambda at: problem.control(at, curve(at), curve.theta), tau, CLEAR) if joins(one)]
 
 
 def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt | None:
@@ -55,7 +60,7 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
         times = np.array([jump.time for jump in met])
         if (np.diff(times) < CLOSE).any():
             return None
-        mesh = through(np.union1d(corners(problem, curve, ROUGHLY), times), count)
+        mesh = through(np.union1d(corners(problem, curve), times), count)
         system, curve = System(problem, mesh, order, met), curve.on(mesh, order)
         if size < ROUGHLY:
             outcome = newton(system, curve)

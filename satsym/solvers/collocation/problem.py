@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import UNSMOOTHED, ControlSet, Row
 from satsym.instance import Instance
-from satsym.solvers.control.jumps import Jump, Saltation, saltation
+from satsym.solvers.control.jumps import Jump, Saltation, beside, saltation
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
 ROUNDING = 1e-10
@@ -179,6 +179,12 @@ class TwoPoint:
         """How neighbouring extremals pass a jump at ``tau`` and ``z`` (2n,)."""
         t, unit = self.instance.t0 + self.elapsed(theta) * tau, self.scale.both[:, 0]
         return saltation(self.instance, t, z * unit, jump, unit, self.scale.cost)
+
+    def between(self, tau: float, z: Array, theta: Array, jump: Jump) -> float:
+        """How far apart the minimisers of H are that a jump joins, at ``tau`` and ``z`` (2n,)."""
+        t, physical = self.instance.t0 + self.elapsed(theta) * tau, z * self.scale.both[:, 0]
+        before, after = (beside(self.instance, t, physical, u) for u in (jump.before, jump.after))
+        return float(np.abs(after - before).max())
 
     def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
         """The integrand of the cost under the control law, scaled, shape (N,)."""
