@@ -22,7 +22,8 @@ verdict of its certificate.
 OTHERS = frozenset(
     "lapan-coupling lapan-classical gyrostat-equilibria "
     "its-thesis-10-50 its-thesis-50-10 its-thesis-50-50 its-thesis-return-two-sided lapan-minimum-time-100s "
-    "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked reorientation shuttle".split()
+    "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked reorientation shuttle "
+    "its-thesis-return".split()
 )
 """Asked about by other commands than these, much like their neighbours, or by far the longest to certify."""
 

@@ -12,6 +12,7 @@ import pytest
 import satsym
 from satsym import instance
 from satsym.report.html.markup import Markup
+from satsym.report.page import answer
 from satsym.report.page.motion import SIDE, motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.prose import prose
@@ -79,6 +80,12 @@ def test_it_says_what_the_result_says(text: str, solution: Solution) -> None:
         assert f'scope="row">{check.name}</th>' in text
     given = solution.instance.path.read_text(encoding="utf-8").splitlines()[0]
     assert given.replace('"', "&quot;").replace("'", "&#x27;") in text
+
+
+def test_the_facts_have_the_times_of_points_on_the_way() -> None:
+    found = solve(instance.load("inspection"))
+    (event,) = found.events
+    assert f"<dd>interior viewpoint at {event.t:.10g} s</dd>" in answer.facts(found, load("en"))
 
 
 def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(text: str) -> None:

@@ -87,6 +87,10 @@ NAN = float("nan")
 PLACE = np.array([1.0, NAN, 1.0, NAN])
 
 
+ON_BOUNDARIES = {"off the boundary on a boundary arc", "negative multiplier", "multiplier vanishes on a boundary"}
+"""What only a motion that meets a boundary is checked for."""
+
+
 def test_a_point_on_a_line_is_where_it_turns():
     """From rest at 0 to rest at 0 by way of 1: u = 6 - 12 t and back, each at half the effort of 12."""
     found = solution(plane("turning", interior={"mark": (x - 1,)}), [0] * 4, [0] * 4, 2.0)
@@ -176,6 +180,7 @@ def test_bounds_on_both_sides_of_a_point_have_arcs():
     found = solution(problem, [0] * 4, [0] * 4, 2.0, control={"f": [-5.0, 5.0]})
     s = 0.5 * (1.0 - np.sqrt(3.0 * (1.0 - 4.0 / 5.0)))
     assert certified(found) == pytest.approx([1.0], abs=1e-9)
+    assert {check.name for check in found.certificate.checks} >= ON_BOUNDARIES
     exits = [one.t for one in found.events if one.kind == "exit"]
     assert exits == pytest.approx([s, 1.0 + s], abs=1e-9)
     free = 25.0 * (1.0 - 2.0 * s) / 3.0
@@ -201,6 +206,7 @@ def test_the_inspection_is_that_of_the_table():
     found = satsym.solve("inspection")
     assert certified(found) == pytest.approx([best.x], abs=1e-5)
     assert found.objective == pytest.approx(best.fun, rel=1e-9)
+    assert not ON_BOUNDARIES & {check.name for check in found.certificate.checks}
     assert KNOWN["inspection"]["optimum"] == pytest.approx(best.fun, rel=1e-9)
 
 

@@ -19,12 +19,17 @@ from satsym.spec import ProblemSpec
 def facts(solution: Solution, texts: Texts) -> Markup:
     """The cost, the final time, and how they were found."""
     instance, spec = solution.instance, solution.instance.model.spec
+    unit = unit_text(time_unit(spec) or "1")
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
-    span = f"{number(float(solution.times[-1]), 10)} {unit_text(time_unit(spec) or '1')}" if len(solution.times) else ""
+    span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""
     switches = ", ".join(
         f"{name} {', '.join(figure(t) for t in times)}"
         for name, times in zip(spec.control_names, solution.switching_times, strict=True)
         if times
+    )
+    events = "; ".join(
+        f"{message(one.kind)} {one.name} {say('at <times>', times=f'{figure(one.t, 10)} {unit}'.rstrip())}"
+        for one in solution.events
     )
     known = {
         "status": message(solution.status.value),
@@ -33,7 +38,8 @@ def facts(solution: Solution, texts: Texts) -> Markup:
         "final_time": span,
         "boundary": str(instance.boundary_type),
         "method": f"{solution.method} ({solution.iterations})",
-        "switching_times": f"{switches} {unit_text(time_unit(spec) or '1')}" if switches else "",
+        "switching_times": f"{switches} {unit}" if switches else "",
+        "events": events,
     }
     pairs = [tag("dt", texts.get("page", key)) + tag("dd", value.strip()) for key, value in known.items() if value]
     return tag("dl", *map(Markup, pairs))

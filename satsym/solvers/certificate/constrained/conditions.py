@@ -111,11 +111,15 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("domain violation", float(not solution.instance.model.in_domain(flow.x)), 0.0),
         Check("path constraint violated", _violated(solution, again), VIOLATED),
-        Check("off the boundary on a boundary arc", _off_boundary(solution, again), VIOLATED),
-        Check("off tangency at junctions", _off_tangency(solution, again), DEFECT),
-        Check("jump of costates off the constraint's gradient", again.off_gradient, DEFECT),
-        Check("negative multiplier", _negative(solution, again), SIGN),
     ]
+    if again.meets_a_boundary(solution):
+        checks += [
+            Check("off the boundary on a boundary arc", _off_boundary(solution, again), VIOLATED),
+            Check("off tangency at junctions", _off_tangency(solution, again), DEFECT),
+            Check("negative multiplier", _negative(solution, again), SIGN),
+        ]
+    if any(again.jumps):
+        checks.append(Check("jump of costates off the constraint's gradient", again.off_gradient, DEFECT))
     checks += passing(solution, again)
     drift = _drift(solution, again)
     return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
@@ -125,11 +129,12 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
     least, most = _least_multiplier(solution, again, strict=True)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
-    vanishing = Check("multiplier vanishes on a boundary", float(not strict), 0.0)
+    vanishing = [Check("multiplier vanishes on a boundary", float(not strict), 0.0)]
+    vanishing = vanishing if again.meets_a_boundary(solution) else []
     if solution.instance.tf is None and (again.pressed or again.pieces[-1].active):
-        return [vanishing, Check("second variation not resolved: ends on a boundary at a free time", 1.0, 0.0)]
+        return [*vanishing, Check("second variation not resolved: ends on a boundary at a free time", 1.0, 0.0)]
     return [
-        vanishing,
+        *vanishing,
         Check("second variation with the active arcs fixed", float(not curvature(solution, again) > CURVED), 0.0),
     ]
 

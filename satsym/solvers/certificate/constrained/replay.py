@@ -68,6 +68,13 @@ class Replay:
     gap: float = 0.0
     """The most that a segment misses of the node at which the next one begins, relative to sizes."""
 
+    def meets_a_boundary(self, solution: Solution) -> bool:
+        """Whether any constraint is active somewhere, if only at a moment; points on the way are no constraints."""
+        points = {k for point in conditions(solution.instance) for k in point}
+        return (
+            bool(self.pressed) or any(jump.keys() - points for jump in self.jumps) or any(p.active for p in self.pieces)
+        )
+
     def flow(self, solution: Solution) -> Flow:
         """As conditions at the end have it."""
         z, n = np.column_stack([self.z[:, :-1], self.end]), len(solution.x)
