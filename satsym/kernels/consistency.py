@@ -10,6 +10,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from math import prod
 from typing import Any
 
@@ -76,7 +77,8 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             return None
         together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
         groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(together, size)]
-        groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
+        rowwise = sorted([*_both_forms(evaluation), *_loops(kernels, at)], key=_columns)
+        groups += [(list(alike), _largest) for _, alike in groupby(rowwise, _columns)]
         found = [
             Contradiction(each.function, each.claim, deviation)
             for group, scale in groups
@@ -208,6 +210,10 @@ def _loops(kernels: Kernels, at: Mapping[str, Any]) -> Iterator[Relation]:
             yield Relation("backward", claim, lam, again)
     except _FAILED:
         return  # beyond the domain of the rates
+
+
+def _columns(each: Relation) -> int:
+    return each.left.shape[-1]
 
 
 def _largest(rows: Array) -> Array:

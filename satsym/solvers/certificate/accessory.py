@@ -43,10 +43,11 @@ class Accessory:
     """Rows that vanish where the end is as given, shape (c, P)."""
     sizes: Array
     """Of the boundary residuals that these ties are about, shape (c,)."""
-    controls: Array
-    """Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P)."""
     duration: Array
     """Change of the final time by the former, shape (P,)."""
+    linear: _Linear
+    course: _Course
+    """The accessory problem at nodes and midpoints of the grid, and what the changes do there."""
 
     @property
     def smallest(self) -> tuple[float, Array]:
@@ -56,6 +57,25 @@ class Accessory:
             return float("inf"), np.zeros(len(self.form))
         values, vectors = np.linalg.eigh(free.T @ self.form @ free)
         return float(values[0]), free @ vectors[:, 0]
+
+    def along(self, directions: Array) -> Along:
+        """What some directions do, shape (P, k)."""
+        own = directions[: self.course.states.shape[2]]
+        followed = self.linear.feedback @ (self.course.states @ own)
+        controls = (followed + self.linear.direct @ self.course.weights(own)).transpose(1, 0, 2)
+        return Along(self.ties @ directions, controls, self.duration @ directions)
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """What k directions of changes do, which is all that is asked of those that are combinations of them."""
+
+    ties: Array
+    """To what ties the end, shape (c, k)."""
+    controls: Array
+    """To the controls at nodes and midpoints of the grid, shape (m, 2 N + 1, k)."""
+    duration: Array
+    """To the final time, shape (k,)."""
 
 
 def accessory(solution: Solution, grid: Grid) -> Accessory | None:
@@ -78,10 +98,11 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
     linear = _Linear.of(solution, times, z)
     if linear is None:
         return None
-    states, weights = _sensitivities(linear, grid)
+    course = _Course.of(linear, grid)
+    states = course.states
     n, pieces, free_time = states.shape[1], states.shape[2], int(solution.instance.tf is None)
     weighed = linear.restoring * interleave(grid.node_weights, grid.midpoint_weights)[:, None, None] @ states
-    inside = np.tensordot(states, weighed, axes=((0, 1), (0, 1)))
+    inside = states.reshape(len(times) * n, pieces).T @ weighed.reshape(len(times) * n, pieces)
     arriving = np.zeros((n + free_time, pieces + free_time))
     arriving[:n, :pieces], arriving[n:, pieces:] = states[-1], np.eye(free_time)
     end = end_form(solution, linear.scale)
@@ -90,10 +111,8 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
     largest = max(np.abs(inside).max(initial=0.0), (np.abs(end.form) @ arriving**2).max(initial=0.0))
     if not largest * np.finfo(float).eps < DROWNED:
         return None
-    controls = np.zeros((weights.shape[1], len(times), pieces + free_time))
-    controls[:, :, :pieces] = (linear.feedback @ states + linear.direct @ weights).transpose(1, 0, 2)
     duration = np.append(np.zeros(pieces), np.full(free_time, grid.tf - grid.t0))
-    return Accessory(form, end.ties @ arriving, end.sizes, controls, duration)
+    return Accessory(form, end.ties @ arriving, end.sizes, duration, linear, course)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,30 +173,46 @@ def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
     return np.stack(columns, axis=2).transpose(1, 0, 2)
 
 
-def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
-    """States at nodes and midpoints, shape (2N+1, n, P), and controls there, (2N+1, m, P), by P changes.
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """What P changes do over time; each is constant on its piece and costs half its square."""
 
-    By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation, which is as linear in states
-    and changes at the beginning of a step as its end is; each change is constant on its piece and costs half its
-    square.
-    """
-    n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
-    piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
-    own, steps = shapes[piece], _steps(linear, grid)
-    driven, course = steps[:, :n, n:] @ own, np.zeros((2 * grid.steps + 1, n, shapes.shape[2]))
-    for k in range(grid.steps):
-        np.matmul(steps[k, :n, :n], course[2 * k], out=course[2 * k + 2])
-        course[2 * k + 2] += driven[k]
-    both, h = np.concatenate([linear.motion, linear.push], axis=2), grid.widths[:, None, None]
-    between = (np.eye(n, steps.shape[2]) + steps[:, :n]) / 2.0 + h / 8.0 * (both[:-2:2] - both[2::2] @ steps)
-    course[1::2] = between @ np.concatenate([course[:-1:2], own], axis=1)
-    # To be simulated, changes go linearly from the middle of a piece to that of the next.
-    times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
-    place = np.interp(times, middles, np.arange(len(middles)))
-    before = np.minimum(place.astype(int), max(len(middles) - 2, 0))
-    share = (place - before)[:, None, None]
-    weights = (1.0 - share) * shapes[before] + share * shapes[np.minimum(before + 1, len(middles) - 1)]
-    return course, weights
+    states: Array
+    """Of the states at nodes and midpoints, shape (2N+1, n, P)."""
+    shapes: Array
+    """Of the controls on each piece, shape (pieces, m, P)."""
+    place: Array
+    """Where nodes and midpoints lie among the middles of the pieces, from zero to the last, shape (2N+1,)."""
+
+    @classmethod
+    def of(cls, linear: _Linear, grid: Grid) -> _Course:
+        """By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation.
+
+        The latter is as linear in states and changes at the beginning of a step as its end is.
+        """
+        n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
+        piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
+        own, steps = shapes[piece], _steps(linear, grid)
+        driven, course = steps[:, :n, n:] @ own, np.zeros((2 * grid.steps + 1, n, shapes.shape[2]))
+        for k in range(grid.steps):
+            np.matmul(steps[k, :n, :n], course[2 * k], out=course[2 * k + 2])
+            course[2 * k + 2] += driven[k]
+        both, h = np.concatenate([linear.motion, linear.push], axis=2), grid.widths[:, None, None]
+        between = (np.eye(n, steps.shape[2]) + steps[:, :n]) / 2.0 + h / 8.0 * (both[:-2:2] - both[2::2] @ steps)
+        np.matmul(between[:, :, :n], course[:-1:2], out=course[1::2])
+        course[1::2] += between[:, :, n:] @ own
+        times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
+        return cls(course, shapes, np.interp(times, middles, np.arange(len(middles))))
+
+    def weights(self, changes: Array) -> Array:
+        """Changes, shape (P, k), as they are simulated, shape (2N+1, m, k).
+
+        They go linearly from the middle of a piece to that of the next.
+        """
+        own, last = self.shapes @ changes, len(self.shapes) - 1
+        before = np.minimum(self.place.astype(int), max(last - 1, 0))
+        share = (self.place - before)[:, None, None]
+        return np.asarray((1.0 - share) * own[before] + share * own[np.minimum(before + 1, last)])
 
 
 def _shapes(linear: _Linear, grid: Grid, edges: NDArray[np.intp]) -> Array:

@@ -13,7 +13,7 @@ from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.accessory import Accessory, accessory
+from satsym.solvers.certificate.accessory import Along, accessory
 from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import products, typical
@@ -120,11 +120,14 @@ def neighbours(solution: Solution) -> Neighbours:
     reference = simulations(u, grid)
     moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
     missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
-    size = _size(second, direction, float(np.abs(u).max()) or 1.0)
+    # Corrections of least size combine what ties the end.
+    basis = np.linalg.qr(np.column_stack([direction, second.ties.T]))[0]
+    along, direction = second.along(basis), basis.T @ direction
+    size = _size(along, direction, float(np.abs(u).max()) or 1.0)
     if not size > 0.0:  # every control is saturated throughout
         return Neighbours(float("inf"), float("inf"), Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     unit = direction / size
-    search = _Search(simulations, second, solution, reference[1], missed)
+    search = _Search(simulations, along, solution, reference[1], missed)
     # The grid's own end may make one side cheaper: that is of first order, and cancels in the mean of both.
     means = [(search.corrected(a * unit) + search.corrected(-a * unit)) / 2.0 for a in AMPLITUDES]
     solved = [cost for cost in means if np.isfinite(cost)]
@@ -140,7 +143,7 @@ def neighbours(solution: Solution) -> Neighbours:
     )
 
 
-def _size(second: Accessory, direction: Array, largest: float) -> float:
+def _size(second: Along, direction: Array, largest: float) -> float:
     """Of a direction: of the change of the control, or of the final time, relative to their own."""
     lasting = float(np.abs(second.duration).max()) or 1.0
     longer = abs(float(second.duration @ direction)) / lasting
@@ -150,7 +153,7 @@ def _size(second: Accessory, direction: Array, largest: float) -> float:
 @dataclass(frozen=True, eq=False)
 class _Search:
     simulations: Simulations
-    second: Accessory
+    second: Along
     solution: Solution
     end: Array
     missed: float

@@ -92,7 +92,7 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
     if second is None:
         return None
     curvature, direction = second.smallest
-    shape = second.controls @ direction
+    shape = second.along(direction[:, None]).controls[:, :, 0]
     largest = float(np.abs(shape).max(initial=0.0))
     if not (curvature < 0.0 and largest > 0.0):
         return None

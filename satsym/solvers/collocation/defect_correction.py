@@ -113,11 +113,12 @@ def resolved(problem: TwoPoint, curve: Curve, rough: float) -> Corrected | None:
     """
     if not left_out(curve).max() < rough:
         return None
-    outcome = newton(System(problem, curve.mesh, POINTS, found(problem, curve)), curve.with_stages(POINTS))
+    system = System(problem, curve.mesh, POINTS, found(problem, curve))
+    outcome = newton(system, curve.with_stages(POINTS))
     if outcome is None or not outcome.solved:
         return None
     omitted = left_out(outcome.curve)
-    return Corrected(outcome.curve, max(SETTLED, float(omitted.max())), omitted)
+    return Corrected(_without_rounding(system, outcome.curve), max(SETTLED, float(omitted.max())), omitted)
 
 
 def _faint(linearised: Linearised) -> float:

@@ -7,9 +7,9 @@ Differential Equations I, II.9). The library's own integrators take longer to im
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -113,14 +113,20 @@ def leap_and_error(
     rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)
 ) -> tuple[Array, Array]:
     """The same with an estimate of its errors, that of the value of the next lower order, both of shape (d, M)."""
-    slope, table = rates(t, y), [y]
-    for k, count in enumerate(SUBSTEPS[:columns]):
+    return next(islice(leaps(rates, t, y, h), columns - 1, None))
+
+
+def leaps(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array) -> Iterator[tuple[Array, Array]]:
+    """The same with one column, two, and so on; the first has an infinite error, having none to be compared with."""
+    slope = rates(t, y)
+    table: list[Array] = []
+    for k, count in enumerate(SUBSTEPS):
         row = [_midpoint(rates, t, y, slope, h, count)]
         for j in range(k):
             ratio = (count / SUBSTEPS[k - j - 1]) ** 2
             row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
         table = row
-    return table[-1], np.abs(table[-1] - table[-2])
+        yield row[-1], np.abs(row[-1] - row[-2]) if k else np.full_like(y, np.inf)
 
 
 def _piece(

@@ -7,6 +7,8 @@ comes out has the errors of these integrations and no others, wherever the stati
 
 from __future__ import annotations
 
+from itertools import islice
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -14,10 +16,10 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
 from satsym.solvers.certificate.reintegration.segments import Segments
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap_and_error
+from satsym.solvers.simulation.extrapolation import leaps
 
-COLUMNS = (4, 6, len(SUBSTEPS))
-"""Of the extrapolation table; the fewest that are accurate enough."""
+FEWEST = 4
+"""Columns of the extrapolation table, at least."""
 
 SETTLED = 1e-11
 """Relative correction of stations whose square is nothing, and that changes the cost by nothing that is checked."""
@@ -43,8 +45,7 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
     for _ in range(ROUNDS):
         start = np.append(z[:, :-1], np.zeros((1, len(widths))), axis=0)
         try:
-            for columns in COLUMNS:
-                ends, error = leap_and_error(rates, times[:-1], start, widths, columns)
+            for ends, error in islice(leaps(rates, times[:-1], start, widths), FEWEST - 1, None):
                 if (error <= TOLERANCE * np.maximum(scale, np.abs(ends))).all():
                     break
             else:
