@@ -9,9 +9,11 @@ import pytest
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from sympy import Float, cos
 
 from satsym.solvers import solve
 from satsym.status import Verdict
+from satsym.symbolic import t
 from tests.support.models import build, k, q, scalar, w
 
 
@@ -43,5 +45,20 @@ def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: 
     text = f"[initial]\nq = 0\n[final]\nq = 0\n[time]\ntf = {duration}\n[control]\nw = [-1, 1]\n"
     found = solve(build(tmp_path, problem, text))
     assert found.objective == pytest.approx(cost, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.parametrize(("size", "rate", "weight"), [(0.55, 4.59, 0.05), (0.69, 4.68, 0.05), (0.38, 4.61, 0.05)])
+def test_the_least_of_several_negative_costs_over_the_duration_is_found(
+    tmp_path: Path, size: float, rate: float, weight: float
+) -> None:
+    """Speeds are constant: a cosine of the final time, its weight, and the effort are left."""
+    times = np.linspace(0.02, 30.0, 600_001)
+    least = float((0.5 / times + size * np.cos(rate * times) + weight * times).min())
+    problem = scalar("waves_of_the_final_time", w, w**2 / 2, Float(size) * cos(Float(rate) * t) + k * t, "free")
+    text = f'[parameters]\nk = {weight}\n[initial]\nq = 0\n[final]\nq = 1\n[time]\ntf = "free"\n'
+    found = solve(build(tmp_path, problem, text))
+    assert found.objective == pytest.approx(least, abs=1e-7)
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED

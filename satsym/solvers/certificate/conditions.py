@@ -136,14 +136,21 @@ def stationarity(solution: Solution) -> float:
 
 
 def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
-    """Largest change of H along the flow, relative to the terms it consists of; ``None`` with explicit time."""
+    """Largest change of H along the flow, relative to the terms it consists of; ``None`` with explicit time.
+
+    Faint costates count as a share of their unit, as where they are compared: what is made of rounding keeps nothing.
+    """
     instance, model = solution.instance, solution.instance.model
     if not model.spec.autonomous:
         return None
     u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.control_set.arguments)
     h = model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters)
-    terms = np.abs(flow.lam * model.dynamics_batch(flow.times, flow.x, u, instance.parameters)).sum(axis=0).max()
-    return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))
+    rates = np.abs(model.dynamics_batch(flow.times, flow.x, u, instance.parameters))
+    terms = (np.abs(flow.lam) * rates).sum(axis=0).max()
+    unit, n = unit_sizes(solution), len(solution.x)
+    slowest = NEGLIGIBLE * unit[:n] / float(solution.times[-1] - solution.times[0])
+    faint = FAINT * unit[n:] @ np.maximum(np.broadcast_to(rates, flow.x.shape).max(axis=1), slowest)
+    return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), faint, 1e-300))
 
 
 def legendre_clebsch(solution: Solution) -> float:

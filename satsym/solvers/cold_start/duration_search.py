@@ -110,28 +110,27 @@ class Search:
             self._walk(down=True)
 
     def minimum(self, a: Try, b: Try) -> Minimum | None:
-        """The minimum between two durations."""
+        """The minimum between two durations; one that costs more than either of these if no other is found."""
+        dearer: Minimum | None = None
         for _ in range(BISECTIONS):
-            near = a if abs(a.slope) <= abs(b.slope) else b
+            near, least = a if abs(a.slope) <= abs(b.slope) else b, min(a.cost, b.cost)
             found = self.trials.freed(near)
             if found and a.duration * (1.0 - SLACK) <= found.duration <= b.duration * (1.0 + SLACK):
-                return found
-            if self.limits.expired:
-                return None
-            middle = self._solved((a.duration * b.duration) ** 0.5, near)
-            if middle is None:
-                return None
-            halves = [pair for pair in ((a, middle), (middle, b)) if _minimum_between(*pair)]
+                if found.cost <= least + SLACK * abs(least):
+                    return found
+                dearer = found
+            middle = None if self.limits.expired else self._solved((a.duration * b.duration) ** 0.5, near)
+            halves = [] if middle is None else [pair for pair in ((a, middle), (middle, b)) if _minimum_between(*pair)]
             if not halves:
-                return None
+                return dearer
             a, b = min(halves, key=lambda pair: min(t.cost for t in pair))
-        return None
+        return dearer
 
     def confirmed(self, best: Minimum) -> Minimum:
         """That minimum, or a cheaper one from where the other ways of the cold start lead with the same duration."""
         hard = self._quick and best.start.found.hard
         again = self.trials.cold(best.duration, quick=False) if hard else None
-        if again is None or again.cost >= best.cost * (1.0 - 1e-6):
+        if again is None or again.cost >= best.cost - 1e-6 * abs(best.cost):
             return best
         other = self.trials.freed(again)
         return other if other and other.cost < best.cost else best
@@ -140,7 +139,7 @@ class Search:
         """Whether none of the durations tried costs less than a minimum, but for this much."""
 
         def above(than: Try) -> bool:
-            return best.cost > than.cost * (1.0 + 1e-9) + least
+            return best.cost > than.cost + 1e-9 * abs(than.cost) + least
 
         return not any(above(t) and above(self.trials.accurate(t)) for t in self.tries)
 
@@ -163,7 +162,7 @@ class Search:
         if len(last.start.found.curve.mesh) > MOST_INTERVALS:
             return False
         rising = len(costs) > RISES and all(a < b for a, b in pairwise(costs[-RISES - 1 :]))
-        if rising and last.cost > FAR_ABOVE * min(costs):
+        if rising and last.cost - min(costs) > (FAR_ABOVE - 1.0) * abs(min(costs)):
             return False
         if self._timed:
             return duration < self._dearest()
