@@ -124,6 +124,7 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     parameters, constants = set(symbols_of(model.parameters)), constants_of(model)
     motion = constants | set(symbols_of(model.states))
     everything = motion | set(symbols_of(model.controls))
+    fixed = parameters | set(symbols_of(one.variable for one in model.definitions))
 
     def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
         if any(sp.sympify(e).has(sp.nan, sp.oo, -sp.oo, sp.zoo) for e in expressions):
@@ -152,6 +153,9 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
             refuse(f"the path constraint {name}", [stated], everything, "path_constraints")
         for name, conditions in problem.interior.items():
             refuse(f"the interior point {name}", conditions, motion, "interior")
+            if idle := [e for e in conditions if sp.sympify(e).free_symbols <= fixed]:
+                message = f"{name} asks that {idle[0]} = 0, which no motion changes; state it by states or time"
+                raise DerivationError(f"{derivation.name}: interior: {message}", ("interior",))
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:

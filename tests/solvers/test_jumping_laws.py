@@ -139,3 +139,16 @@ def test_phases_go_on_across_a_jump_and_by_less_than_a_turn(weak: float) -> None
     x = (matrix(weak) @ turned @ began)[0, 1]
     assert int(phases.passed[-1]) == int(x > 0.0)
     assert 0.0 <= phases.values[-1, 0] - phases.values[-2, 0] < 2.0 * np.pi * FULL
+
+
+def test_a_jump_at_the_last_instant_changes_nothing(tmp_path: Path) -> None:
+    """With a free end lambda = tf - t vanishes there, where both wells become equally good."""
+    text = f"[initial]\nq = {START}\n[time]\ntf = {LASTING}\n[control]\nw = [-2, 2]\n"
+    found = solve(build(tmp_path, scalar("wells", w, WELL + q, 0, "box"), text))
+    certified(found, 0)
+
+    def running(t: float) -> float:
+        v = speed(-1.0, LASTING - t)
+        return (v**2 - 1.0) ** 2 + (LASTING - t) * v
+
+    assert found.objective == pytest.approx(quad(running, 0.0, LASTING)[0], rel=1e-10)

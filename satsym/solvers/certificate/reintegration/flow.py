@@ -89,7 +89,7 @@ def flow(solution: Solution) -> Flow | None:
 def _parts(solution: Solution, stations: Array) -> list[tuple[Array | None, Array]]:
     """Stations up to and from the nodes beside each jump, and between these the control near which H is held least."""
     found: list[tuple[Array | None, Array]] = []
-    for one in (one for one in passages(solution) if one.located):
+    for one in (one for one in passages(solution) if one.located and not one.last):
         before, after = solution.times[one.node : one.node + 2]
         found += [(None, np.append(stations[stations < before], before))] if before > stations[0] else []
         found.append((one.jump.before, np.array([before, one.jump.time])))

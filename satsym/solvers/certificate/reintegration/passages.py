@@ -26,7 +26,9 @@ class Passage:
     node: int
     """The one before it."""
     located: bool
-    """Whether both are so close that it is known when the control jumps."""
+    """Whether both are so close that it is known when the control jumps, or it does so at the very end."""
+    last: bool
+    """Whether nothing comes after it."""
 
     def saltation(self, solution: Solution, unit: Array) -> Saltation:
         """How neighbouring extremals pass it, in units of states and costates whose products are all the same."""
@@ -54,5 +56,7 @@ def passages(solution: Solution) -> tuple[Passage, ...]:
     found = []
     for jump in jumps(law, t, LEFT):
         node = int(np.searchsorted(t, jump.time)) - 1
-        found.append(Passage(jump, node, bool(t[node + 1] - t[node] <= CLOSE * (t[-1] - t[0]))))
+        near = CLOSE * float(t[-1] - t[0])
+        last = bool(t[-1] - jump.time <= near)
+        found.append(Passage(jump, node, last or bool(t[node + 1] - t[node] <= near), last))
     return tuple(found)
