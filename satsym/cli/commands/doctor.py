@@ -31,6 +31,7 @@ def doctor(as_json: bool) -> ExitCode:
     if as_json:
         emit_json({"healthy": healthy, "findings": [finding.as_object() for finding in findings]})
     else:
-        rows = [tuple(map(message, (f.mark, f.name, f.value, f.note))) for f in findings]
-        emit("\n".join(table([("", *each("what", "found", "note")), *rows], indent="")))
+        what, found, note = each("what", "found", "note")
+        rows = [tuple(map(message, (f.name, f.mark, f.value, f.note))) for f in findings]
+        emit("\n".join(table([(what, "", found, note), *rows], indent="")))
     return ExitCode.DONE if healthy else ExitCode.UNFORESEEN
