@@ -26,6 +26,10 @@ SAME = 1e-9
 """Relative error of refined costs; it makes no difference."""
 
 
+LARGEST = 1e300
+"""Beyond this no margin is: one that is infinite has nothing to compare."""
+
+
 @dataclass(frozen=True, eq=False)
 class Competitor:
     """A competitor that was found."""
@@ -113,5 +117,5 @@ def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 
     """
     if not np.isfinite(competitor):
         return float("inf")
-    margin = (competitor - cost) / max(abs(cost), 1e-300)
+    margin = float(np.clip((competitor - cost) / max(abs(cost), 1e-300), -LARGEST, LARGEST))
     return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

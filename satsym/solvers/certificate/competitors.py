@@ -19,6 +19,7 @@ from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
+from satsym.solvers.certificate.drawn_controls import drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
@@ -81,6 +82,9 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
         if kind is Kind.STARTS and 2 * found.summary.solved < found.summary.tried and not found.interrupted:
             more = _tried(solution, kind, _from_motions(solution, seed), deadline)
             found = found if more is None else found.joined(more)
+        if kind is Kind.STARTS and found.margin >= 0.0:
+            far = _tried(solution, kind, _from_controls(solution, seed), deadline)
+            found = found if far is None else found.joined(far)
         kinds.append(found)
         if found.interrupted or not found.summary.solved:
             missing.append(kind)
@@ -212,6 +216,25 @@ def _from_motions(solution: Solution, seed: int) -> list[Search]:
     problem = two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess()), lasting)
     drawn = motions(problem, np.random.default_rng(seed))
     return [_from_path(problem, motion.path, SOFT[-1], solution.objective) for motion in drawn]
+
+
+def _from_controls(solution: Solution, seed: int) -> list[Search]:
+    """The minimum to which the cheapest of controls that are drawn leads, if one costs less; else that control."""
+    from satsym.solvers.cold_start import paths
+    from satsym.solvers.collocation.scaling import two_point
+
+    drawn = drawn_below(solution, seed)
+    if drawn is None:
+        return []
+    lasting = drawn.grid.tf - drawn.grid.t0
+    problem = two_point(replace(solution.instance, tf=drawn.grid.tf, tf_guess=None, guess=Guess()), lasting)
+    descend = _from_path(problem, paths.through(problem, drawn.states), SOFT[-1], solution.objective)
+
+    def attempt(limits: Limits) -> Competitor | None:
+        found = descend(limits)
+        return found if found and found.cost <= drawn.cost else Competitor(problem, None, drawn.cost)
+
+    return [attempt]
 
 
 def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Search:

@@ -1,6 +1,7 @@
 """What lies below an extremal that is no minimum: motions to descend from, or a cost that falls without end.
 
-The control is changed along the direction in which the second variation is least, to both sides. Where twice as large a
+The control is changed along the direction in which the second variation is least, or towards a control far away that
+costs less, to both sides. Where twice as large a
 change, again and again, leaves the end as it is asked for and the cost falls at least in proportion, no control is the
 best one: of linear problems with quadratic costs this decides, of others it is evidence.
 """
@@ -16,8 +17,8 @@ from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
 from satsym.solvers.certificate.accessory import accessory
+from satsym.solvers.certificate.drawn_controls import drawn_below, natural
 from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
-from satsym.solvers.certificate.reintegration.flow import unit_sizes
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""
@@ -60,7 +61,9 @@ def fall(solution: Solution) -> Fall | None:
     solution
         With a given final time; controls that have bounds are not asked.
     """
-    found = None if solution.instance.control_set.bounded else _downhill(solution)
+    if solution.instance.control_set.bounded:
+        return None
+    found = _downhill(solution) or _far(solution)
     if found is None:
         return None
     simulations, grid, u, change = found
@@ -96,18 +99,14 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
     largest = float(np.abs(shape).max(initial=0.0))
     if not (curvature < 0.0 and largest > 0.0):
         return None
-    unit = max(float(np.abs(solution.u).max()), _natural(solution, shape)) / largest
+    unit = max(float(np.abs(solution.u).max()), float(natural(solution).min())) / largest
     return simulations, grid, stated_control(solution, grid), unit * shape
 
 
-def _natural(solution: Solution, shape: Array) -> float:
-    """The size of a control that moves the state by its own size over the duration."""
-    instance, lasting = solution.instance, float(solution.times[-1] - solution.times[0])
-    u, x, t = (np.asarray(row)[..., :1] for row in (solution.u, solution.x, solution.times))
-    by_control = np.abs(instance.model.jacobian_u_batch(t, x, u, instance.parameters)).max(axis=(1, 2))
-    size = unit_sizes(solution)[: len(solution.x)]
-    response = float((by_control / size).max()) * lasting
-    return 1.0 / response if response > 0.0 else float(np.abs(shape).max())
+def _far(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
+    """The control of a minimum on a grid, and the change to one far from it that costs less."""
+    drawn = drawn_below(solution) if solution.instance.tf is not None else None
+    return None if drawn is None else (drawn.simulations, drawn.grid, drawn.stated, drawn.control - drawn.stated)
 
 
 def _doubled(simulations: Simulations, grid: Grid, u: Array, change: Array) -> Fall | None:

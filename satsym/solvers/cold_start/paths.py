@@ -96,6 +96,12 @@ def coasting_to_the_end(problem: TwoPoint) -> States | None:
     return None if end is None else _coasting(problem, end, backwards=True)
 
 
+def through(problem: TwoPoint, states: Array) -> States:
+    """The path along states at evenly spaced times, shape (n, N + 1)."""
+    nodes, scaled = np.linspace(0.0, 1.0, states.shape[1]), states / problem.scale.state[:, None]
+    return lambda tau: np.array([np.interp(tau, nodes, row) for row in scaled])
+
+
 def curve(problem: TwoPoint, path: States) -> Curve:
     """A path as a curve without costates, on a mesh that resolves it."""
     tau = np.linspace(0.0, 1.0, POINTS)
@@ -128,7 +134,7 @@ def _under_guess(problem: TwoPoint) -> States | None:
     x, _, _ = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)
     if not np.isfinite(x).all() or not instance.model.in_domain(x):
         return None
-    return lambda tau: np.array([np.interp(tau, nodes[::2], row) for row in x / problem.scale.state[:, None]])
+    return through(problem, x)
 
 
 def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
@@ -141,8 +147,7 @@ def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None
     x, _, _ = instance.model.forward(times, start, none, none[:, 1:], instance.parameters)
     if not np.isfinite(x).all() or not instance.model.in_domain(x):
         return None
-    found = (x[:, ::-1] if backwards else x) / problem.scale.state[:, None]
-    return lambda tau: np.array([np.interp(tau, grid.nodes, row) for row in found])
+    return through(problem, x[:, ::-1] if backwards else x)
 
 
 def _steps(problem: TwoPoint, start: tuple[float, ...], backwards: bool) -> int:
