@@ -23,6 +23,9 @@ HALVINGS = 48
 MOVED = 1e-6
 """Share of the largest control by which one moves that may have jumped."""
 
+WHOLE, FAINT = 8, 0.1
+"""Halvings until which that holds, and afterwards the share of a jump that must be left, for the rest is none."""
+
 POLISHED = 8
 """Steps of Newton's method from a minimiser of H nearby."""
 
@@ -85,9 +88,12 @@ def jumps(law: Callable[[Array], Array], times: Array, left: float) -> list[Jump
     values = law(times)
     low, high, first, last = times[:-1], times[1:], values[:, :-1], values[:, 1:]
     largest = max(float(np.abs(values).max(initial=0.0)), 1e-300)
-    kept = np.abs(last - first).max(axis=0) > min(MOVED, left) * largest
-    low, high, first, last = low[kept], high[kept], first[:, kept], last[:, kept]
-    for _ in range(HALVINGS):
+    for k in range(HALVINGS):
+        still = min(MOVED, left) if k < WHOLE else FAINT * left
+        kept = np.abs(last - first).max(axis=0, initial=0.0) > still * largest
+        low, high, first, last = low[kept], high[kept], first[:, kept], last[:, kept]
+        if not low.size:
+            return []
         middle = 0.5 * (low + high)
         between = law(middle)
         later = np.abs(last - between).max(axis=0) > np.abs(between - first).max(axis=0)
