@@ -25,7 +25,7 @@ import rows
 import single
 from compiled_c import compiler
 from ends import program
-from machine import described
+from machine import asked_for, described
 from peers import Missing
 from rows import Goal, Row, Table
 from timing import Samples, interleaved
@@ -310,7 +310,7 @@ def main() -> None:
     subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
     subjects |= {"8": lambda: [growth.growth()], "9": lambda: [two_processes()]}
     subjects |= {"10": lambda: single.single(population(single.COUNT))}
-    for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
+    for subject in [subjects[number] for number in asked_for(subjects)]:
         try:
             made = subject()
         except Missing as error:

@@ -1,4 +1,4 @@
-"""The machine and the versions: without them no time means anything."""
+"""The machine and the versions, without which no time means anything; and which parts of a bench are asked for."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import importlib.metadata
 import os
 import platform
 import subprocess
+import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from compiled_c import compiler
@@ -43,3 +45,11 @@ def _version(package: str) -> str:
         return importlib.metadata.version(package)
     except importlib.metadata.PackageNotFoundError:
         return "missing"
+
+
+def asked_for(known: Iterable[str]) -> list[str]:
+    """The parts of a bench that the command line names, all where it names none; ends where there is no such part."""
+    names = list(known)
+    if unknown := [word for word in sys.argv[1:] if word not in names]:
+        sys.exit(f"no {', '.join(unknown)}; there are {', '.join(names)}")
+    return sys.argv[1:] or names

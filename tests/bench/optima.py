@@ -24,7 +24,7 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line has it; threads only wait for each other here
 
 import direct
-from machine import described
+from machine import asked_for, described
 from peers import Missing
 from timing import interleaved
 
@@ -163,7 +163,7 @@ def main() -> int:
     solve(instance.load("return-to-orbit"))  # so that nobody pays for what is imported
     print(described(), flush=True)
     rows = []
-    for name in sys.argv[1:] or known:
+    for name in asked_for(known):
         rows.append(row(name, known[name]))
         print("  ".join(rows[-1].cells), flush=True)
     print(summary(rows))
