@@ -111,20 +111,20 @@ class Search:
 
     def minimum(self, a: Try, b: Try) -> Minimum | None:
         """The minimum between two durations; one that costs more than either of these if no other is found."""
-        dearer: Minimum | None = None
+        costlier: Minimum | None = None
         for _ in range(BISECTIONS):
             near, least = a if abs(a.slope) <= abs(b.slope) else b, min(a.cost, b.cost)
             found = self.trials.freed(near)
             if found and a.duration * (1.0 - SLACK) <= found.duration <= b.duration * (1.0 + SLACK):
                 if found.cost <= least + SLACK * abs(least):
                     return found
-                dearer = found
+                costlier = found
             middle = None if self.limits.expired else self._solved((a.duration * b.duration) ** 0.5, near)
             halves = [] if middle is None else [pair for pair in ((a, middle), (middle, b)) if _minimum_between(*pair)]
             if not halves:
-                return dearer
+                return costlier
             a, b = min(halves, key=lambda pair: min(t.cost for t in pair))
-        return dearer
+        return costlier
 
     def confirmed(self, best: Minimum) -> Minimum:
         """That minimum, or a cheaper one from where the other ways of the cold start lead with the same duration."""
