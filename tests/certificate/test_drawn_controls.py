@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import solve_ivp
 
 import satsym
 from satsym.status import Status, Verdict
 
 X, U, A, B = sp.symbols("x u a b", real=True)
+
+
+Q, V = sp.symbols("q v", real=True)
 
 
 def solved(
@@ -51,3 +55,26 @@ def test_of_many_wells_at_the_end_the_best_is_reached(seed: int) -> None:
     assert found.objective >= lowest - 1e-9
     assert found.certificate is not None
     assert found.certificate.verdict is not Verdict.CERTIFIED or found.objective <= lowest + 1e-9
+
+
+def test_a_pendulum_stays_in_the_nearer_of_two_wells() -> None:
+    """A polynomial of time is a control too: simulated by another integrator, it costs less than falling through."""
+    model = satsym.FirstOrder(
+        name="hanging",
+        title="A pendulum",
+        states=(satsym.Variable("q", "q", "1"), satsym.Variable("v", "v", "1")),
+        controls=(satsym.Variable("u", "u", "1"),),
+        parameters=(),
+        rates={Q: V, V: U - sp.sin(Q)},
+    )
+    problem = satsym.Problem(name="wavy", title="wavy", model=model, running_cost=U**2 + 1 - sp.cos(4 * Q))
+    found = satsym.solve(satsym.Instance.of(problem, initial={Q: 1.5, V: 0.0}, tf=2.0))
+
+    def rates(t: float, z: np.ndarray) -> list[float]:
+        u = np.polyval([0.122, -0.409, 0.521, -1.103, 1.442], t)
+        return [z[1], u - np.sin(z[0]), u**2 + 1 - np.cos(4 * z[0])]
+
+    other = solve_ivp(rates, (0.0, 2.0), [1.5, 0.0, 0.0], rtol=1e-11, atol=1e-12).y[2, -1]
+    assert found.objective <= other
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -21,6 +22,7 @@ from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Co
 from satsym.solvers.certificate.directed import led
 from satsym.solvers.certificate.drawn_controls import drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 
@@ -139,7 +141,7 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
     for attempt in attempts:
         limits = Limits(200, deadline, work=WORK)
         with np.errstate(all="ignore"):
-            competitor = attempt(limits)
+            competitor = tried(partial(attempt, limits))
         interrupted = limits.late
         if interrupted:
             break
@@ -231,7 +233,7 @@ def _from_controls(solution: Solution, seed: int) -> list[Search]:
     descend = _from_path(problem, paths.through(problem, drawn.states), SOFT[-1], solution.objective)
 
     def attempt(limits: Limits) -> Competitor | None:
-        found = descend(limits)
+        found = tried(partial(descend, limits))
         return found if found and found.cost <= drawn.cost else Competitor(problem, None, drawn.cost)
 
     return [attempt]

@@ -16,14 +16,14 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 
-DRAWN, WAVES = 192, 4
-"""Controls of a round, and harmonics of each."""
+GROUPS, DRAWN, WAVES = 8, 96, 4
+"""Groups of controls, apart lest all gather in the basin of the solution; controls of each, and harmonics."""
 
-SMALLEST, LARGEST = 0.3, 100.0
-"""Amplitudes of the first round, in sizes of a control."""
+SMALLEST, LARGEST = 0.5, 60.0
+"""Amplitudes of the groups, in sizes of a control."""
 
-ROUNDS, ELITE = 3, 12
-"""After the first: others about the cheapest of the last."""
+ROUNDS, ELITE = 4, 6
+"""After the first: each group draws others about the cheapest of its last, half as far away each time."""
 
 STEPS = 48
 """Of each motion that is drawn."""
@@ -79,18 +79,18 @@ def _cheapest_change(solution: Solution, grid: Grid, seed: int) -> Array:
     """The change of the control at nodes and midpoints that costs least, of those drawn in all rounds."""
     rng, m = np.random.default_rng(seed), len(solution.u)
     sizes = np.maximum(np.abs(solution.u).max(axis=1), natural(solution))[:, None]
-    amplitudes = np.geomspace(SMALLEST, LARGEST, DRAWN)[:, None, None]
-    shares = amplitudes * rng.normal(size=(DRAWN, m, WAVES)) * sizes
-    spread, costs = np.abs(shares).max(axis=(1, 2)), _costs(solution, shares)
-    for _ in range(ROUNDS):
-        best = np.argsort(costs)[:ELITE]
-        parents = np.resize(best, DRAWN)
-        about = spread[parents] * 0.5 * rng.uniform(size=DRAWN)
-        children = shares[parents] + about[:, None, None] * rng.normal(size=(DRAWN, m, WAVES))
-        shares = np.concatenate([shares[best], children])
-        spread, costs = np.append(spread[best], about), np.append(costs[best], _costs(solution, children))
+    far = np.geomspace(SMALLEST, LARGEST, GROUPS)[:, None, None, None] * sizes
+    shares = far * rng.normal(size=(GROUPS, DRAWN, m, WAVES))
+    costs = _costs(solution, shares)
+    for k in range(ROUNDS):
+        best = np.argsort(costs, axis=1)[:, :ELITE]
+        kept = np.take_along_axis(shares, best[:, :, None, None], axis=1)
+        parents = np.resize(np.arange(ELITE), DRAWN)
+        children = kept[:, parents] + 0.5 ** (k + 1) * far * rng.normal(size=(GROUPS, DRAWN, m, WAVES))
+        shares = np.concatenate([kept, children], axis=1)
+        costs = np.concatenate([np.take_along_axis(costs, best, axis=1), _costs(solution, children)], axis=1)
     tau = (interleave(grid.nodes, grid.midpoints) - grid.t0) / (grid.tf - grid.t0)
-    return np.asarray(shares[np.argmin(costs)] @ _waves(tau))
+    return np.asarray(shares.reshape(-1, m, WAVES)[np.argmin(costs)] @ _waves(tau))
 
 
 def _waves(tau: Array) -> Array:
@@ -98,15 +98,16 @@ def _waves(tau: Array) -> Array:
 
 
 def _costs(solution: Solution, shares: Array) -> Array:
-    """Roughly what a control costs with each of many changes, shares (S, m, WAVES) of waves; infinite if it fails."""
+    """Roughly what a control costs with each of many changes, shares (..., m, WAVES) of waves; infinite if it fails."""
     instance, model = solution.instance, solution.instance.model
     p, grid = instance.parameters, Grid.uniform(instance.t0, float(solution.times[-1]), STEPS)
     tau = np.linspace(0.0, 1.0, 2 * STEPS + 1)
     times = grid.t0 + (grid.tf - grid.t0) * tau
     own = np.array([np.interp(times, solution.times, row) for row in solution.u])
-    change = np.moveaxis(shares @ _waves(tau), 0, -1)  # (m, 2 STEPS + 1, S)
-    x = np.repeat(np.array(instance.initial)[:, None], len(shares), axis=1)
-    h, total, inside = (grid.tf - grid.t0) / STEPS, np.zeros(len(shares)), np.ones(len(shares), dtype=bool)
+    change = np.moveaxis(shares.reshape(-1, *shares.shape[-2:]) @ _waves(tau), 0, -1)  # (m, 2 STEPS + 1, S)
+    count = change.shape[-1]
+    x = np.repeat(np.array(instance.initial)[:, None], count, axis=1)
+    h, total, inside = (grid.tf - grid.t0) / STEPS, np.zeros(count), np.ones(count, dtype=bool)
     positive = [i for i, state in enumerate(model.spec.states) if state.positive]
     for k in range(STEPS):
         u = [instance.control_set.project(own[:, j, None] + change[:, j]) for j in (2 * k, 2 * k + 1, 2 * k + 2)]
@@ -121,7 +122,7 @@ def _costs(solution: Solution, shares: Array) -> Array:
         inside &= np.isfinite(x).all(axis=0) & (x[positive] > 0.0).all(axis=0)
     ends = [model.terminal_cost(grid.tf, tuple(end), p) if ok else np.inf for end, ok in zip(x.T, inside, strict=True)]
     found = total + np.array(ends)
-    return np.where(np.isfinite(found), found, np.inf)
+    return np.where(np.isfinite(found), found, np.inf).reshape(shares.shape[:-2])
 
 
 def _running(solution: Solution, t: float, x: Array, u: Array) -> Array:
