@@ -7,10 +7,16 @@ from functools import wraps
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array: TypeAlias = NDArray[np.floating[Any]]
 T = TypeVar("T")
+
+
+def distinct(values: ArrayLike) -> NDArray[Any]:
+    """The different ones of some numbers, none of them nan, in order; unlike NumPy's, loading no masked arrays."""
+    ordered = np.sort(values, axis=None)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])[: ordered.size]]
 
 
 def kept(function: Callable[..., T]) -> Callable[..., T]:

@@ -39,7 +39,7 @@ class Grid:
         nodes = np.array(self.nodes, dtype=float)
         if nodes.ndim != 1 or len(nodes) < 2 or not np.isfinite(nodes).all() or not (np.diff(nodes) > 0.0).all():
             raise ValueError("the nodes of a grid are at least two finite numbers that strictly increase")
-        if not np.isin(self.corners, nodes).all():
+        if not set(self.corners) <= set(nodes.tolist()):
             raise ValueError("every corner of a grid is one of its nodes")
         object.__setattr__(self, "nodes", _sealed(nodes))
 

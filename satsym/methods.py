@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from satsym.spec import ProblemSpec
+if TYPE_CHECKING:
+    from satsym.spec import ProblemSpec
 
 BOUNDARY_ARCS = "boundary-arcs"
 """The method for path constraints and points on the way, whose answers have a certificate of their own."""

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
@@ -124,7 +124,7 @@ class Pieces:
         """Controls at times (M,), in the intervals behind nodes of these numbers; shape (m, M)."""
         found = np.empty((len(self.values), len(t)))
         arcs = np.searchsorted(self.edges, left, side="right") - 1
-        for arc in np.unique(arcs):
+        for arc in distinct(arcs):
             here = arcs == arc
             found[:, here] = self._piece(int(arc))(t[here])
         return found
@@ -139,7 +139,7 @@ class Pieces:
         times, values = self.times[begin:end], self.values[:, begin:end]
         if len(times) < 2 or not np.isfinite(values).all() or not np.ptp(values, axis=1).any():
             return lambda t: np.repeat(values[:, :1], len(t), axis=1)
-        kept = np.unique([*range(0, len(times), 2), len(times) - 1])
+        kept = distinct([*range(0, len(times), 2), len(times) - 1])
         misses = [np.abs(fit(times[kept], values[:, kept])(times) - values).max() for fit in (_spline, _monotone)]
         fitted = (_spline if misses[0] <= misses[1] else _monotone)(times, values)
         return lambda t: self.admissible.project(fitted(t))
@@ -179,7 +179,7 @@ def bounded(
 
     def rates(t: Array, z: Array, left: NDArray[np.intp]) -> Array:
         found, which = np.empty_like(z), np.searchsorted(edges, left, side="right")
-        for arc in np.unique(which):
+        for arc in distinct(which):
             here = which == arc
             found[:, here] = field(case, arcs[int(arc)], t[here], z[:, here])
         return found

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from satsym import solution, solvers
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.front import between, html
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance, as_case
@@ -83,7 +83,7 @@ class Solution(Result[solution.Solution]):
             return between.controlled(case, found.times, found.x, found.u, found.lam)
         if found.events:
             return between.bounded(case, found.times, found.x, found.lam, stated_arcs(found))
-        corners = np.unique([t for times in found.switching_times for t in times])
+        corners = distinct([t for times in found.switching_times for t in times])
         return between.extremal(case, found.times, found.x, found.lam, corners)
 
     @np.errstate(all="ignore")

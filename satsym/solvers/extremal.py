@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.solution import Event, Iteration, Progress, Solution
@@ -81,7 +81,7 @@ def _solution(
     extremal = best.answer
     problem, path = extremal.problem, extremal.path
     n, m = problem.states, len(instance.model.spec.controls)
-    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
+    tau = distinct(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
     jumped = found(problem, path) if extremal.status.answered else []
     for jump in jumped:
         tau = np.append(tau[np.abs(tau - jump.time) > 2.0 * BESIDE], [jump.time - BESIDE, jump.time + BESIDE])

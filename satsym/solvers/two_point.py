@@ -30,7 +30,6 @@ from satsym.solvers.drawn_motions import motions
 from satsym.solvers.extremal import nothing, solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.nearest_end import nearest
-from satsym.solvers.switching.linear.by_reach import unreachable
 from satsym.status import Status
 
 ROUNDING = 1e-12
@@ -169,7 +168,7 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Atte
     if start.bounded:
         return replace(start.found, iterations=1)
     bounded = tighten(problem, free, STAGES, limits)
-    if bounded.solved or problem.free_time or unreachable(problem.instance, limits) is not None:
+    if bounded.solved or problem.free_time or _separated(problem, limits) is not None:
         return bounded
     first = within_found(problem, start.found, limits)
     drawn = None if first.solved else drawn_within(problem, limits)
@@ -204,7 +203,7 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
     problem = found.problem
     if found.status is not Status.NOT_CONVERGED or not problem.control_set.bounded:
         return found
-    separated = unreachable(problem.instance, limits)
+    separated = _separated(problem, limits)
     if separated is not None:
         return replace(found, status=Status.INFEASIBLE, message=separated)
     near = nearest(problem, found.path, limits)
@@ -215,6 +214,13 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
     if near.undecided:
         return replace(found, message=f"{found.message}; {near.message}, which may be none")
     return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
+
+
+def _separated(problem: TwoPoint, limits: Limits) -> str | None:
+    """Why no admissible control reaches the end of a linear motion; few instances need the rooms that know."""
+    from satsym.solvers.switching.linear.by_reach import unreachable
+
+    return unreachable(problem.instance, limits)
 
 
 def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:

@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
@@ -134,7 +134,7 @@ def _undriven(many: Many, sizes: Sizes) -> Array:
     """Where each motion would end without control, roughly, shape (n, M)."""
     model, p = many.instance.model, tuple(many.parameters)
     none, now = np.zeros((len(model.spec.controls), many.count)), many.initial
-    times = np.unique([*many.times[::2], many.times[-1]])  # only its size matters
+    times = distinct([*many.times[::2], many.times[-1]])  # only its size matters
     for begin, width in zip(times[:-1], np.diff(times), strict=True):
         t, h = np.full(many.count, begin), np.full(many.count, width)
         now = leap(lambda t, x: np.asarray(model.dynamics_batch(t, x, none, p)), t, now, h, UNDRIVEN)

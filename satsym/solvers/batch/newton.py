@@ -12,7 +12,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.matching import Matching
 from satsym.solvers.collocation.curve import SMALL
@@ -121,7 +121,7 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
     transition = _rough(many, z, 2)[1]
     matching = Matching.of(transition, many.units, many.condense)
     for _ in range(MOST_ACCURATE):
-        for count in np.unique(parts[on]).tolist():
+        for count in distinct(parts[on]).tolist():
             own = on[parts[on] == count]
             some = many.only(own)
             reached = some.motion.accurate(*some.segments(z[:, :, own]), count).reshape(len(z) + 1, -1, len(own))

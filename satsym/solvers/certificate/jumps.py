@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from satsym.arrays import distinct
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.reintegration.passages import passages
@@ -36,7 +37,7 @@ def ties(solution: Solution) -> int:
     """
     if not solution.instance.model.spec.stationary:
         return 0
-    nodes = np.unique(np.linspace(0, solution.times.size - 1, LOOKED_AT + 2).astype(int)[1:-1])
+    nodes = distinct(np.linspace(0, solution.times.size - 1, LOOKED_AT + 2).astype(int)[1:-1])
     tied = np.array([_tied(solution, int(node)) for node in nodes])
     return int((tied[1:] & tied[:-1]).sum())
 

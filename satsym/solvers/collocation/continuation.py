@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
@@ -79,7 +79,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
 
 def corners(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> Array:
     """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
-    return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve, within)]))
+    return distinct(np.concatenate([np.zeros(0), *by_bound(problem, curve, within)]))
 
 
 def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> list[Array]:
@@ -87,7 +87,7 @@ def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> lis
     if not problem.control_set.bounded:
         return []
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
-    tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
+    tau = distinct((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
 
     def excess(at: Array) -> Array:
         law = problem.control(at, curve(at), curve.theta, bounded=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from satsym.arrays import distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve, Path
@@ -34,7 +35,7 @@ def found(problem: TwoPoint, curve: Path) -> list[Jump]:
     if not problem.instance.model.spec.stationary:
         return []
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
-    tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
+    tau = distinct((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
 
     def joins(jump: Jump) -> bool:  # and not only because the curve itself is torn at a node
         apart = problem.between(jump.time, curve(np.array([jump.time]))[:, 0], curve.theta, jump)

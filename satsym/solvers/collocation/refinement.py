@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import corners
 from satsym.solvers.collocation.curve import SMALL, Curve
@@ -126,7 +126,7 @@ def _followed(mesh: Array, met: Array) -> Array:
         elif abs(mesh[k] - corner) >= room:
             own.append(float(corner))
     moved = np.interp(mesh, [*before, 1.0], [*after, 1.0])
-    return np.unique(np.concatenate([moved, own]))
+    return distinct(np.concatenate([moved, own]))
 
 
 def _split(mesh: Array, density: Array) -> Array:

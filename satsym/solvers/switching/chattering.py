@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import CostInterval, Solution
 from satsym.solvers.collocation.continuation import settled
@@ -103,9 +103,9 @@ def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) ->
     problem, found = next(((one, curve) for one, curve in solved if curve is not None), (None, None))
     if problem is None or found is None:
         return None
-    edges = np.unique(np.concatenate([found.mesh, _corners(problem, found)]))
+    edges = distinct(np.concatenate([found.mesh, _corners(problem, found)]))
     interval = _interval(instance, problem, found, edges)
-    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), edges]))
+    tau = distinct(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), edges]))
     t, z, u = _along(problem, found, tau)
     times = _passages(instance, t, u, signs(instance, t, z[: problem.states], z[problem.states :])[0])
     message = (

@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.collocation.scaling import two_point
@@ -58,7 +58,7 @@ def flow(solution: Solution) -> Flow | None:
     n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
     corners = [t for times in solution.switching_times for t in times if start < t < end]
-    stations, size = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), corners])), sizes(solution)
+    stations, size = distinct(np.concatenate([np.linspace(start, end, STATIONS + 1), corners])), sizes(solution)
 
     def rates(t: float, y: Array, held: Array | None) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
@@ -79,7 +79,7 @@ def flow(solution: Solution) -> Flow | None:
                 found.append(piece.end)
     except FAILURES:
         return None
-    stations = np.unique(np.concatenate([part for _, part in _parts(solution, stations)]))
+    stations = distinct(np.concatenate([part for _, part in _parts(solution, stations)]))
     table = np.array(found)
     x, lam = table[:, :n].T, table[:, n : 2 * n].T
     cost = float(table[-1, -1]) + float(model.terminal_cost(end, tuple(x[:, -1].tolist()), p))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.reintegration.passages import passages
@@ -174,7 +174,7 @@ def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
     switches = np.array([t for own in solution.switching_times for t in own])
     met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
     beside = [node for one in passages(solution) if one.located for node in (one.node, one.node + 1)]
-    return np.unique(np.clip(np.concatenate([[0, last], even, dense, met, beside]), 0, last).astype(np.intp))
+    return distinct(np.clip(np.concatenate([[0, last], even, dense, met, beside]), 0, last).astype(np.intp))
 
 
 def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: Array) -> Segments:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, CostInterval, Solution
 from satsym.solvers.certificate import conditions
@@ -73,7 +73,7 @@ def _smooth(solution: Solution, interval: CostInterval) -> Solution:
     instance, t = solution.instance, solution.times
     low, high = instance.control_set.box
     changes = np.diff((solution.u >= high).astype(int) - (solution.u <= low), axis=1) != 0
-    met = tuple(tuple(np.unique([t[:-1][row], t[1:][row]]).tolist()) for row in changes)
+    met = tuple(tuple(distinct([t[:-1][row], t[1:][row]]).tolist()) for row in changes)
     return replace(solution, instance=regularised(instance, interval.smoothing, 1.0), switching_times=met)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers.collocation.scaling import final_argument
@@ -38,7 +38,7 @@ class Plan:
 
     def with_needle(self, control: int, value: float, begin: float, end: float) -> Plan:
         """With one control at another value for a while."""
-        starts = np.unique(np.concatenate([self.starts, [begin, end]]))
+        starts = distinct(np.concatenate([self.starts, [begin, end]]))
         values = self.values[np.searchsorted(self.starts, starts, side="right") - 1].copy()
         values[(starts >= begin) & (starts < end), control] = value
         return Plan(starts, values)
@@ -91,7 +91,7 @@ class _Near:
 
     @classmethod
     def of(cls, solution: Solution, limits: Limits) -> _Near:
-        switches = np.unique([t for times in solution.switching_times for t in times])
+        switches = distinct([t for times in solution.switching_times for t in times])
         sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
         wanted = np.arange(len(sizes)) if solution.instance.model.spec.multipliers else _fixed(solution.instance)
         return cls(solution, _plan(solution, switches), switches, sizes, wanted, limits)

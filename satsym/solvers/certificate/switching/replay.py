@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import typical
@@ -138,7 +138,7 @@ class _Again:
 
     def replayed(self) -> Replay | None:
         """Arc by arc; ``None`` where there is no end of switches."""
-        instance, stations = self.instance, np.unique(self.solution.times)
+        instance, stations = self.instance, distinct(self.solution.times)
         z, t, end = (
             np.concatenate([instance.initial, self.solution.lam[:, 0]]),
             instance.t0,
