@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Workers of pytest-xdist have the one that readline sets in the process that starts them; others have none.
 os.environ.pop("COLUMNS", None)
 
+import satsym
 from satsym.report.plots import style
 from satsym.symbolic.lookup import library
 from tests.support.derived import derived
@@ -32,6 +34,9 @@ hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(W
 FEW, SHARE = 2, 3
 """Of a slow test with more than that many cases every third runs, unless all are asked for."""
 
+IN_TURN = "in_turn"
+"""What says of a slow test that it runs, or its cases do, in a third of all revisions of satsym, unless asked for."""
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """``--whole``: every case of every test (`make test-whole`)."""
@@ -46,17 +51,30 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave a sample of slow tests that have many cases, and no studies: those are for who has the time."""
+    """Leave a sample of slow tests that have many cases or take turns, and no studies: those are for who has the time.
+
+    Each revision of satsym has its own sample, which is the same in all processes and on all machines.
+    """
     if config.getoption("--whole"):
         return
     spared = {item for item in items if item.get_closest_marker("study")}
-    cases: dict[str, list[pytest.Item]] = {}
+    groups: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if item.get_closest_marker("slow") and item not in spared:
-            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    spared |= {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
+        slow = item.get_closest_marker("slow")
+        if slow and item not in spared:
+            groups.setdefault("" if slow.kwargs.get(IN_TURN) else item.nodeid.partition("[")[0], []).append(item)
+    turn = revision() % SHARE
+    spared |= {item for own in groups.values() if len(own) > FEW for item in set(own) - set(own[turn::SHARE])}
     config.hook.pytest_deselected(items=[item for item in items if item in spared])
     items[:] = [item for item in items if item not in spared]
+
+
+def revision() -> int:
+    """A number made of all that satsym's code says."""
+    found = hashlib.blake2b(digest_size=8)
+    for path in sorted(Path(satsym.__file__).parent.rglob("*.py")):
+        found.update(path.read_bytes())
+    return int.from_bytes(found.digest())
 
 
 def pytest_collection_finish() -> None:

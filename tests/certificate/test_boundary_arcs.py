@@ -264,6 +264,7 @@ def test_a_form_without_numbers_is_not_positive(form: np.ndarray, pure: np.ndarr
     assert second_variation._least(form, pure, ties) == pytest.approx(least, nan_ok=True)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_where_rounding_grows_along_the_flow_it_is_followed_part_by_part():
     """A return that stays above a floor for long: one flow misses the end by twice what it may, its parts do not."""
     given = satsym.Instance.of(

@@ -208,6 +208,7 @@ def test_a_saddle_is_left_for_what_lies_below_it(tmp_path: Path) -> None:
     assert certificate(found).verdict == "certified"
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(("tf", "bounded"), [(3.0, True), (4.0, False), (7.0, False)])
 @pytest.mark.parametrize("method", ["auto", "linear", "shooting"])
 def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(

@@ -180,6 +180,7 @@ def png_size(path: Path) -> tuple[int, int]:
     return width, height
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.usefixtures("full_resolution")
 def test_a_solution_gives_all_pictures_as_png_of_sane_size(soft_return: Solution, tmp_path: Path) -> None:
     written = save(soft_return, tmp_path / "new" / "folder")
@@ -192,6 +193,7 @@ def test_a_solution_gives_all_pictures_as_png_of_sane_size(soft_return: Solution
         assert 10_000 < path.stat().st_size < 400_000
 
 
+@pytest.mark.slow(in_turn=True)
 def test_pictures_are_the_same_bytes_each_time_whatever_the_user_s_settings(tmp_path: Path) -> None:
     import matplotlib
 
@@ -206,6 +208,7 @@ def test_pictures_are_the_same_bytes_each_time_whatever_the_user_s_settings(tmp_
         assert one.read_bytes() == other.read_bytes(), one.name
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_simulation_without_control_has_no_pictures_of_controls(tmp_path: Path) -> None:
     assert stems(save(simulate(instances.load("soft-return")), tmp_path)) == [
         "overview",
@@ -219,7 +222,7 @@ def test_a_simulation_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "states", "controls"]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(
     ("given", "pictures"),
     [
@@ -243,6 +246,7 @@ def broken(values: float, first: int) -> np.ndarray:
     return x
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(
     "x",
     [
@@ -282,6 +286,7 @@ def test_title_and_facts_of_an_overview_are_whole_at_any_size(size: str) -> None
     assert all(fact in facts for fact in ("iteration", "$J$", "$t_f$"))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_failed_run_gives_all_pictures_if_it_had_a_trajectory(tmp_path: Path) -> None:
     given = case(model(2, 1, position=2, reference=True, invariant=True))
     left = solution(given, x=broken(math.nan, 30), status=Status.NON_FINITE, objective=math.nan)
@@ -303,6 +308,7 @@ def test_iterations_without_a_finite_number_can_be_drawn(tmp_path: Path) -> None
     assert "convergence" in stems(save(solution(case(model(1)), history=history), tmp_path))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_pyplot_is_never_imported_and_matplotlib_only_to_draw(repository: Path) -> None:
     code = """
 import sys

@@ -70,7 +70,7 @@ def plotted(*arguments: str | Path) -> str:
     return done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path) -> None:
     files = trajectory_files(tmp_path / "run", solution, look=SCREEN)
     first = save(tmp_path / "run", solution_object(solution), files)

@@ -52,7 +52,7 @@ def levelled(folder: Path, cost: Expr | int, text: str) -> Solution:
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_levelling_costs_what_it_costs_a_direct_method(tmp_path: Path) -> None:
     """CasADi and Ipopt, straight lines between 800 and 1600 knots: 0.01964853975 and 0.01964853626, to fourth order."""
     start = "[initial]\nalpha = 0.3\ntheta = 0.0\nrate = 0.0\n[time]\ntf = 10.0\n[control]\nelevator = [-0.5, 0.5]\n"

@@ -33,6 +33,7 @@ def test_the_deeper_of_two_wells_at_the_end_is_found_from_beside_the_other(
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("duration", [3.3, 4.0, 5.0])
 def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: Path, duration: float) -> None:
     """From zero and back, rewarded for the square of the distance: at full speed, and on an arc of a cosine between."""

@@ -321,13 +321,14 @@ def given(expression: Expr, at: dict[str, float]) -> dict[Symbol, Float]:
     return {s: Float(at[s.name], 30) for s in expression.free_symbols}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_coasting_is_found(tmp_path: Path):
     found = solve(build(tmp_path, thrusting("spare", 0, -symbols_of(SATELLITE)[3]), ORBITS.format("4.0")))
     assert found.status is Status.CONVERGED
     assert (np.hypot(*found.u) == 0.0).any()
 
 
+@pytest.mark.slow(in_turn=True)
 def test_geodesics_are_minima_up_to_the_antipode_only(tmp_path: Path):
     """On a sphere neighbouring geodesics meet half way round: a conjugate point, where minimum time ends."""
     latitude, longitude = (Variable(name, name) for name in ("phi", "l"))

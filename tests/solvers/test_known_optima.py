@@ -106,7 +106,7 @@ def test_van_der_pols_oscillator_is_damped_as_by_multiple_shooting():
     assert ours.switching_times[0] == pytest.approx(switches, abs=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_the_pole_is_swung_up_at_less_than_is_printed():
     """Kelly's 58.8076675 is a local optimum. Shooting from these costates, slopes of H by complex steps."""
 
@@ -135,7 +135,7 @@ def test_the_pole_is_swung_up_at_less_than_is_printed():
     assert np.abs(ours.u).max() < 20.0
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_the_catalysts_are_mixed_in_a_constant_ratio_in_between():
     """For a constant share the motion is linear: the least of a closed form in two lengths and that share."""
 

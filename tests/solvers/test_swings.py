@@ -40,6 +40,7 @@ def _case(folder: Path, problem: Problem, end: float, duration: float, bounds: t
     return build(folder, problem, f"{ends}[time]\ntf = {duration}\n[control]\nw = {list(bounds)}\n")
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(
     ("torque", "duration", "cost"),
     # Radau collocation with CasADi and Ipopt on 120 intervals, the best of starts from motions that were simulated
@@ -54,6 +55,7 @@ def test_a_pendulum_is_swung_up_by_a_torque_that_cannot_lift_it(
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
+@pytest.mark.slow(in_turn=True)
 def test_an_end_that_one_control_alone_reaches_is_not_called_out_of_reach(tmp_path: Path) -> None:
     """Pushes to one side, none longer than half a swing: they add up to two units, all of them at the bound."""
     found = solve(_case(tmp_path, OSCILLATOR, -1.0, 8.0, (0.0, 0.5)))

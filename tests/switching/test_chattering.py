@@ -97,7 +97,7 @@ def test_a_narrower_interval_than_the_motion_allows_is_refused() -> None:
     assert [c.name for c in again.checks if not c.passed] == ["cost interval too narrow", CHATTERS]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(
     ("start", "end", "tf"),
     [

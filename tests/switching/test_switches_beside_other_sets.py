@@ -62,6 +62,7 @@ def boat() -> Problem:
     return Problem(name="crossing", title="B", model=moving, running_cost=1 + k / 2, control_sets=sets)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_throttle_beside_a_direction_in_a_free_time():
     found = satsym.solve(
         satsym.Instance.of(
@@ -121,6 +122,7 @@ def cartesian() -> Problem:
     return ascent("cartesian", ux, uy, sqrt(ux**2 + uy**2), {"ux": "real", "uy": "real"}, {"engine": Ball("ux", "uy")})
 
 
+@pytest.mark.slow(in_turn=True)
 def test_magnitude_and_direction_apart_are_the_vector():
     """The same laws, rates, derivatives and costs, also of regularised problems and at any share of what norms cost."""
     apart, whole = (satsym.derive(p).kernels for p, _ in BOTH)
@@ -139,7 +141,7 @@ def test_magnitude_and_direction_apart_are_the_vector():
         assert apart.throttle_slope(t, x, lam, ()) == pytest.approx(whole.throttle_slope(t, x, lam, ()), abs=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_an_ascent_by_thrust_and_heading_is_that_by_components():
     apart, whole = (
         satsym.solve(satsym.Instance.of(p, initial=LAUNCH, final=ORBIT, tf=0.6, control=c)) for p, c in BOTH
@@ -154,6 +156,7 @@ LAUNCH, ORBIT = {"r": 1.0, "v_r": 0.0, "v_t": 0.0, "m": 1.0}, {"r": 1.01065, "v_
 BOTH = ((polar(), {"T": (0, 2.009328897)}), (cartesian(), {"max_norm": 2.009328897}))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_where_numbers_fail_on_one_way_another_is_taken(monkeypatch: pytest.MonkeyPatch):
     def failing(*given: Any, **more: Any) -> None:
         raise ZeroDivisionError("division by zero")

@@ -120,6 +120,7 @@ def error(P: np.ndarray, truth: mp.matrix) -> float:
 CASES = [(True, seed) for seed in range(6)] + [(False, seed) for seed in (26, 61, 90, 167, 169, 171, 254, 263, 281)]
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(("weights_in_new_units", "seed"), CASES)
 def test_extreme_regulators_are_right_to_the_last_digits_and_say_so(weights_in_new_units: bool, seed: int):
     A, B, Q, R = extreme(seed, weights_in_new_units)

@@ -150,6 +150,7 @@ UNTIDIED = {"control_rates", "newton", "first_order", "reference", "second_deriv
 """Steps that tidy nothing, next to others that do in one module."""
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize(
     "step", [name for name, f in STEPS.items() if hasattr(sys.modules[f.__module__], "tidy") and name not in UNTIDIED]
 )

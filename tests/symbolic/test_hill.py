@@ -27,6 +27,7 @@ def hill() -> Derivation:
     return library.derivation("hill")
 
 
+@pytest.mark.slow(in_turn=True)
 def test_equations_are_those_of_the_textbook(hill: Derivation) -> None:
     """Clohessy and Wiltshire 1960; Curtis, Orbital Mechanics for Engineering Students, 7.4."""
     xi, _eta, zeta, xi_dot, eta_dot, _zeta_dot = symbols_of(HILL.states)
