@@ -15,7 +15,7 @@ from satsym.codegen import module
 from satsym.instance import Instance
 from satsym.kernels.loading import from_text
 from satsym.solvers.batch.switching.arrivals import Arrivals, applies, first_arrivals
-from satsym.solvers.batch.switching.certificate import minima
+from satsym.solvers.batch.switching.certificate import minima, positive_across
 from satsym.solvers.certificate import certify
 from satsym.status import Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of, t
@@ -98,7 +98,7 @@ def test_a_target_that_moves_is_met_soonest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("problems", "size"), [(chain.PROBLEMS, 1.0), (oscillator.PROBLEMS, 2.0)], ids=["chain", "spring"]
+    ("problems", "size"), [(chain.PROBLEMS, 1.0), (oscillator.PROBLEMS, 6.0)], ids=["chain", "spring"]
 )
 def test_other_linear_motions_are_those_of_the_single_solver(problems: Sequence[Problem], size: float) -> None:
     """Three integrators with two switches each, and springs with any number."""
@@ -115,12 +115,26 @@ def test_other_linear_motions_are_those_of_the_single_solver(problems: Sequence[
         single = solvers.solve(cases[k], examined=False)
         assert found.durations[k] == pytest.approx(single.objective, rel=1e-10)
         assert np.abs(found.costates[:, k] - single.lam[:, 0]).max() <= 1e-8 * np.abs(single.lam[:, 0]).max()
-        if fine[k]:
-            certificate = certify(single, compared=False)
-            assert certificate is not None
-            assert certificate.verdict is Verdict.LOCAL_MINIMUM
-        else:
-            assert (found.controls[:, k] >= 0).sum() >= len(names), "the second variation decides"
+        certificate = certify(single, compared=False)
+        assert certificate is not None
+        assert fine[k] == (certificate.verdict is Verdict.LOCAL_MINIMUM)
+    assert fine.all()
+    assert ((found.controls >= 0).sum(axis=0) >= len(names)).any() == (len(names) == 2), "more times than given states"
+
+
+def test_forms_are_positive_only_where_every_direction_that_is_left_is() -> None:
+    saddle = np.diag([1.0, 1.0, -1.0])
+    along, across = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
+    by, hessian = np.stack([along, across, across, 0.0 * along]), np.stack([saddle, saddle, abs(saddle), abs(saddle)])
+    assert positive_across(by, hessian).tolist() == [True, False, True, False]
+    whole = np.stack([np.eye(3), np.diag([1.0, 1.0, 0.0]), np.diag([1.0, 1.0, np.nan])])
+    assert positive_across(whole, np.stack([saddle] * 3)).tolist() == [True, False, False]
+
+
+def test_a_switch_at_the_very_end_is_left_to_the_single_solver() -> None:
+    """Where a start lies on the switching curve there is an arc of no length; a little beside it there is none."""
+    starts = [(0.5, -1.0), (0.5 + 1e-13, -1.0), (0.6, -1.0)]
+    assert minima(first_arrivals([case(start, (0.0, 0.0)) for start in starts], False)).tolist() == [False, False, True]
 
 
 @pytest.mark.parametrize("what", ["durations", "costates", "times"])

@@ -1,8 +1,8 @@
 """The certificate of many extremals of least time, but for competitors: those that are minima beyond doubt.
 
 As :mod:`satsym.solvers.certificate.switching.conditions` has it for one: the flow again from the initial costates, by
-an integration that the solver does not use; H and its minimum at many places; strict switches; and the derivatives of
-the end by the times: if they are independent, no other times lead there. What is not clear here is left to that.
+an integration that the solver does not use; H and its minimum at many places; strict switches; and the second variation
+in the times, where the derivatives of the end by them leave any free. What is not clear here is left to that.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.switching.arrivals import Arrivals, stated
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import NEGLIGIBLE, TOLERANCE
-from satsym.solvers.certificate.switching.conditions import CLOSE, DRIFT, RESIDUAL, STRICT, TIMES
+from satsym.solvers.certificate.switching.conditions import CLOSE, CURVED, DRIFT, RESIDUAL, STRICT, TIMES
+from satsym.solvers.certificate.switching.end_switches import AT_SWITCH
 from satsym.solvers.certificate.switching.variation import RANK
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Status, Verdict
@@ -77,14 +78,12 @@ class _Many:
 def minima(found: Arrivals) -> NDArray[np.bool_]:
     """Which are strict local minima beyond doubt, shape (M,): the verdict ``local minimum``."""
     fine = np.zeros(len(found.instances), dtype=bool)
-    # as many unknown times as conditions at the end, or fewer: otherwise the second variation decides
-    fitting = found.solved & ((found.controls >= 0).sum(axis=0) < len(found.costates))
-    chosen = np.flatnonzero(fitting)
+    chosen = np.flatnonzero(found.solved)
     if len(chosen):
         with np.errstate(all="ignore"):
             own = found.only(chosen)
             flow = _flow(own)
-            clear = (flow.error <= TOLERANCE) & _ended(own, flow) & _switching(own, flow) & _independent(own, flow)
+            clear = (flow.error <= TOLERANCE) & _ended(own, flow) & _switching(own, flow) & _curved(own, flow)
         fine[chosen] = clear & _kernels_agree(own, flow)
     return fine
 
@@ -140,14 +139,10 @@ def _ended(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
     x, lam = flow.values[:, :n], flow.values[:, n : 2 * n]
     tf = flow.begins[-1] + flow.lengths[-1]
     _, on_reference, target = stated(found.instances).swapaxes(1, 2)
-    p, slip = many.parameters(), np.zeros_like(target)
+    p = many.parameters()
+    slip = _slip(many, tf, p)
     if on_reference.any():
-        step = 1e-6 * np.maximum(np.abs(tf), 1.0)
-        before, there, after = (
-            np.broadcast_to(many.model.reference_batch(t, p), target.shape) for t in (tf - step, tf, tf + step)
-        )
-        target = np.where(on_reference > 0.0, there, target)
-        slip = np.where(on_reference > 0.0, (after - before) / (2.0 * step), 0.0)
+        target = np.where(on_reference > 0.0, many.model.reference_batch(tf, p), target)
     middle = np.array([0.5 * (np.array(one.lower) + one.upper) for one in found.instances]).T
     undriven, _ = leap_and_error(
         lambda t, y: np.broadcast_to(many.model.dynamics_batch(t, y, np.zeros_like(middle), p), y.shape),
@@ -164,6 +159,16 @@ def _ended(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
     terms = np.maximum(np.abs(lam[-1] * rates).sum(axis=0), np.abs(lam[-1] * slip).sum(axis=0))
     precise = RESIDUAL if not on_reference.any() else 10.0 * RESIDUAL  # the reference's rate is a difference
     return np.asarray((residual <= RESIDUAL) & (np.abs(h) <= precise * np.maximum(terms, 1e-300)))
+
+
+def _slip(many: _Many, tf: Array, p: tuple[Array, ...]) -> Array:
+    """The rate of the end where it is on the reference, shape (n, M)."""
+    _, on_reference, target = stated(many.found.instances).swapaxes(1, 2)
+    if not on_reference.any():
+        return np.zeros_like(target)
+    step = 1e-6 * np.maximum(np.abs(tf), 1.0)
+    before, after = (np.broadcast_to(many.model.reference_batch(t, p), target.shape) for t in (tf - step, tf + step))
+    return np.where(on_reference > 0.0, (after - before) / (2.0 * step), 0.0)
 
 
 def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
@@ -196,6 +201,9 @@ def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
         last = np.where(which, edge, last)
         away &= ~which | (np.abs(t - edge)[:, :, None] > CLOSE * lasting)
     gaps = np.minimum(gaps, (flow.begins[0] + lasting - last).min(axis=0))
+    for t, z in ((flow.begins[0], flow.values[0]), (flow.begins[-1] + flow.lengths[-1], flow.values[-1])):
+        beside = np.abs(many.model.switching_function_batch(t, z[:n], z[n : 2 * n], p)) * (high - low)
+        fine &= (np.broadcast_to(beside, low.shape) > AT_SWITCH * size).all(axis=0)  # a switch is not there itself
     away &= real[:, None, None]
     distance = np.where(away, np.abs(sigma) / size, np.inf).min(axis=(0, 1, 2))
     drift = np.abs(h).max(axis=(0, 1)) <= DRIFT * np.maximum(terms.max(axis=(0, 1)), 1e-300)
@@ -235,18 +243,58 @@ def _within(many: _Many, flow: _Flow) -> NDArray[np.bool_]:
     return np.asarray((flow.values[:, :n][:, places] > 0.0).all(axis=(0, 1)))
 
 
-def _independent(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
-    """Whether the end fixes the switching times and the final one: its derivatives by them are independent."""
+def _curved(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
+    """Whether no other times lead to the end, or those that do, to second order, cost more.
+
+    Costates of a linear motion do not depend on when it switches. So the Hessian of the Lagrangian in the times, with
+    the costates at the end as they are, has the rates of the jumps of H on its diagonal, the same with the other sign
+    beside it in the row of the final time, and no other entries but that row's own.
+    """
     n, count = found.costates.shape
-    last, tf = flow.values[-1], flow.begins[-1] + flow.lengths[-1]
-    many = _Many(found)
-    rates = np.broadcast_to(many.model.dynamics_batch(tf, last[:n], flow.u[-1], many.parameters()), (n, count))
-    table = np.concatenate([last[2 * n :].reshape(-1, n, count), rates[None]]).transpose(2, 1, 0)
-    table = table / np.maximum(np.abs(table).max(axis=2, keepdims=True), 1e-300)
-    used = np.concatenate([found.controls >= 0, np.ones((1, count), dtype=bool)]).T
-    values = np.linalg.svd(np.where(np.isfinite(table), table, 0.0), compute_uv=False)
-    smallest = np.take_along_axis(values, used.sum(axis=1)[:, None] - 1, axis=1)[:, 0]
-    return np.asarray(smallest > RANK * values[:, 0])
+    many, last, switches = _Many(found), flow.values[-1], (found.controls >= 0).sum(axis=0)
+    tf, p = flow.begins[-1] + flow.lengths[-1], many.parameters()
+    x, lam, u = last[:n], last[n : 2 * n], flow.u[-1]
+    approach = np.broadcast_to(many.model.dynamics_batch(tf, x, u, p), (n, count)) - _slip(many, tf, p)
+    fall = -(np.broadcast_to(many.model.costate_rate_batch(tf, x, u, lam, p), (n, count)) * approach).sum(axis=0)
+    by_times, rates = last[2 * n :].reshape(-1, n, count), _jump_rates(found, flow)
+    moved = np.maximum(np.abs(by_times).max(axis=0, initial=0.0), np.abs(approach)) * found.durations
+    sizes = np.maximum(np.maximum(np.abs(flow.values[:, :n]).max(axis=0), moved), 1e-300)
+    fine = np.zeros(count, dtype=bool)
+    for used in np.unique(switches).tolist():
+        own = np.flatnonzero(switches == used)
+        by = np.concatenate([by_times[:used, :, own], approach[None, :, own]]).transpose(2, 1, 0)
+        hessian = np.zeros((len(own), used + 1, used + 1))
+        places = np.arange(used)
+        hessian[:, places, places] = rates[:used, own].T
+        hessian[:, places, used] = hessian[:, used, places] = -rates[:used, own].T
+        hessian[:, used, used] = fall[own]
+        fine[own] = positive_across(by * found.durations[own, None, None] / sizes.T[own, :, None], hessian)
+    return fine
+
+
+def positive_across(by: Array, hessian: Array) -> NDArray[np.bool_]:
+    """Whether forms, shape (K, P, P), are positive wherever the linear maps, shape (K, n, P), vanish."""
+    finite = np.asarray(np.isfinite(by).all(axis=(1, 2)) & np.isfinite(hessian).all(axis=(1, 2)))
+    by, hessian = (np.where(finite[:, None, None], table, 0.0) for table in (by, hessian))
+    _, values, rows = np.linalg.svd(by)
+    fine: NDArray[np.bool_] = np.asarray(finite & (values[:, -1] > RANK * values[:, 0]))
+    if rows.shape[1] > values.shape[1]:
+        free = rows[:, values.shape[1] :]
+        form = free @ hessian @ free.swapaxes(1, 2)
+        size = np.maximum(np.abs(hessian).max(axis=(1, 2)), 1e-300)
+        fine &= np.linalg.eigvalsh(form)[:, 0] > CURVED * size
+    return fine
+
+
+def _jump_rates(found: Arrivals, flow: _Flow) -> Array:
+    """Of H where controls switch, shape (S, M); whatever it is where arcs have no length."""
+    many, n, count = _Many(found), len(found.costates), found.costates.shape[1]
+    rates, p = np.empty(found.times.shape), many.parameters()
+    for k, which in enumerate(found.controls):
+        z, u, v = flow.values[k + 1], flow.u[k], flow.u[k + 1]
+        rate = many.model.switching_rate_batch(found.times[k], z[:n], u, z[n : 2 * n], p)
+        rates[k] = (np.broadcast_to(rate, u.shape) * (u - v))[which, np.arange(count)]
+    return rates
 
 
 def _kernels_agree(found: Arrivals, flow: _Flow) -> bool:
