@@ -193,6 +193,22 @@ class ControlSet:
         """Lower and upper bounds as columns, shapes (m, 1)."""
         return np.array(self.lower)[:, None], np.array(self.upper)[:, None]
 
+    def around(self, controls: int) -> tuple[Array, Array]:
+        """Lower and upper bounds of a box round the set, shapes (m, 1): infinite where nothing limits a control.
+
+        Parameters
+        ----------
+        controls
+            Their number m.
+        """
+        if self.kind == "box":
+            return self.box
+        largest = math.pi if self.kind == "angle" else self.radius
+        low, high = np.full((controls, 1), -largest), np.full((controls, 1), largest)
+        for at, part in self.parts:
+            low[list(at)], high[list(at)] = part.around(len(at))
+        return low, high
+
     @cached_property
     def rest(self) -> Row:
         """The control of least magnitude in a box."""

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.grid import Grid
 from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.simulation.together import together
 
 STEPS = 200
 """Of each motion, by the classical Runge-Kutta method; a control is kept for each step."""
@@ -53,24 +52,12 @@ def motions(problem: TwoPoint, rng: np.random.Generator) -> list[Motion]:
     problem
         With its bounds, and a given duration.
     """
-    limits = _limits(problem)
-    if limits is None or problem.free_time or not (problem.fixed.any() or problem.unknowns):
+    limits = problem.instance.control_set.around(len(problem.instance.model.spec.controls))
+    given = problem.fixed.any() or problem.unknowns
+    if not np.isfinite(limits).all() or problem.free_time or not given:
         return []
     found = (_nearest(problem, limits, (_pieces, _planes)[k % 2](problem, len(limits[0]), rng)) for k in range(KEPT))
     return [motion for motion in found if motion is not None]
-
-
-def _limits(problem: TwoPoint) -> tuple[Array, Array] | None:
-    """Lower and upper bounds of a box round the control set, each of shape (m, 1)."""
-    whole, count = problem.instance.control_set, len(problem.instance.model.spec.controls)
-    low, high = np.full((count, 1), -np.inf), np.full((count, 1), np.inf)
-    for places, part in whole.parts if whole.kind == "product" else ((tuple(range(count)), whole),):
-        if part.kind == "box":
-            low[list(places)], high[list(places)] = part.box
-        else:
-            largest = np.pi if part.kind == "angle" else part.radius
-            low[list(places)], high[list(places)] = -largest, largest
-    return (low, high) if np.isfinite(low).all() and np.isfinite(high).all() else None
 
 
 def _pieces(problem: TwoPoint, controls: int, rng: np.random.Generator) -> Law:
@@ -95,30 +82,20 @@ def _nearest(problem: TwoPoint, limits: tuple[Array, Array], law: Law) -> Motion
     """That of a sample which misses the end by least; ``None`` where none stays in the domain."""
     instance, unit = problem.instance, problem.scale.state[:, None]
     assert instance.tf is not None
-    grid = Grid.uniform(instance.t0, instance.tf, STEPS)
     low, high = limits
-    states = [np.repeat(np.array(instance.initial)[:, None], SAMPLES, axis=1)]
-    controls: list[Array] = []
-    with np.errstate(all="ignore"):
-        for step, t in enumerate(grid.nodes.tolist()):
-            shares = law(step, states[-1] / unit)
-            controls.append(instance.control_set.project(low + (high - low) * shares))
-            if step < STEPS:
-                rates = partial(instance.model.dynamics_batch, u=controls[-1], p=instance.parameters)
-                states.append(_stepped(rates, t, states[-1], (instance.tf - instance.t0) / STEPS))
-        x = np.array(states) / unit
-        bad = ~np.isfinite(x).all(axis=(0, 1)) | ~(x[:, list(problem.positive)] > 0.0).all(axis=(0, 1))
-        misses = np.array([_miss(problem, end) for end in x[-1].T])
-    misses[bad] = np.inf
+
+    def steady(step: int, x: Array) -> tuple[Array, Array, Array]:
+        u = low + (high - low) * law(step, x / unit)
+        return u, u, u
+
+    lasting = np.full(SAMPLES, instance.tf - instance.t0)
+    found = together(instance, steady, lasting, STEPS, costing=False)
+    misses = np.array([_miss(problem, end) for end in (found.states[-1] / unit).T])
+    misses[np.isinf(found.costs)] = np.inf
     best = int(np.argmin(misses))
-    return Motion(np.array(controls)[:, :, best].T, x[:, :, best].T) if np.isfinite(misses[best]) else None
-
-
-def _stepped(rates: Callable[..., Array], t: float, x: Array, h: float) -> Array:
-    one = np.asarray(rates(t, x))
-    two = np.asarray(rates(t + h / 2.0, x + h / 2.0 * one))
-    three = np.asarray(rates(t + h / 2.0, x + h / 2.0 * two))
-    return x + h / 6.0 * (one + 2.0 * (two + three) + np.asarray(rates(t + h, x + h * three)))
+    if not np.isfinite(misses[best]):
+        return None
+    return Motion(found.controls[:, :, best].T, found.states[:, :, best].T / unit)
 
 
 def _miss(problem: TwoPoint, end: Array) -> float:

@@ -1,4 +1,4 @@
-"""Controls that are drawn, where nothing is asked of the end: all are admissible, and none costs less than an optimum.
+"""Controls that are drawn, where no state is asked of the end: all are admissible, none costs less than an optimum.
 
 Extremals are found by descents, which need not leave the basin in which they begin. A simulation knows no basins: where
 one control of many costs less, what was found is not the optimum, whatever else it is.
@@ -13,8 +13,9 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
-from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
+from satsym.solvers.certificate.neighbours import Simulations, simulations_of
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.simulation.together import together
 
 GROUPS, DRAWN, WAVES = 8, 96, 4
 """Groups of controls, apart lest all gather in the basin of the solution; controls of each, and harmonics."""
@@ -24,6 +25,9 @@ SMALLEST, LARGEST = 0.5, 60.0
 
 ROUNDS, ELITE = 4, 6
 """After the first: each group draws others about the cheapest of its last, half as far away each time."""
+
+LONGER = 0.7
+"""Size of the logarithms by which durations that are chosen are multiplied."""
 
 STEPS = 48
 """Of each motion that is drawn."""
@@ -41,10 +45,11 @@ class Drawn:
 
     simulations: Simulations
     grid: Grid
+    """Of its own duration, where that is chosen."""
     control: Array
     """At nodes and midpoints, shape (m, 2 N + 1)."""
     stated: Array
-    """The solution's, at the same."""
+    """The solution's, at the same shares of its duration."""
     states: Array
     """At the nodes, shape (n, N + 1)."""
     cost: float
@@ -64,10 +69,12 @@ def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
     simulations = None if spec.in_arcs or spec.multipliers else simulations_of(solution)
     if simulations is None or simulations.rows.size:
         return None
-    grid = simulations.grid()
-    stated = stated_control(solution, grid)
     with np.errstate(all="ignore"):
-        control = instance.control_set.project(stated + _cheapest_change(solution, grid, seed))
+        change, longer = _cheapest_change(solution, seed)
+        grid = simulations.grid(longer)
+        tau = (interleave(grid.nodes, grid.midpoints) - grid.t0) / (grid.tf - grid.t0)
+        stated = _stated(solution, tau)
+        control = instance.control_set.project(stated + change @ _waves(tau))
         cost, _ = simulations(control, grid)
         states, _ = simulations.motion(control, grid)
         found = Drawn(simulations, grid, control, stated, states, cost)
@@ -75,58 +82,51 @@ def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
         return found if below and _certain(found, solution.objective) else None
 
 
-def _cheapest_change(solution: Solution, grid: Grid, seed: int) -> Array:
-    """The change of the control at nodes and midpoints that costs least, of those drawn in all rounds."""
+def _cheapest_change(solution: Solution, seed: int) -> tuple[Array, float]:
+    """Of those drawn in all rounds, shares (m, WAVES) of waves that cost least when added, and how much later the end.
+
+    What is drawn are these and the logarithm of the duration over the solution's.
+    """
     rng, m = np.random.default_rng(seed), len(solution.u)
-    sizes = np.maximum(np.abs(solution.u).max(axis=1), natural(solution))[:, None]
-    far = np.geomspace(SMALLEST, LARGEST, GROUPS)[:, None, None, None] * sizes
-    shares = far * rng.normal(size=(GROUPS, DRAWN, m, WAVES))
-    costs = _costs(solution, shares)
+    sizes = np.repeat(np.maximum(np.abs(solution.u).max(axis=1), natural(solution)), WAVES)
+    far = np.geomspace(SMALLEST, LARGEST, GROUPS)[:, None, None] * np.append(sizes, 0.0)
+    far[1::2, :, -1] = LONGER if solution.instance.tf is None else 0.0  # the other groups keep the duration
+    drawn = far * rng.normal(size=(GROUPS, DRAWN, m * WAVES + 1))
+    costs = _costs(solution, drawn)
     for k in range(ROUNDS):
         best = np.argsort(costs, axis=1)[:, :ELITE]
-        kept = np.take_along_axis(shares, best[:, :, None, None], axis=1)
+        kept = np.take_along_axis(drawn, best[:, :, None], axis=1)
         parents = np.resize(np.arange(ELITE), DRAWN)
-        children = kept[:, parents] + 0.5 ** (k + 1) * far * rng.normal(size=(GROUPS, DRAWN, m, WAVES))
-        shares = np.concatenate([kept, children], axis=1)
+        children = kept[:, parents] + 0.5 ** (k + 1) * far * rng.normal(size=(GROUPS, DRAWN, m * WAVES + 1))
+        drawn = np.concatenate([kept, children], axis=1)
         costs = np.concatenate([np.take_along_axis(costs, best, axis=1), _costs(solution, children)], axis=1)
-    tau = (interleave(grid.nodes, grid.midpoints) - grid.t0) / (grid.tf - grid.t0)
-    return np.asarray(shares.reshape(-1, m, WAVES)[np.argmin(costs)] @ _waves(tau))
+    cheapest = drawn.reshape(-1, m * WAVES + 1)[np.argmin(costs)]
+    lasting = float(solution.times[-1] - solution.times[0])
+    return cheapest[:-1].reshape(m, WAVES), lasting * float(np.expm1(cheapest[-1]))
 
 
 def _waves(tau: Array) -> Array:
     return np.asarray(np.cos(np.pi * np.arange(WAVES)[:, None] * tau))
 
 
-def _costs(solution: Solution, shares: Array) -> Array:
-    """Roughly what a control costs with each of many changes, shares (..., m, WAVES) of waves; infinite if it fails."""
-    instance, model = solution.instance, solution.instance.model
-    p, grid = instance.parameters, Grid.uniform(instance.t0, float(solution.times[-1]), STEPS)
+def _stated(solution: Solution, tau: Array) -> Array:
+    """The control of a solution at shares of its duration."""
+    times = solution.times[0] + (solution.times[-1] - solution.times[0]) * tau
+    return np.array([np.interp(times, solution.times, row) for row in solution.u])
+
+
+def _costs(solution: Solution, drawn: Array) -> Array:
+    """Roughly what a control costs with each of many changes, shape (..., m WAVES + 1); infinite if it fails."""
+    m, changes = len(solution.u), drawn.reshape(-1, drawn.shape[-1])
     tau = np.linspace(0.0, 1.0, 2 * STEPS + 1)
-    times = grid.t0 + (grid.tf - grid.t0) * tau
-    own = np.array([np.interp(times, solution.times, row) for row in solution.u])
-    change = np.moveaxis(shares.reshape(-1, *shares.shape[-2:]) @ _waves(tau), 0, -1)  # (m, 2 STEPS + 1, S)
-    count = change.shape[-1]
-    x = np.repeat(np.array(instance.initial)[:, None], count, axis=1)
-    h, total, inside = (grid.tf - grid.t0) / STEPS, np.zeros(count), np.ones(count, dtype=bool)
-    positive = [i for i, state in enumerate(model.spec.states) if state.positive]
-    for k in range(STEPS):
-        u = [instance.control_set.project(own[:, j, None] + change[:, j]) for j in (2 * k, 2 * k + 1, 2 * k + 2)]
-        z, t = [x], times[2 * k : 2 * k + 3]
-        slopes = list[Array]()
-        for at, share in ((0, 0.5), (1, 0.5), (1, 1.0), (2, 0.0)):
-            slopes.append(np.asarray(model.dynamics_batch(t[at], z[-1], u[at], p)))
-            z.append(x + share * h * slopes[-1])
-        total += h / 6.0 * (_running(solution, t[0], z[0], u[0]) + _running(solution, t[2], z[3], u[2]))
-        total += h / 3.0 * (_running(solution, t[1], z[1], u[1]) + _running(solution, t[1], z[2], u[1]))
-        x = x + h / 6.0 * (slopes[0] + 2.0 * (slopes[1] + slopes[2]) + slopes[3])
-        inside &= np.isfinite(x).all(axis=0) & (x[positive] > 0.0).all(axis=0)
-    ends = [model.terminal_cost(grid.tf, tuple(end), p) if ok else np.inf for end, ok in zip(x.T, inside, strict=True)]
-    found = total + np.array(ends)
-    return np.where(np.isfinite(found), found, np.inf).reshape(shares.shape[:-2])
+    own, change = _stated(solution, tau), np.moveaxis(changes[:, :-1].reshape(-1, m, WAVES) @ _waves(tau), 0, -1)
 
+    def law(step: int, _: Array) -> tuple[Array, Array, Array]:
+        one, two, three = (own[:, j, None] + change[:, j] for j in range(2 * step, 2 * step + 3))
+        return one, two, three
 
-def _running(solution: Solution, t: float, x: Array, u: Array) -> Array:
-    return np.asarray(solution.instance.model.running_cost_batch(t, x, u, solution.instance.parameters))
+    lasting = (solution.times[-1] - solution.times[0]) * np.exp(changes[:, -1])
+    return together(solution.instance, law, lasting, STEPS).costs.reshape(drawn.shape[:-1])
 
 
 def natural(solution: Solution) -> Array:
@@ -142,7 +142,7 @@ def natural(solution: Solution) -> Array:
 def _certain(drawn: Drawn, objective: float) -> bool:
     """Whether what a control saves is more than the error of its simulation."""
     saved = objective - drawn.cost
-    twice = replace(drawn.simulations, steps=2 * drawn.grid.nodes.size - 2)
+    twice = replace(drawn.simulations, steps=2 * drawn.grid.nodes.size - 2, end=drawn.grid.tf)
     fine, coarse = twice.grid(), interleave(drawn.grid.nodes, drawn.grid.midpoints)
     times = interleave(fine.nodes, fine.midpoints)
     control = np.array([np.interp(times, coarse, row) for row in drawn.control])
