@@ -200,13 +200,13 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
     notation = {s.name: latex for s, latex in n.FIXED.items()}
     for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
         notation[n.rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
-        notation[n.initial(state).name] = rf"{{{own}}}_0"
+        notation[n.initial(state).name] = n.indexed(own, "0")
         if problem:
             notation[n.costate_of(state).name] = rf"\lambda_{{{own}}}"
             notation[n.rate_of(n.costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
-            notation[n.given(state).name] = rf"g_{{{own}}}"
-            notation[n.on_reference(state).name] = rf"\rho_{{{own}}}"
-            notation[n.target(state).name] = rf"\bar{{{own}}}"
+            notation[n.given(state).name] = rf"\iota_{{{own}}}"
+            notation[n.on_reference(state).name] = rf"\iota^{{\mathrm{{r}}}}_{{{own}}}"
+            notation[n.target(state).name] = n.barred(own)
             notation[n.residual_of(state).name] = rf"\mathcal{{B}}_{{{own}}}"
             notation[n.residual_of(n.costate_of(state)).name] = rf"\mathcal{{B}}_{{\lambda_{{{own}}}}}"
     for k, multiplier in enumerate(n.multipliers(problem) if problem else (), start=1):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import sympy as sp
@@ -65,6 +66,21 @@ FIXED = {
     JACOBI_INTEGRAL: r"\mathcal{J}",
     **{component_of_angular_momentum(axis): rf"\ell_{axis}" for axis in AXES},
 }
+
+
+_LETTER_AND_INDEX = re.compile(r"(\\[A-Za-z]+|[A-Za-z])_(?:\{([^{}]*)\}|(\w))")
+
+
+def indexed(latex: str, index: str) -> str:
+    """A symbol with an index, which joins the one that it may have: x_{1,0}."""
+    found = _LETTER_AND_INDEX.fullmatch(latex)
+    return rf"{found[1]}_{{{found[2] or found[3]},{index}}}" if found else rf"{{{latex}}}_{index}"
+
+
+def barred(latex: str) -> str:
+    """A symbol under a bar, which leaves its index out."""
+    found = _LETTER_AND_INDEX.fullmatch(latex)
+    return rf"\bar{{{found[1]}}}_{{{found[2] or found[3]}}}" if found else rf"\bar{{{latex}}}"
 
 
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:

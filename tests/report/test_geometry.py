@@ -62,12 +62,12 @@ def test_the_reference_passes_where_deviations_begin() -> None:
 
 
 def test_words_are_those_of_the_language() -> None:
-    assert "gravitasi" in figure(model("polar_orbit"), load("id").with_own({"phrases": {"gravity": "gravitasi"}}))
+    assert "gravitasi" in figure(model("polar_orbit"), load("id").with_own({"phrases": {"gravity": "gravitasi"}}), "it")
 
 
 @pytest.mark.parametrize("name", ["van_der_pol", "two_body", "goddard", "cart_pole"])
 def test_no_geometry_is_invented(name: str) -> None:
-    assert figure(model(name), load("en")) == ""
+    assert figure(model(name), load("en"), "it") == ""
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,10 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.model import symbols_of
 
-ASIDE = ("boundary_control", "constrained_costates", "junction_conditions", "mixed_constraints", "mixed_costates")
+ASIDE = (
+    *("boundary_control", "control_rates", "constraint_multiplier", "constrained_costates", "junction_conditions"),
+    *("mixed_constraints", "mixed_costates"),
+)
 """Steps for stretches on which a path constraint is active."""
 
 
@@ -26,9 +29,9 @@ def collected(context: Context) -> Iterator[str]:
     def said(key: str, **fill: str) -> str:
         return texts.get("boundary_value", key, **fill)
 
-    yield said("multipliers" if problem.end_conditions else "unknowns")
     motion, costates, law = (derivation.step(name) for name in ("state_equations", "costate_equations", "control_law"))
-    yield _shown([*(row_of(context, motion, e) for e in motion.equations), *costate_rows(context, costates)])
+    along = [*(row_of(context, motion, e) for e in motion.equations), *costate_rows(context, costates)]
+    yield said("multipliers" if problem.end_conditions else "unknowns") + "\n" + _shown(along)
     yield said("control") + "\n" + _shown([row_of(context, law, e) for e in law.equations])
     steps = [rf"\ref{{{tex.label(context.address(derivation.step(name)))}}}" for name in ASIDE if name in derivation]
     if steps:

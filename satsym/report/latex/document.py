@@ -10,10 +10,9 @@ import re
 from collections.abc import Iterator
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
-from satsym.report.latex.figure import figure
 from satsym.report.latex.references import cited
 from satsym.report.latex.statement import statement
-from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, quantities, shown
+from satsym.report.latex.steps import Context, Shown, conclusion, listed_sources, numbers_of, rule, shown
 from satsym.report.texts import PHRASES, Texts, load
 from satsym.symbolic import Derivation, Step
 from satsym.symbolic.convention import worded
@@ -97,8 +96,7 @@ class _Composer:
 
     def paragraphs(self) -> list[str]:
         """Everything from the statement to what it leads to."""
-        drawn = figure(self._derivation.model, self._texts)
-        done = [self._section(self._sections[0]), *self._declared.paragraphs, *([drawn] if drawn else [])]
+        done = [self._section(self._sections[0]), *self._declared.paragraphs]
         done.append(self._section("motion"))
         for step in self._derivation.steps:
             if step.name in SECTION_FROM:
@@ -127,17 +125,15 @@ class _Composer:
     def _step(self, step: Step) -> str:
         """Heading, rule, equations, what they come to; the sources are the steps before this one."""
         title = self._texts.get("titles", step.name)
-        fill = {"sources": self._sources(step), "quantities": quantities(self._context, step)}
-        rule = self._texts.get("rules", step.rule, **fill)
+        stated = rule(self._context, step, self._sources(step))
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
         said = [conclusion(self._context, c) for c in step.conclusions]
         further = self._texts.find("further", step.name)
-        return "\n".join((heading, rule, self._shown[step.name].body, *said, *([further] if further else [])))
+        return "\n".join((heading, stated, self._shown[step.name].body, *said, *([further] if further else [])))
 
     def _sources(self, step: Step) -> str:
-        named = (self._source(name) for name in step.follows_from)
-        return self._texts.listed([text for text in named if text])
+        return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})
 
     def _source(self, name: str) -> str:
         """A step that was shown, or else a declared thing, in words and with its numbers."""

@@ -17,17 +17,18 @@ SIZE = 2.6
 _WORD = re.compile(r"\\text\{([^}]*)\}")
 
 
-def figure(model: Model, texts: Texts) -> str:
-    """A figure with its caption; empty for a model that declares no geometry that is known to be drawn."""
+def figure(model: Model, texts: Texts, label: str) -> str:
+    """A sentence that leads to a figure, which has a caption; empty for a model without a geometry that is drawn."""
     found = model.picture()
     if found is None:
         return ""
     lines = "\n".join(f"  {line};" for line in DRAWN[found.kind](found))
     lines = _WORD.sub(lambda word: rf"\text{{{escape(texts.phrase(word[1]))}}}", lines)
     caption = texts.get("figures", found.kind) + (f" {texts.get('figures', 'path')}" if found.path else "")
+    sentence = texts.get("figures", "shown", label=label)
     return (
-        f"\\begin{{figure}}[htb]\n\\centering\n\\begin{{tikzpicture}}[>=stealth]\n{lines}\n\\end{{tikzpicture}}\n"
-        f"\\caption{{{caption}}}\n\\end{{figure}}"
+        f"{sentence}\n\\begin{{figure}}[!htb]\n\\centering\n\\begin{{tikzpicture}}[>=stealth]\n{lines}\n"
+        f"\\end{{tikzpicture}}\n\\caption{{{caption}}}\\label{{{label}}}\n\\end{{figure}}"
     )
 
 

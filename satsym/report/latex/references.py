@@ -29,8 +29,12 @@ _CITED = re.compile(r"\\cite\{([^}]*)\}")
 
 def cited(body: str, name: str) -> tuple[str, str]:
     """The body with keys that are those of its document alone, and the list of what it cites, in that order."""
-    keys = dict.fromkeys(key for keys in _CITED.findall(body) for key in keys.split(","))
+    keys = list(dict.fromkeys(key for keys in _CITED.findall(body) for key in keys.split(",")))
     items = [rf"\bibitem{{{name}:{key}}} {WORKS[key]}" for key in keys]
-    own = _CITED.sub(lambda m: rf"\cite{{{','.join(f'{name}:{key}' for key in m[1].split(','))}}}", body)
+
+    def here(found: re.Match[str]) -> str:
+        return rf"\cite{{{','.join(f'{name}:{key}' for key in sorted(found[1].split(','), key=keys.index))}}}"
+
+    own = _CITED.sub(here, body)
     listed = "\n".join([r"\begin{thebibliography}{9}", *items, r"\end{thebibliography}"])
     return own, listed if items else ""

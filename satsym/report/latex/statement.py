@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from satsym.report.latex import tex
 from satsym.report.latex.equations import LINE, Row, array, display
+from satsym.report.latex.figure import figure
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.spec import PRODUCT, Variable
@@ -34,7 +35,7 @@ def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part
     """The whole of it."""
     kinds = (
         *(_cost, _control_set, _constraints, _path_constraints, _interior),
-        *(_quantities, _assumed, _definitions),
+        *(_figure, _quantities, _assumed, _definitions),
         *(_motion, _outputs),
     )
     parts = [part(derivation, texts, typeset) for part in kinds]
@@ -90,7 +91,8 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
     )
     address = tex.label(_address(derivation, "control_set"))
     equation = f"\\begin{{equation}}\n  {body} \\label{{{address}}}\n\\end{{equation}}"
-    kind = PRODUCT if problem.control_sets else problem.control_set
+    kind: str = PRODUCT if problem.control_sets else problem.control_set
+    kind += "_one" if kind == "box" and len(shown) == 1 else ""
     return Part((f"{texts.get('statement', kind)}\n{equation}",))
 
 
@@ -143,6 +145,11 @@ def _interior(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part
         for name, stated in named(derivation.problem).items()
     ]
     return Part((f"{texts.get('statement', 'interior')}\n{display(rows)}",))
+
+
+def _figure(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    drawn = figure(derivation.model, texts, tex.label(f"{derivation.name}:figure"))
+    return Part((drawn,) if drawn else ())
 
 
 def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from satsym.report.latex import tex
@@ -98,6 +98,23 @@ def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
     terms = [term for power in context.typeset.by_powers(equation.rhs) for term in power]
     address = f"{context.address(step)}.{equation.name}"
     return Row(address, context.typeset.terms(equation.lhs), tuple(terms))
+
+
+def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
+    """What a step follows from, by name: as an enumeration, after which come the constants that are put in."""
+    listed = texts.listed([text for name, text in named.items() if text and name != "definitions"])
+    constants = named.get("definitions")
+    return texts.get("references", "besides", listed=listed, constants=constants) if constants else listed
+
+
+def rule(context: Context, step: Step, sources: str) -> str:
+    """The sentence by which a step follows: that for free controls or for a single one, where there is such a form."""
+    texts, problem, controls = context.texts, context.derivation.problem, context.derivation.model.controls
+    fill = {"sources": sources, "quantities": quantities(context, step)}
+    free = problem is not None and problem.control_set == "free" and not problem.control_sets
+    forms = [form for form, meant in (("free", free), ("one control", len(controls) == 1)) if meant]
+    keys = [f"{step.rule}, {form}" for form in forms if texts.find("rules", f"{step.rule}, {form}")]
+    return texts.get("rules", [*keys, step.rule][0], **fill)
 
 
 def conclusion(context: Context, said: Conclusion) -> str:

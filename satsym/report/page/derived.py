@@ -11,7 +11,7 @@ from satsym.report.html.mathml import math
 from satsym.report.latex import tex
 from satsym.report.latex.checks import checked
 from satsym.report.latex.document import SECTION_FROM, in_language
-from satsym.report.latex.steps import Context, conclusion, quantities
+from satsym.report.latex.steps import Context, conclusion, listed_sources, rule
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.terminal.table import figure
 from satsym.report.texts import PHRASES, Texts
@@ -104,8 +104,7 @@ class Derived:
         """Heading, rule, equations, what it comes to, checks."""
         texts, label = self._texts, tex.label(self._context.address(step))
         title = texts.get("titles", step.name)
-        fill = {"sources": self._sources(step), "quantities": quantities(self._context, step)}
-        rule = prose(texts.get("rules", step.rule, **fill), self._numbers)
+        stated = prose(rule(self._context, step, self._sources(step)), self._numbers)
         self._numbers[label] = str(number)
         equations = [self._equation(address, line) for address, line in self._lines(step)]
         said = [tag("p", prose(conclusion(self._context, one), self._numbers)) for one in step.conclusions]
@@ -113,7 +112,7 @@ class Derived:
         return tag(
             "details",
             tag("summary", tag("h4", f"{texts.get('words', 'step')} {number}. {title}")),
-            tag("div", rule, class_="rule"),
+            tag("div", stated, class_="rule"),
             *equations,
             *said,
             tag("ul", *checks, class_="checks", aria_label=texts.get("page", "checked")),
@@ -151,7 +150,7 @@ class Derived:
                 yield f"{address}.{e.name}", f"{left} = {typeset.tex(e.rhs)}"
 
     def _sources(self, step: Step) -> str:
-        return self._texts.listed([text for text in map(self._source, step.follows_from) if text])
+        return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})
 
     def _source(self, name: str) -> str:
         label = tex.label(f"{self._derivation.name}:{name}")

@@ -101,7 +101,7 @@ def names(problem: Problem) -> dict[str, str]:
     for k, name in enumerate(every, start=1):
         several = len(every) > 1
         foot = f"_{{{k}}}" if several else ""
-        found |= {rate(name, order).name: f"{dots}h{foot}" for order, dots in enumerate(("", r"\dot ", r"\ddot "))}
+        found |= {rate(name, order).name: rf"{dots}\Gamma{foot}" for order, dots in enumerate(("", r"\dot", r"\ddot"))}
         found |= {vanishing(name, order).name: rf"{dots}\varphi{foot}" for order, dots in enumerate(("", r"\dot"))}
         found |= {multiplier(name).name: rf"\eta{foot}", jump(name).name: rf"\zeta{foot}"}
         for v in problem.model.controls:

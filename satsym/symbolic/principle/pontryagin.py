@@ -140,7 +140,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
     check = compare("H at the minimiser", h.free_symbols, sides)
     equation = Equation("H_star", n.MINIMISED, h_star)
     name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
-    return Step(name, worded("substitute controls", problem), (equation,), ("hamiltonian", "control_law"), (check,))
+    return Step(name, worded("substitute controls", problem), (equation,), ("hamiltonian", "stationarity"), (check,))
 
 
 def state_equations(so_far: Derivation) -> Step:
