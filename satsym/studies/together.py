@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,14 @@ from satsym.studies import rows
 from satsym.studies.asked import Checked, Command, Task
 from satsym.studies.rows import Cases, Row
 
+if TYPE_CHECKING:
+    from satsym.solvers.batch.many import Many
+    from satsym.solvers.batch.newton import Nodes
+
 NEIGHBOUR, LINE, CLOSED, REACHABLE = "nearest answer", Origin.STRAIGHT_LINE.value, "closed form", "reachable set"
-"""The origin of answers: the nearest one, a line between the ends, a formula, or what is reached in less time."""
+UNBOUNDED = "answer without bounds"
+"""The origin of answers: the nearest one, a line between the ends, a formula, what is reached in less time, or the same
+row's answer without bounds."""
 
 SHOOTING, LINEAR, SWITCHING = "shooting", "linear", "bang-bang"
 """The methods by which rows are solved together."""
@@ -100,34 +107,56 @@ def _smooth_with_given_ends(task: Task) -> bool:
 def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     """Extremals with smooth controls and given ends."""
     from satsym.solvers.batch import closed_form
-    from satsym.solvers.batch.certificate import minima
+    from satsym.solvers.batch.bounded import within_bounds
     from satsym.solvers.batch.many import Many
-    from satsym.solvers.batch.solving import Answers, solved_together, to_rounding
+    from satsym.solvers.batch.newton import Outcome
+    from satsym.solvers.batch.solving import Answers, solved_together
 
     many = Many.of(task.instance, instances, task.compiled)
     linear = closed_form.applies(many)
     answers = Answers(closed_form.solved(many), np.zeros(many.count, dtype=bool)) if linear else solved_together(many)
-    nodes = answers.nodes
+    nodes, n, tf = answers.nodes, many.states, float(many.times[-1, 0])
     if task.checked is Checked.LOCAL:
-        fine = minima(many, nodes)
-        unclear = np.flatnonzero(nodes.solved & ~fine)
-        nodes = to_rounding(many, nodes, unclear)
-        fine[unclear] = minima(many.only(unclear), nodes.only(unclear))
+        nodes, fine = _confirmed(many, nodes)
     else:
         fine = nodes.solved & positive(nodes.transition * (many.units / many.units[:, None])[:, :, None, None])
-    n, tf = many.states, float(many.times[-1])
-    x = nodes.z[:n, -1]
+    x, costates, costs, switches = (
+        nodes.z[:n, -1].copy(),
+        nodes.z[n:, 0].copy(),
+        nodes.cost.copy(),
+        np.zeros(many.count),
+    )
+    origins = [CLOSED] * many.count if linear else [NEIGHBOUR if k else LINE for k in answers.neighbour]
+    met = np.flatnonzero(nodes.outcome == Outcome.BOUNDS)
+    if len(met):
+        laid, held, switches[met] = within_bounds(many.only(met), nodes.z[:, :, met])
+        held, fine[met] = _confirmed(laid, held)
+        x[:, met], costates[:, met], costs[met] = held.z[:n, -1], held.z[n:, 0], held.cost
+        for k in met:
+            origins[k] = UNBOUNDED
     pairs = zip(instances, x.T.tolist(), strict=True)
     return Found(
         minimum=fine,
         method=LINEAR if linear else SHOOTING,
-        origins=[CLOSED] * many.count if linear else [NEIGHBOUR if k else LINE for k in answers.neighbour],
-        costs=nodes.cost + [one.model.terminal_cost(tf, tuple(end), one.parameters) for one, end in pairs],
+        origins=origins,
+        costs=costs + [one.model.terminal_cost(tf, tuple(end), one.parameters) for one, end in pairs],
         t_final=np.full(many.count, tf),
         x_final=x,
-        costates=nodes.z[n:, 0],
-        switches=np.zeros(many.count),
+        costates=costates,
+        switches=switches,
     )
+
+
+def _confirmed(many: Many, nodes: Nodes) -> tuple[Nodes, NDArray[np.bool_]]:
+    """Which are minima beyond doubt, some of them once they are as accurate as rounding allows."""
+    from satsym.solvers.batch.certificate import minima
+    from satsym.solvers.batch.solving import to_rounding
+
+    fine = minima(many, nodes)
+    unclear = np.flatnonzero(nodes.solved & ~fine)
+    nodes = to_rounding(many, nodes, unclear)
+    fine[unclear] = minima(many.only(unclear), nodes.only(unclear))
+    return nodes, fine
 
 
 def _least_time(task: Task) -> bool:

@@ -41,8 +41,8 @@ def segments(times: int) -> Callable[[], object]:
 
     cases = population(CHUNK)
     many = Many.of(cases[0], cases, True)
-    points = np.linspace(0.0, len(many.mesh) - 1.0, times * (len(many.mesh) - 1) + 1)
-    finer = replace(many, mesh=np.interp(points, np.arange(len(many.mesh)), many.mesh))
+    points, mesh = np.linspace(0.0, len(many.mesh) - 1.0, times * (len(many.mesh) - 1) + 1), many.mesh[:, 0]
+    finer = replace(many, mesh=np.interp(points, np.arange(len(mesh)), mesh)[:, None])
     return lambda: solved_together(finer)
 
 

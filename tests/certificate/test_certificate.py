@@ -18,6 +18,7 @@ from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.simulation.extrapolation import NotFinite, integrate
+from satsym.spec import ControlSetKind
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.derived import derived
@@ -26,10 +27,11 @@ STATE, CONTROL = Variable("y", "y"), Variable("v", "v")
 (y,), (v,) = symbols_of((STATE,)), symbols_of((CONTROL,))
 
 
-def oscillator(tf: float, final: dict[str, float], path: Path) -> Instance:
+def oscillator(tf: float, final: dict[str, float], path: Path, control_set: ControlSetKind = "free") -> Instance:
     """Minimise the integral of (v^2 - y^2)/2 with y' = v from y = 1: extremals y'' = -y, conjugate times k pi."""
     model = FirstOrder(name="line", title="Line", states=(STATE,), controls=(CONTROL,), parameters=(), rates={y: v})
-    problem = Problem(name="oscillator", title="Oscillator", model=model, running_cost=(v**2 - y**2) / 2)
+    cost = (v**2 - y**2) / 2
+    problem = Problem(name="oscillator", title="Oscillator", model=model, running_cost=cost, control_set=control_set)
     kernels = from_text(module.render(derived(problem), "oscillator.py"), "oscillator.py")
     case = instance.load("soft-return")
     return replace(

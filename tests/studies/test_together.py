@@ -143,8 +143,10 @@ def test_bounds_of_single_controls_vary_and_each_row_is_judged_by_its_own() -> N
     found = computed(study)
     assert {row.status for row in found} == {"converged"}
     case, values = instance.load(bounded), study.design.rows(0, 4).tolist()
-    alone = [row.numbers["origin"] == "single solver" for row in found]
-    assert alone == [r < 1.04 and upper < 0.07 for r, upper in values]
+    held = [row.numbers["origin"] == "answer without bounds" for row in found]
+    assert held == [r < 1.04 and upper < 0.07 for r, upper in values]
+    assert [row.numbers["switching_times"] > 0 for row in found] == held
+    assert not any(row.numbers["origin"] == "single solver" for row in found)
     for row, (r, upper) in zip(found, values, strict=True):
         own = replace(case, initial=(r, *case.initial[1:]), upper=(case.upper[0], upper))
         assert row.numbers["objective"] == pytest.approx(solvers.solve(own, examined=False).objective, rel=1e-8)

@@ -12,16 +12,18 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array, distinct
+from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED
-from satsym.solvers.certificate.corners import inverses, positive
+from satsym.solvers.certificate.corners import CLEAR, inverses, positive
+from satsym.solvers.certificate.jacobi import TURN, followed
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
 from satsym.solvers.certificate.reintegration.node_defect import FINE
+from satsym.solvers.certificate.reintegration.segments import TURN as QUARTER
 from satsym.solvers.certificate.reintegration.segments import balanced
 from satsym.solvers.certificate.verdict import COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
 from satsym.solvers.collocation.problem import TwoPoint
@@ -40,6 +42,9 @@ PLACES = 9
 
 ROUGH = 0.01
 """Relative error of derivatives that is small enough."""
+
+FOLLOWED = 1e-4
+"""The same where phases are followed from segment to segment."""
 
 HALVINGS = 4
 """Of segments at most."""
@@ -120,11 +125,10 @@ def _along_flow(many: Many, z: Array, cost: Array, sizes: Sizes) -> NDArray[np.b
 def _flow(many: Many, start: Array, scale: Array, parts: int) -> tuple[Array, Array]:
     """Values at the ends of parts of segments, shape (K, 2n + 1, M), and the largest relative error, shape (M,)."""
     values, now, worst = [start], start, np.zeros(many.count)
-    for begin, width in zip(many.times[:-1], np.diff(many.times), strict=True):
-        h = np.full(many.count, width / parts)
+    for begin, width in zip(many.times[:-1], np.diff(many.times, axis=0), strict=True):
+        h = np.zeros(many.count) + width / parts
         for part in range(parts):
-            t = np.full(many.count, begin + part * width / parts)
-            now, error = many.motion.leap(t, now, h, many.parameters, len(SUBSTEPS))
+            now, error = many.motion.leap(begin + part * h, now, h, many.given, len(SUBSTEPS))
             worst = np.maximum(worst, (error / np.maximum(scale, np.abs(now))).max(axis=0))
             values.append(now)
     return np.array(values), np.where(np.isfinite(worst), worst, np.inf)
@@ -134,9 +138,9 @@ def _undriven(many: Many, sizes: Sizes) -> Array:
     """Where each motion would end without control, roughly, shape (n, M)."""
     model, p = many.instance.model, tuple(many.parameters)
     none, now = np.zeros((len(model.spec.controls), many.count)), many.initial
-    times = distinct([*many.times[::2], many.times[-1]])  # only its size matters
-    for begin, width in zip(times[:-1], np.diff(times), strict=True):
-        t, h = np.full(many.count, begin), np.full(many.count, width)
+    times = np.concatenate([many.times[:-1:2], many.times[-1:]])  # only its size matters
+    for begin, width in zip(times[:-1], np.diff(times, axis=0), strict=True):
+        t, h = np.zeros(many.count) + begin, np.zeros(many.count) + width
         now = leap(lambda t, x: np.asarray(model.dynamics_batch(t, x, none, p)), t, now, h, UNDRIVEN)
     # what is not finite is far away
     return np.where(np.isfinite(now), now, many.end + sizes.state)
@@ -157,9 +161,8 @@ def _drift(many: Many, stations: Array) -> Array:
 def _flat(many: Many, z: Array) -> tuple[Array, Array, Array, Array, tuple[Array, ...]]:
     """Times, states, costates, controls by the law and parameters at all nodes, a column for each."""
     n, count = many.states, z.shape[1]
-    flat, t = z.reshape(len(z), -1), np.repeat(many.times, many.count)
-    p = tuple(np.tile(many.parameters, count))
-    bounds = many.problem.control_set.arguments
+    flat, t = z.reshape(len(z), -1), many.at_nodes(slice(None))
+    p, bounds = many.arguments(count)
     u = np.asarray(many.instance.model.control_law_batch(t, flat[:n], flat[n:], p, bounds))
     return t, flat[:n], flat[n:], u, p
 
@@ -186,18 +189,36 @@ def _stationary(many: Many, z: Array) -> NDArray[np.bool_]:
     slope = np.asarray(model.stationarity_batch(t, x, u, lam, p)).reshape(m, -1, many.count)
     hessian = np.asarray(model.control_hessian_batch(t, x, u, lam, p)).reshape(m, m, -1, many.count)
     large = (np.abs(hessian) * np.abs(u).reshape(1, m, -1, many.count)).sum(axis=1).max(axis=(0, 1))
+    if many.bounded:
+        slope = _uphill(many, u.reshape(slope.shape), slope, hessian)
     off = np.abs(slope).max(axis=(0, 1)) / np.maximum(large, 1e-300)
     least = np.linalg.eigvalsh(hessian.transpose(2, 3, 0, 1))[..., 0].min(axis=0)
     return np.asarray(((off <= STATIONARY) | (large == 0.0)) & (least > 0.0))
 
 
+def _uphill(many: Many, u: Array, slope: Array, hessian: Array) -> Array:
+    """What is left of slopes of H, shape (m, N+1, M), where they lead out of the bounds that hold controls."""
+    steepness = np.maximum(np.einsum("iikm->km", np.abs(hessian)), 1e-300)
+    moved = u - slope / steepness
+    if many.problem.control_set.kind == "ball":
+        moved = moved * np.minimum(many.radius / np.maximum(np.linalg.norm(moved, axis=0), 1e-300), 1.0)
+    else:
+        moved = np.minimum(np.maximum(moved, many.lower[:, None]), many.upper[:, None])
+    return np.asarray((u - moved) * steepness)
+
+
 def _without_conjugate_points(many: Many, z: Array, halvings: int = HALVINGS) -> NDArray[np.bool_]:
     """Which have none beyond doubt; segments in which a phase may turn by too much are halved."""
     scale = _balanced(many, z)
-    short = _turning(many, z, scale) < WHOLE
+    if many.bounded:
+        free = replace(many, bounded=False)  # where a bound is met rates change, at most to what they are without
+        turning = np.sqrt(many.states) * np.maximum(_turning(many, z, scale), _turning(free, z, scale))
+        judged, short = _phases_clear, turning < QUARTER
+    else:
+        judged, short = _corners_positive, _turning(many, z, scale) < WHOLE
     found, near, far = np.zeros(many.count, dtype=bool), np.flatnonzero(short), np.flatnonzero(~short)
     if len(near):
-        found[near] = _corners_positive(many.only(near), z[:, :, near], scale)
+        found[near] = judged(many.only(near), z[:, :, near], scale)
     if len(far) and halvings:
         found[far] = _without_conjugate_points(*_halved(many.only(far), z[:, :, far]), halvings - 1)
     return found
@@ -210,18 +231,32 @@ def _halved(many: Many, z: Array) -> tuple[Many, Array]:
     middles = many.motion.leap(t, costing, h / 2.0, p, len(SUBSTEPS))[0][:-1]
     found = np.empty((len(z), 2 * len(many.mesh) - 1, many.count))
     found[:, ::2], found[:, 1::2] = z, middles.reshape(len(z), -1, many.count)
-    mesh = np.empty(found.shape[1])
+    mesh = np.empty((found.shape[1], many.mesh.shape[1]))
     mesh[::2], mesh[1::2] = many.mesh, (many.mesh[1:] + many.mesh[:-1]) / 2.0
     return replace(many, mesh=mesh), found
 
 
+def _varied(many: Many, z: Array, scale: Array) -> tuple[Array, Array]:
+    """How segments' ends follow their beginnings, and the errors of that, shapes (2n, 2n, N, M)."""
+    rows, ratio = len(z), (scale / scale[:, None])[:, :, None, None]
+    _, transition, off = many.motion.leap_varied(*many.segments(z), VARIATIONS)
+    whole, wrong = (one.reshape(rows, rows, -1, many.count) * ratio for one in (transition, off))
+    return whole, wrong
+
+
+def _phases_clear(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
+    """Whether no phase comes near a full turn: where all controls are held no broken extremal tells anything."""
+    whole, wrong = _varied(many, z, scale)
+    found = np.asarray(wrong.max(axis=(0, 1, 2)) <= FOLLOWED * np.abs(whole).max(axis=(0, 1, 2)))
+    for k in np.flatnonzero(found):
+        phases = followed(whole[..., k].transpose(2, 0, 1))
+        found[k] = phases is not None and bool((phases.values < (1.0 - CLEAR) * TURN).all())
+    return found
+
+
 def _corners_positive(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
     """Whether broken extremals with corners at the nodes cost more, beyond doubt."""
-    t, start, h, p = many.segments(z)
-    rows, n = len(z), many.states
-    _, transition, off = many.motion.leap_varied(t, start, h, p, VARIATIONS)
-    ratio = (scale / scale[:, None])[:, :, None, None]
-    whole, wrong = (one.reshape(rows, rows, -1, many.count) * ratio for one in (transition, off))
+    n, (whole, wrong) = many.states, _varied(many, z, scale)
     across, doubt = (one[:n, n:].transpose(3, 2, 0, 1) for one in (whole, wrong))
     inverse = inverses(across)
     error = (np.abs(inverse) @ doubt).max(axis=(1, 2, 3))
@@ -237,7 +272,7 @@ def _balanced(many: Many, z: Array) -> Array:
 def _slopes(many: Many, z: Array) -> Array:
     """The canonical rates by states and costates at nodes, shape (2n, 2n, N+1, M)."""
     t, x, lam, _, p = _flat(many, z)
-    table = many.instance.model.canonical_jacobian_batch(t, x, lam, p, many.problem.control_set.arguments)
+    table = many.instance.model.canonical_jacobian_batch(t, x, lam, p, many.arguments(z.shape[1])[1])
     return np.asarray(table).reshape(len(z), len(z), -1, many.count)
 
 
@@ -245,7 +280,7 @@ def _turning(many: Many, z: Array, scale: Array) -> Array:
     """The most that a phase may turn in a segment, shape (M,)."""
     slopes = _slopes(many, z) * (scale / scale[:, None])[:, :, None, None]
     rates = 2.0 * np.sqrt(np.einsum("ijkm,ijkm->km", slopes, slopes))
-    return np.asarray((np.maximum(rates[1:], rates[:-1]) * np.diff(many.times)[:, None]).max(axis=0))
+    return np.asarray((np.maximum(rates[1:], rates[:-1]) * np.diff(many.times, axis=0)).max(axis=0))
 
 
 def _kernels_agree(problem: TwoPoint) -> bool:

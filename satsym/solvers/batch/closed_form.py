@@ -32,14 +32,15 @@ def applies(many: Many) -> bool:
 def solved(many: Many) -> Nodes:
     """All problems, to each of which :func:`applies`."""
     n, rows, count = many.states, 2 * many.states, many.count
-    arcs = Exponential(many.problem, many.mesh, np.ones((rows, len(many.mesh))), many.problem.theta)
+    mesh = many.mesh[:, 0]
+    arcs = Exponential(many.problem, mesh, np.ones((rows, len(mesh))), many.problem.theta)
     points, weights = np.polynomial.legendre.leggauss(POINTS)
-    widths, shares = np.diff(many.mesh), np.append((points + 1.0) / 2.0, 1.0)
+    widths, shares = np.diff(mesh), np.append((points + 1.0) / 2.0, 1.0)
     unit = np.append(many.units, 1.0)
     with np.errstate(all="ignore"):
         flows = arcs.flows(np.outer(widths, shares).ravel()) * unit[:, None] / unit
         flows = flows.reshape(len(widths), len(shares), rows + 1, rows + 1)
-        begins = np.empty((len(many.mesh), rows + 1, rows + 1))
+        begins = np.empty((len(mesh), rows + 1, rows + 1))
         begins[0] = np.eye(rows + 1)
         for k, flow in enumerate(flows[:, -1]):
             begins[k + 1] = flow @ begins[k]
@@ -68,7 +69,7 @@ def _cost(many: Many, z: Array, weights: Array, shares: Array) -> Array:
     """The running cost, of values at points of all segments, shape (K, 2n, M)."""
     n, model, p = many.states, many.instance.model, many.instance.parameters
     flat = z.transpose(1, 0, 2).reshape(2 * n, -1)
-    t = np.repeat(many.instance.t0 + many.problem.duration * (many.mesh[:-1, None] + shares).ravel(), many.count)
+    t = np.repeat(many.instance.t0 + many.problem.duration * (many.mesh[:-1] + shares).ravel(), many.count)
     u = model.control_law_batch(t, flat[:n], flat[n:], p, many.problem.control_set.arguments)
     running = np.broadcast_to(model.running_cost_batch(t, flat[:n], u, p), t.shape).reshape(len(weights), -1)
     return np.asarray(many.problem.duration * (weights @ running))

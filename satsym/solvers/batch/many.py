@@ -25,7 +25,7 @@ FINER = 2
 
 @dataclass(frozen=True, eq=False)
 class Many:
-    """M instances whose ends and times are given, solved without their bounds."""
+    """M instances whose ends and times are given."""
 
     problem: TwoPoint
     """Of the instance that they vary: scales, times and what else all share."""
@@ -37,31 +37,32 @@ class Many:
     parameters: Array
     """Shape (k, M)."""
     mesh: Array
-    """Nodes in [0, 1], shape (N+1,), the same for all."""
+    """Nodes in [0, 1], shape (N+1, M), or (N+1, 1) where they are the same for all."""
     condense: Condensing
     """How nodes follow from the first one."""
     lower: Array
     upper: Array
     radius: Array
     """Bounds on controls, shapes (m, M), and on their norm, shape (M,), by which solutions are judged."""
+    bounded: bool = False
+    """Whether controls are held within them; otherwise all are solved as if there were none."""
 
     @classmethod
     def of(cls, instance: Instance, instances: Sequence[Instance], compiled: bool) -> Many:
         """Variations of an instance."""
         assert instance.tf is not None
         problem = two_point(instance, instance.tf - instance.t0).relaxed(float("inf"))
-        bounds = problem.control_set.arguments
         path = paths.first(problem)
         laid = meshes.along(problem, (tau := np.linspace(0.0, 1.0, paths.POINTS)), path(tau), problem.theta)
         mesh = np.interp(np.linspace(0.0, len(laid) - 1.0, FINER * (len(laid) - 1) + 1), np.arange(len(laid)), laid)
         parameters = np.array([one.parameters for one in instances]).reshape(len(instances), -1).T.copy()
         return cls(
             problem,
-            motion(instance.model, bounds, compiled),
+            motion(instance.model, problem.control_set.arguments, compiled),
             np.array([one.initial for one in instances]).T.copy(),
             _ends(instances, parameters),
             parameters,
-            mesh,
+            mesh[:, None],
             condensing(problem.states, compiled),
             np.array([one.lower for one in instances]).reshape(len(instances), -1).T,
             np.array([one.upper for one in instances]).reshape(len(instances), -1).T,
@@ -90,14 +91,14 @@ class Many:
 
     @property
     def times(self) -> Array:
-        """Of the nodes, shape (N+1,)."""
+        """Of the nodes, shape (N+1, M) or (N+1, 1)."""
         return self.instance.t0 + self.problem.duration * self.mesh
 
     @property
     def line(self) -> Array:
         """The straight line between the ends without costates, at the nodes, shape (2n, N+1, M)."""
         found = np.zeros((2 * self.states, len(self.mesh), self.count))
-        found[: self.states] = self.initial[:, None] + (self.end - self.initial)[:, None] * self.mesh[:, None]
+        found[: self.states] = self.initial[:, None] + (self.end - self.initial)[:, None] * self.mesh
         return found
 
     def only(self, chosen: NDArray[np.intp]) -> Many:
@@ -108,7 +109,34 @@ class Many:
             name: np.ascontiguousarray(getattr(self, name)[..., chosen])
             for name in ("initial", "end", "parameters", "lower", "upper", "radius")
         }
-        return replace(self, **columns)
+        mesh = self.mesh[:, chosen] if self.mesh.shape[1] > 1 else self.mesh
+        return replace(self, **columns, mesh=mesh)
+
+    def within_bounds(self) -> Many:
+        """The same with their bounds, on arrays: few meet them as a rule."""
+        return replace(self, bounded=True, motion=motion(self.instance.model, None, False))
+
+    @property
+    def limits(self) -> Array:
+        """What generated functions have as bounds, shape (b, M)."""
+        if self.problem.control_set.kind == "ball":
+            return self.radius[None]
+        return np.concatenate([self.lower, self.upper])
+
+    @property
+    def given(self) -> Array:
+        """Parameters, and bounds where there are any: what motions take, shape (k, M) or (k + b, M)."""
+        return np.concatenate([self.parameters, self.limits]) if self.bounded else self.parameters
+
+    def arguments(self, times: int) -> tuple[tuple[Array, ...], tuple[Any, ...]]:
+        """Parameters and bounds of generated functions, so many times one after the other."""
+        bounds = tuple(np.tile(self.limits, times)) if self.bounded else self.problem.control_set.arguments
+        return tuple(np.tile(self.parameters, times)), bounds
+
+    def at_nodes(self, nodes: slice) -> Array:
+        """Times of nodes, a column for each of each instance."""
+        times = self.times[nodes]
+        return np.broadcast_to(times, (len(times), self.count)).ravel()
 
     def segments(self, z: Array) -> tuple[Array, Array, Array, Array]:
         """Arguments of steps over all segments, a column for each of each instance.
@@ -118,10 +146,10 @@ class Many:
         z
             Nodes, shape (2n, N+1, M).
         """
-        times, count = self.times, self.count
         columns = np.ascontiguousarray(z[:, :-1]).reshape(len(z), -1)
-        parameters = np.ascontiguousarray(np.tile(self.parameters, len(times) - 1))
-        return np.repeat(times[:-1], count), columns, np.repeat(np.diff(times), count), parameters
+        given = np.ascontiguousarray(np.tile(self.given, len(self.times) - 1))
+        begins, ends = self.at_nodes(slice(None, -1)), self.at_nodes(slice(1, None))
+        return begins, columns, ends - begins, given
 
 
 def _ends(instances: Sequence[Instance], parameters: Array) -> Array:

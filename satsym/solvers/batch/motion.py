@@ -39,7 +39,7 @@ class Motion(Protocol):
 
 
 @lru_cache(maxsize=16)
-def motion(kernels: Kernels, bounds: tuple[float, ...], compiled: bool) -> Motion:
+def motion(kernels: Kernels, bounds: tuple[float, ...] | None, compiled: bool) -> Motion:
     """Steps of a model.
 
     Parameters
@@ -47,11 +47,11 @@ def motion(kernels: Kernels, bounds: tuple[float, ...], compiled: bool) -> Motio
     kernels
         The model.
     bounds
-        The argument of its functions.
+        The argument of its functions; ``None`` where they follow the parameters as rows, which is on arrays alone.
     compiled
         Whether by machine code; making that takes half a minute, once a model.
     """
-    return _Compiled(kernels, bounds) if compiled else _OnArrays(kernels, bounds)
+    return _Compiled(kernels, bounds) if compiled and bounds is not None else _OnArrays(kernels, bounds)
 
 
 class _Compiled:
@@ -106,17 +106,22 @@ def _costing(z: Array) -> Array:
 class _OnArrays:
     """By the batch forms, block by block."""
 
-    def __init__(self, kernels: Kernels, bounds: tuple[float, ...]) -> None:
+    def __init__(self, kernels: Kernels, bounds: tuple[float, ...] | None) -> None:
         self._kernels, self._bounds, self._n = kernels, bounds, len(kernels.spec.states)
+
+    def _arguments(self, p: Array) -> tuple[tuple[Array, ...], tuple[Any, ...]]:
+        """Parameters and bounds."""
+        count = len(self._kernels.spec.parameters)
+        return tuple(p[:count]), tuple(p[count:]) if self._bounds is None else self._bounds
 
     def _rates(self, p: Array) -> Callable[[Any, Array], Array]:
         """Of states and costates."""
-        model, n, bounds, own = self._kernels, self._n, self._bounds, tuple(p)
+        model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         return lambda t, z: np.asarray(model.canonical_batch(t, z[:n], z[n:], own, bounds))
 
     def _costing(self, p: Array) -> Callable[[Any, Array], Array]:
         """Of these and the cost."""
-        model, n, bounds, own = self._kernels, self._n, self._bounds, tuple(p)
+        model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
 
         def rates(t: Any, y: Array) -> Array:
             found, x, lam = np.empty_like(y), y[:n], y[n : 2 * n]
@@ -128,7 +133,7 @@ class _OnArrays:
 
     def _varied(self, p: Array) -> Callable[[Any, Array], Array]:
         """Of states, costates and derivatives of these."""
-        model, n, bounds, own = self._kernels, self._n, self._bounds, tuple(p)
+        model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         rows = 2 * n
 
         def rates(t: Any, y: Array) -> Array:

@@ -109,12 +109,16 @@ def solved(many: Many, start: Array) -> Nodes:
     start
         Nodes, shape (2n, N+1, M).
     """
-    aim = max(AIM * many.instance.solver.tolerance, FINEST)
     with np.errstate(all="ignore"):
-        nodes = accurate(many, *rough(many, start), aim)
+        nodes = accurate(many, *rough(many, start), aim_of(many))
         met = np.flatnonzero(nodes.solved)
         nodes.outcome[met[bounds_met(many.only(met), nodes.z[:, :, met])]] = Outcome.BOUNDS
     return nodes
+
+
+def aim_of(many: Many) -> float:
+    """Error that is aimed at."""
+    return max(AIM * many.instance.solver.tolerance, FINEST)
 
 
 def bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
@@ -123,8 +127,8 @@ def bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
     if not within.bounded or not many.count:
         return np.zeros(many.count, dtype=bool)
     n, segments = many.states, len(many.mesh)
-    flat, p = z.reshape(len(z), -1), tuple(np.tile(many.parameters, segments))
-    times = np.repeat(many.times, many.count)
+    flat, (p, _) = z.reshape(len(z), -1), many.arguments(segments)
+    times = many.at_nodes(slice(None))
     law = many.instance.model.control_law_batch(times, flat[:n], flat[n:], p, within.without_bounds.arguments)
     u = np.asarray(law).reshape(-1, segments, many.count)
     moved = np.zeros_like(u)
