@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from satsym.arrays import Array
 from satsym.solution import Event, Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate.jacobi import FULL, followed
+from satsym.solvers.certificate.reintegration.flow import flow as canonical_flow
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.status import Status, Verdict
 from tests.support.models import build, q, scalar, w
@@ -61,6 +63,19 @@ def test_the_jump_is_where_quadrature_has_it(tmp_path: Path) -> None:
     assert found.objective == pytest.approx(cost, rel=1e-10)
     before, after = (found.u[0, found.times < a][-1], found.u[0, found.times > a][0])
     assert (before, after) == pytest.approx((-1.0, 1.0), abs=1e-8)
+
+
+def test_what_begins_with_a_jump_is_followed_to_its_end(bent: Solution) -> None:
+    """Begun at the node just before its jump, a solution goes on as it did."""
+    node = int(np.searchsorted(bent.times, bent.events[0].t)) - 1
+    instance = replace(bent.instance, initial=tuple(bent.x[:, node].tolist()))
+    rest = {name: getattr(bent, name)[..., node:] for name in ("times", "x", "lam", "u")}
+    whole, begun = canonical_flow(bent), canonical_flow(replace(bent, instance=instance, **rest))
+    assert whole is not None
+    assert begun is not None
+    assert begun.times[0] == bent.times[node] > bent.times[0]
+    assert begun.x[:, -1] == pytest.approx(whole.x[:, -1], abs=1e-10)
+    assert begun.lam[:, -1] == pytest.approx(whole.lam[:, -1], abs=1e-10)
 
 
 def flow(z: Array) -> tuple[Array, list[float]]:
