@@ -158,6 +158,7 @@ def defect(problem: TwoPoint, curve: Curve) -> float:
     return float(system.infeasibility(system.residual(curve)).sum())
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:
     """A solver that starts at the wrong corner at first, and then from whatever it is given."""
     numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
@@ -252,6 +253,7 @@ def dearest(start: float, weight: float, bounds: tuple[float, float], tf: float)
     return {u: u * u * tf / 2 + weight * (start + u * tf) ** 2 / 2 for u in bounds}
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("seed", range(6))
 def test_what_exists_only_within_bounds_is_found(seed: int, tmp_path: Path) -> None:
     rng = np.random.default_rng(seed)
@@ -263,6 +265,7 @@ def test_what_exists_only_within_bounds_is_found(seed: int, tmp_path: Path) -> N
     assert Kind.SATURATION in compared(found)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_guess_is_honoured_and_what_is_cheaper_is_said(tmp_path: Path) -> None:
     numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
     costs = dearest(*numbers)

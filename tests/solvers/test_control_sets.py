@@ -181,6 +181,7 @@ def of_the_bend() -> float:
     return min(float(path(k)[2]) for k in slopes)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_sets_are_minimised_over_side_by_side(tmp_path: Path):
     left = brentq(lambda s: s * math.tanh(s) - 1.0, 0.5, 2.0, xtol=1e-15)
     saturated = 2.0 - left

@@ -65,6 +65,7 @@ def test_the_jump_is_where_quadrature_has_it(tmp_path: Path) -> None:
     assert (before, after) == pytest.approx((-1.0, 1.0), abs=1e-8)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_what_begins_with_a_jump_is_followed_to_its_end(bent: Solution) -> None:
     """Begun at the node just before its jump, a solution goes on as it did."""
     node = int(np.searchsorted(bent.times, bent.events[0].t)) - 1

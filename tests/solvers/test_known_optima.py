@@ -41,6 +41,7 @@ def along(
     return np.asarray(end)
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("name", ["hypersensitive", "hypersensitive-10000"])
 def test_in_a_long_time_the_state_rests_in_between(name: str):
     """H vanishes in endless time: lambda = -x^3 +- x sqrt(1 + x^4), and its integrals from 1 to 0 and from 0 to 1.5."""
@@ -66,7 +67,7 @@ def test_rayleighs_oscillator_is_damped_as_by_shooting():
     found("rayleigh", ends(shot.x)[4])
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_van_der_pols_oscillator_is_damped_as_by_multiple_shooting():
     """u = 1 on an arc whose ends are unknown, -lambda_1 / 2 elsewhere."""
 

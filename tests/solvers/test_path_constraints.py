@@ -375,7 +375,7 @@ def test_the_second_variation_of_an_effort_is_that_of_the_control(wall: float):
     assert curvature(found, again) == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(in_turn=True)
 def test_along_a_continuation_the_structure_changes():
     case = satsym.Instance.of("bryson_denham", parameters={"l": 0.3}, **THERE_AND_BACK)
     case = case.with_(continuation={"l": [0.3, 0.05]})

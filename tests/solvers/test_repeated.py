@@ -66,6 +66,7 @@ def test_the_same_again_with_other_parameters(pair: Pair):
     matches(pair.plain.solve(parameters=case.parameters), pair.solve(case))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_an_answer_can_be_had_in_full(pair: Pair):
     answer = pair.bounded.solve(initial=(1.101, 0.0, 0.0, 0.901))
     found = pair.bounded.solution(answer)

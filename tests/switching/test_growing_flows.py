@@ -146,6 +146,7 @@ def test_fishing_is_singular_up_to_the_end(tmp_path: Path, start: float) -> None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
 
 
+@pytest.mark.slow(in_turn=True)
 def test_what_one_flow_does_not_find_is_found_where_it_begins_anew(tmp_path: Path) -> None:
     """A guess that is off by a percent; where arcs begin anew no time is listed twice, as those of switches are."""
     instance = read(tmp_path)

@@ -107,6 +107,7 @@ def test_a_limit_may_rise_while_it_is_kept():
     assert found.certificate.verdict == "certified"
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("start", [0.7, -0.3])
 def test_a_motion_may_end_and_begin_on_a_boundary(start: float):
     given = ACROSS | {"initial": {"x": 0.0, "v": start}, "final": {"x": 3.0, "v": 0.7}, "parameters": {"v_top": 0.7}}

@@ -80,6 +80,7 @@ def test_the_transfer_of_minimum_fuel_agrees_with_shooting_in_cartesian_coordina
     assert found.switching_times == (pytest.approx(expected.x[5:], abs=1e-10),) * 2
 
 
+@pytest.mark.slow(in_turn=True)
 def test_the_transfer_of_minimum_fuel_is_a_strict_minimum():
     found = shipped("transfer-fuel")
     assert found.certificate is not None
@@ -145,6 +146,7 @@ def simulated(
     return y, times
 
 
+@pytest.mark.slow(in_turn=True)
 def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_follows_the_singular_surface():
     """Half the initial weight of drag, then the surface, 0.6 of the mass, and the top: nothing has to be iterated."""
     legs = (

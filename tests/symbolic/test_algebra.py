@@ -62,6 +62,7 @@ def test_the_routh_array_and_the_spectrum_both_count_what_was_constructed(kind: 
         assert sum(e.algebraic for e in values if e.value.real == 0.0) == on_axis, seed
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("kind", KINDS)
 def test_verdict_spectrum_and_routh_array_of_a_matrix_never_contradict_each_other(kind: str):
     """Also in coordinates in which nothing is zero any more."""

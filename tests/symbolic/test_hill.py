@@ -40,6 +40,7 @@ def test_equations_are_those_of_the_textbook(hill: Derivation) -> None:
     assert all(sp.expand(a - b) == 0 for a, b in zip(hill.rhs("first_order")[3:], expected, strict=True))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_reference_is_a_motion_exactly_for_keplers_third_law(hill: Derivation) -> None:
     assert hill.equation("reference_condition.mu").rhs == sigma**3 * omega**2
 
