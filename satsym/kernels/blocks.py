@@ -15,7 +15,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.kernels.batch import compiling
 from satsym.kernels.batch.inlined import inlined
-from satsym.kernels.batch.tape import Tape, bound
+from satsym.kernels.batch.tape import Bound, Tape, aligned, bound
 from satsym.kernels.batch.workspace import (
     Workspace,
     element,
@@ -121,18 +121,32 @@ class OnTape:
             inner = tape.apply(np.multiply, doubled, tape.apply(np.add, b, c))
             total = tape.apply(np.add, tape.apply(np.add, a, d), inner)
             self._results.append((tape.apply(np.multiply, sixth, total), f"x_{i}"))
+        self._kept: dict[int, tuple[dict[str, Array], Bound]] = {}
 
     def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
         """So many steps of size h from t, in place."""
-        times = {name: np.empty(()) for name in ("now", "middle", "end")}
-        given = {f"{name}_{k}": row for name, rows in (("x", y), ("u", u), ("p", p)) for k, row in enumerate(rows)}
-        given |= times | {"half": np.array(0.5 * h), "h": np.array(h), "sixth": np.array(h / 6.0)}
-        made = bound(self._tape, given, self._results, y.shape[1])
+        columns = y.shape[1]
+        # taken away while it is in use: another thread makes its own
+        kept = self._kept.pop(columns, None)
+        given, made = self.arranged(columns, len(y), len(u), len(p)) if kept is None else kept
+        rows = {f"{name}_{k}": row for name, table in (("x", y), ("u", u), ("p", p)) for k, row in enumerate(table)}
+        for name, value in {**rows, "half": 0.5 * h, "h": h, "sixth": h / 6.0}.items():
+            given[name][...] = value
         made.begin()
         for i in range(steps):
             now = t + i * h
-            times["now"][()], times["middle"][()], times["end"][()] = now, now + 0.5 * h, now + h
+            given["now"][()], given["middle"][()], given["end"][()] = now, now + 0.5 * h, now + h
             made.run()
+        for k, row in enumerate(y):
+            row[:] = given[f"x_{k}"]
+        self._kept = {columns: (given, made)}
+
+    def arranged(self, columns: int, n: int, m: int, parameters: int) -> tuple[dict[str, Array], Bound]:
+        """Arrays by name, aligned, which are not made anew for the next motions, and the tape with them."""
+        counts = (("x", n), ("u", m), ("p", parameters))
+        given = {f"{name}_{k}": aligned(columns) for name, count in counts for k in range(count)}
+        given |= {name: np.empty(()) for name in ("now", "middle", "end", "half", "h", "sixth")}
+        return given, bound(self._tape, given, self._results, columns)
 
 
 def _named(name: str) -> Callable[[int], str]:

@@ -20,6 +20,7 @@ from typing import Any
 
 import growth
 import numpy as np
+import numpy_calls
 import regulators
 import rows
 import single
@@ -309,7 +310,7 @@ def main() -> None:
     subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
     subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
     subjects |= {"8": lambda: [growth.growth()], "9": lambda: [two_processes()]}
-    subjects |= {"10": lambda: single.single(population(single.COUNT))}
+    subjects |= {"10": lambda: single.single(population(single.COUNT)), "12": lambda: [numpy_calls.numpy_calls()]}
     for subject in [subjects[number] for number in asked_for(subjects)]:
         try:
             made = subject()

@@ -158,12 +158,12 @@ def bound(tape: Tape, given: Mapping[str, Array], results: Sequence[tuple[int, s
         operands = tuple(places[k] for k in made.operands)
         if value not in tape.changing:
             shape = np.broadcast_shapes(*(one.shape for one in operands))
-            places[value] = _aligned(columns) if shape else np.empty(())
+            places[value] = aligned(columns) if shape else np.empty(())
             first.append((made.function, (*operands, places[value])))
             continue
         ending = {k for k in made.operands if last[k] == value and isinstance(tape.made[k], Operation)}
         free += [places[k] for k in sorted(ending) if k in tape.changing]
-        places[value] = free.pop() if free else _aligned(columns)
+        places[value] = free.pop() if free else aligned(columns)
         each.append((made.function, (*operands, places[value])))
     each += [(np.add, (given[name], places[value], given[name])) for value, name in results]
     return Bound(first, each)
@@ -187,7 +187,7 @@ def _last_uses(tape: Tape, results: Sequence[tuple[int, str]]) -> tuple[dict[int
     return last | {value: len(tape.made) for value, _ in results}, needed
 
 
-def _aligned(columns: int) -> Array:
+def aligned(columns: int) -> Array:
     """A buffer."""
     size = 8 * columns
     raw = np.empty(size + ALIGNED, dtype=np.uint8)
