@@ -17,8 +17,8 @@ from satsym.choices import Command, TableFormat
 from satsym.report.look import SCREEN, Look
 from satsym.report.results import parquet, sets, studies
 from satsym.report.results.files import Content, check_writable, opened, to_json, write_text
-from satsym.report.results.set_list import ASKED, STUDY
-from satsym.report.results.studies import Merged
+from satsym.report.results.set_list import ASKED, LIST, STUDY
+from satsym.report.results.studies import TRAJECTORIES, Merged
 from satsym.report.results.study_table import path_of
 from satsym.status import BadInput
 from satsym.studies import parts
@@ -134,6 +134,12 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
     sets.keep_apart(folder, STUDY)
     before = asked(folder)
     if before is None:
+        known = sets.listed(folder)
+        for name in (study.table.file, TRAJECTORIES.format(0), LIST):
+            if (folder / name).exists() and name not in known:  # it would be lost
+                raise BadInput(
+                    f"{printable(str(folder))}: holds {name}, which is of no study; give another folder, or remove it"
+                )
         return
     if not resume:
         raise BadInput(f"{printable(str(folder))}: holds a study; add --resume to go on, or give another folder")

@@ -154,6 +154,22 @@ def test_a_study_and_another_result_leave_each_other_alone(tmp_path: Path, capsy
         simulate(NAME).save(studied)
 
 
+@pytest.mark.parametrize("name", ["table.csv", "result.json"])
+def test_a_file_of_somebody_else_is_not_written_over(name: str, tmp_path: Path) -> None:
+    (tmp_path / "main.py").write_text("mine", encoding="utf-8")
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    never = Here()
+    with pytest.raises(BadInput, match=f"holds {name}, which is of no study; give another folder, or remove it"):
+        reports.carry_out(asked(), tmp_path, lambda: never, 1, resume=True)
+    assert not never.given
+    assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == dict.fromkeys(
+        ("main.py", name), "mine"
+    )
+    (tmp_path / name).unlink()
+    reports.carry_out(asked(), tmp_path, Here, 1)
+    assert (tmp_path / "main.py").read_text(encoding="utf-8") == "mine"
+
+
 def test_a_damaged_line_is_computed_again(tmp_path: Path) -> None:
     interrupted(tmp_path, asked(), 5)
     lines = (tmp_path / parts.LINES).read_bytes().splitlines(keepends=True)

@@ -256,6 +256,14 @@ def _listed_before(folder: Path) -> dict[str, Listed]:
         return {}
 
 
+def listed(folder: Path) -> set[str]:
+    """Names of the files of the set in a folder, its list among them; none where there is no such list."""
+    for place in (folder / NEXT / LIST, folder / LIST):
+        with suppress(BadInput):
+            return {*decoded(place)[2], LIST}
+    return set()
+
+
 PATIENCE, PAUSE = 30.0, 0.01
 """Seconds to wait for another process, and between two looks."""
 

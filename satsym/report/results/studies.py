@@ -78,6 +78,10 @@ class Merged:
                 yield part.start + place, own, row
 
 
+TRAJECTORIES = "trajectories-{:03d}.npz"
+"""The files of trajectories."""
+
+
 def files(merged: Merged) -> dict[str, Content]:
     """Everything but result.json."""
     study = merged.study
@@ -100,7 +104,7 @@ def trajectories(merged: Merged) -> dict[str, Content]:
             groups.append([])
             last = size
         groups[-1].append(number)
-    return {f"trajectories-{k:03d}.npz": _trajectories(merged, group) for k, group in enumerate(groups)}
+    return {TRAJECTORIES.format(k): _trajectories(merged, group) for k, group in enumerate(groups)}
 
 
 def _trajectories(merged: Merged, group: Sequence[int]) -> Content:
