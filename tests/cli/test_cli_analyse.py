@@ -15,6 +15,7 @@ from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
+from satsym.analysis.regulator.responses import responses as linear_and_exact
 from satsym.cli import main
 from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane
@@ -215,6 +216,7 @@ def test_files_and_pictures_go_where_they_are_asked_for(run: Run, tmp_path: Path
     assert code == 0
     assert sorted(path.name for path in (tmp_path / "there").iterdir()) == [
         "basin.png",
+        "differences.png",
         "eigenvalues.png",
         "responses.png",
         "result.json",
@@ -234,7 +236,7 @@ def test_the_nine_figures_of_the_thesis_are_on_the_page() -> None:
     """Each state without control and with the gain, the exact motion beside the linear one, the input and the cost."""
     case = instance.load("uny-lqr")
     with style.applied():
-        page = responses.page(designed(case), case)
+        page = responses.page(design := designed(case), responses.Responded.of(design, case))
         labels = [axes.get_ylabel() for axes in page.axes]
         assert labels == [*(f"$x_{i}$ [{u}]" for i, u in enumerate(["km", "km/s"] * 2, start=1))] * 2 + [
             "$u_2$ [km/s²]",
@@ -244,6 +246,22 @@ def test_the_nine_figures_of_the_thesis_are_on_the_page() -> None:
         left, right = page.axes[2].get_lines()[1].get_ydata(), page.axes[6].get_lines()[1].get_ydata()
         assert np.abs(left[-1]) > 100.0
         assert np.abs(right[-1]) < 1e-9
+
+
+def test_where_linear_and_exact_response_are_one_curve_their_difference_is_drawn() -> None:
+    """In the unit that its label says; an exact motion that is seen beside the linear one needs no such page."""
+    design = designed(instance.load("geo-lqr"))
+    found = linear_and_exact(design, design.instance)
+    with style.applied():
+        drawn = responses.differences(design, responses.Responded.of(design, design.instance))
+        assert drawn is not None
+        by_label = {axes.get_ylabel(): axes.get_lines()[1].get_ydata() for axes in drawn.axes}
+        far = designed(instance.load("uny-lqr"))
+        assert responses.differences(far, responses.Responded.of(far, far.instance)) is None
+    assert len(drawn.axes) == 4 + 4 + 2 + 1
+    apart = found.exact_steered.x[2] - found.steered.x[2]
+    assert np.allclose(by_label[r"$\delta\,$$\Delta \theta$ [nrad]"], apart * 1e9)
+    assert 0.0 < np.abs(apart).max() < 1e-3 * np.abs(found.steered.x[2]).max()
 
 
 def test_eigenvalues_are_drawn_where_they_are() -> None:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from satsym.analysis.regulator.responses import responses
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves, legend, style
+from satsym.report.plots.reading import ROUNDING, SMALL
 from satsym.report.results.unit_names import COST, of_regulator
 from satsym.report.said import say
 from satsym.spec import Variable
@@ -27,47 +31,96 @@ BEYOND = 1.5
 """How far beyond the linear response a nonlinear one is shown, relative to its width."""
 
 
-def page(design: Design, case: Instance) -> Figure:
-    """Each state without control and with the gain, side by side; below them the inputs, and what they cost."""
-    from satsym.analysis.regulator.responses import responses
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A quantity by the linear system, and by the exact motion where that is another."""
 
-    found, spec = responses(design, case), design.about.model.spec
-    units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
-    factor, unit = display.time_scale(units, float(np.ptp(found.times)))
-    times, inputs = found.times / factor, [v for v in spec.controls if v.symbol in design.regulator.system.inputs]
-    inputs.sort(key=lambda v: design.regulator.system.inputs.index(v.symbol))
-    n, m = len(spec.states), len(inputs)
+    what: Variable
+    linear: Array
+    exact: Array | None
+    colour: str
+    title: str
+    """Under which law it is."""
+    prefix: str = ""
+    """Of its symbol."""
+
+    @property
+    def apart(self) -> Array | None:
+        """What the exact motion has more, where one curve hides the other; nothing where both are seen or the same."""
+        if self.exact is None:
+            return None
+        found, width = curves.clean(self.exact - self.linear), float(np.ptp(self.linear))
+        most = float(np.abs(found).max()) if np.isfinite(found).all() else np.inf
+        return found if ROUNDING * width < most < SMALL * width else None
+
+
+@dataclass(frozen=True, eq=False)
+class Responded:
+    """What a disturbance does to each quantity, and times in a readable unit."""
+
+    times: Array
+    unit: str
+    free: tuple[Curve, ...]
+    steered: tuple[Curve, ...]
+    inputs: tuple[Curve, ...]
+    cost: Curve
+
+    @classmethod
+    def of(cls, design: Design, case: Instance) -> Responded:
+        """The states without control and with the gain, the inputs, and what they cost."""
+        found, spec, names = responses(design, case), design.about.model.spec, design.regulator.system.inputs
+        units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
+        factor, unit = display.time_scale(units, float(np.ptp(found.times)))
+        delta, steered = _delta(design), say("with <law>", law="$u = -K\\,x$")
+        by_name = {v.symbol: v for v in spec.controls}
+        measure = of_regulator(spec, names, design.relative)
+        exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
+
+        def curves_of(what: Sequence[Variable], linear: Array, exact: Array | None, *look: str) -> tuple[Curve, ...]:
+            rows = [None] * len(what) if exact is None else list(exact)
+            return tuple(Curve(v, a, b, *look) for v, a, b in zip(what, linear, rows, strict=True))
+
+        free, exact = found.exact_free, found.exact_steered
+        return cls(
+            found.times / factor,
+            unit,
+            curves_of(spec.states, found.free.x, free.x if free else None, style.BLUE, say("uncontrolled"), delta),
+            curves_of(spec.states, found.steered.x, exact.x if exact else None, style.GREEN, steered, delta),
+            curves_of([by_name[n] for n in names], found.steered.u, exact.u if exact else None, style.CONTROL, steered),
+            Curve(
+                Variable("J", "J", "1" if measure == COST else measure, "accumulated cost"),
+                found.steered.cost(design.regulator, found.times),
+                exact_cost,
+                style.PURPLE,
+                say("accumulated cost, with <law>", law="$u = -K\\,x$"),
+            ),
+        )
+
+
+def page(design: Design, seen: Responded) -> Figure:
+    """Each state without control and with the gain, side by side; below them the inputs, and what they cost."""
+    n, m = len(seen.free), len(seen.inputs)
     wide = style.across(2) == 2
     figure = style.titled(design.title, style.WIDTH, 1.4 + 1.6 * (n + m) * (1 if wide else 2))
     grid = figure.add_gridspec(n + m, 2) if wide else figure.add_gridspec(2 * (n + m), 1)
-    delta = _delta(design)
-    columns = [
-        (say("uncontrolled"), style.BLUE, found.free.x, found.exact_free),
-        (say("with <law>", law="$u = -K\\,x$"), style.GREEN, found.steered.x, found.exact_steered),
-    ]
-    for j, (title, colour, linear, exact) in enumerate(columns):
-        for i, state in enumerate(spec.states):
+    for j, column in enumerate((seen.free, seen.steered)):
+        for i, curve in enumerate(column):
             axes = figure.add_subplot(grid[i, j] if wide else grid[(n + m) * j + i, 0])
-            _curve(axes, times, state, linear[i], None if exact is None else exact.x[i], colour, delta)
+            _draw(axes, seen.times, curve)
             axes.tick_params(labelbottom=False)
             if i == 0:
-                axes.set_title(title)
-    for i, control in enumerate(inputs):
+                axes.set_title(curve.title)
+    for i, curve in enumerate(seen.inputs):
         axes = figure.add_subplot(grid[n + i, 1] if wide else grid[2 * n + m + i, 0])
-        exact_u = None if found.exact_steered is None else found.exact_steered.u[i]
-        _curve(axes, times, control, found.steered.u[i], exact_u, style.CONTROL)
+        _draw(axes, seen.times, curve)
         axes.tick_params(labelbottom=i == m - 1)
-    axes.set_xlabel(display.labelled("$t$", unit))
+    axes.set_xlabel(display.labelled("$t$", seen.unit))
     axes = figure.add_subplot(grid[n:, 0] if wide else grid[n : n + m, 0])
-    measure = of_regulator(spec, design.regulator.system.inputs, design.relative)
-    cost = Variable("J", "J", "1" if measure == COST else measure, "accumulated cost")
-    exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
-    linear_cost = found.steered.cost(design.regulator, found.times)
-    _curve(axes, times, cost, linear_cost, exact_cost, style.PURPLE)
-    axes.set_title(say("accumulated cost, with <law>", law="$u = -K\\,x$"))
-    axes.set_xlabel(display.labelled("$t$", unit))
+    _draw(axes, seen.times, seen.cost)
+    axes.set_title(seen.cost.title)
+    axes.set_xlabel(display.labelled("$t$", seen.unit))
     figure.align_ylabels()
-    if found.exact_free is not None:
+    if seen.cost.exact is not None:
         entries = [
             (legend.line(color=style.SOFT, **LINEAR), say("linear")),
             (legend.line(**NONLINEAR), say("nonlinear")),
@@ -76,28 +129,47 @@ def page(design: Design, case: Instance) -> Figure:
     return figure
 
 
-def _curve(
-    axes: Axes, times: Array, what: Variable, linear: Array, exact: Array | None, colour: str, prefix: str = ""
-) -> None:
-    """A quantity by the linear system, and by the exact motion as far as it is near that."""
+def differences(design: Design, seen: Responded) -> Figure | None:
+    """What the exact motion has more than the linear one, where their curves are one; nothing where none are."""
+    sides = [[*seen.free, seen.cost], [*seen.steered, *seen.inputs]]
+    hidden = [[(one, apart) for one in side if (apart := one.apart) is not None] for side in sides]
+    columns = [side for side in hidden if side] if style.across(2) == 2 else [[*hidden[0], *hidden[1]]]
+    rows = max(map(len, columns), default=0)
+    if not rows:
+        return None
+    figure = style.titled(design.title, style.WIDTH, 1.2 + 1.9 * rows)
+    grid = figure.add_gridspec(rows, len(columns))
+    for j, column in enumerate(columns):
+        for i, (one, apart) in enumerate(column):
+            axes = figure.add_subplot(grid[i, j])
+            _draw(axes, seen.times, replace(one, linear=apart, exact=None), apart=True)
+            axes.set_title(f"{say('nonlinear minus linear')}: {one.title}")
+            axes.tick_params(labelbottom=i == len(column) - 1)
+        axes.set_xlabel(display.labelled("$t$", seen.unit))
+    figure.align_ylabels()
+    return figure
+
+
+def _draw(axes: Axes, times: Array, curve: Curve, apart: bool = False) -> None:
+    """A quantity by the linear system, and by the exact motion as far as it is near that; or one minus the other."""
+    what, linear = curve.what, curve.linear
     low, high = min(float(linear.min()), 0.0), max(float(linear.max()), 0.0)
     width = high - low or 1.0
-    if exact is not None:
-        near = curves.clean(exact)
-        if np.isfinite(near).any():
-            low = max(min(low, float(np.nanmin(near))), low - BEYOND * width)
-            high = min(max(high, float(np.nanmax(near))), high + BEYOND * width)
+    exact = None if curve.exact is None else curves.clean(curve.exact)
+    if exact is not None and np.isfinite(exact).any():
+        low = max(min(low, float(np.nanmin(exact))), low - BEYOND * width)
+        high = min(max(high, float(np.nanmax(exact))), high + BEYOND * width)
     measure = display.engineering(what.unit, max(abs(low), abs(high)))
     scale = measure.divisor
     margin = 0.06 * (high - low or 1.0)
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim((low - margin) / scale, (high + margin) / scale)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.plot(times, linear / scale, color=colour, **LINEAR)
+    axes.plot(times, linear / scale, color=curve.colour, **LINEAR)
     if exact is not None:
-        axes.plot(times, curves.clean(exact) / scale, **NONLINEAR)
-    symbol = display.formula(prefix + what.latex, what.symbol)
-    axes.set_ylabel(display.labelled(symbol, measure.unit))
+        axes.plot(times, exact / scale, **NONLINEAR)
+    symbol = display.formula(curve.prefix + what.latex, what.symbol)
+    axes.set_ylabel(display.labelled(rf"$\delta\,${symbol}" if apart else symbol, measure.unit))
     axes.locator_params(axis="y", nbins=4)
 
 

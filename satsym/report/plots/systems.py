@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -63,14 +64,19 @@ def of_attitudes(found: Attitudes, title: str, unit: str = "", look: Look = SCRE
 
 
 def of_design(design: Design, look: Look = SCREEN) -> Pictures:
-    """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``."""
+    """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``.
+
+    Where the linear and the exact response are one curve, ``differences`` shows by how much they are not.
+    """
     from satsym.report.plots import responses
     from satsym.report.plots.orbits import plane
 
     pictures: dict[str, Callable[[], Figure | None]] = {"eigenvalues": lambda: plane.of_design(design)}
     if design.instance is not None and design.instance.tf is not None:
         case = design.instance
-        pictures["responses"] = lambda: responses.page(design, case)
+        seen = cache(lambda: responses.Responded.of(design, case))
+        pictures["responses"] = lambda: responses.page(design, seen())
+        pictures["differences"] = lambda: responses.differences(design, seen())
         pictures["basin"] = lambda: responses.reach(design, case)
     return _drawn(pictures, look)
 
