@@ -82,7 +82,7 @@ def find(name_or_path: str, folder: Path | None = None) -> Path:
         path = Path(name_or_path)
         if path.is_file():
             return path
-        raise BadInput(f"{name_or_path}: no such derivation file")
+        raise BadInput(f"{name_or_path}: no such derivation file; give the path of a .py file")
     candidates = [folder / f"{name_or_path}{SUFFIX}"] if folder else []
     candidates += [p for p in shipped() if p.stem == name_or_path]
     for candidate in candidates:

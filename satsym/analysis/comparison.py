@@ -190,9 +190,9 @@ def _driving(instance: Instance, case: Case) -> Case:
     assert instance.driven is not None
     name, spec = instance.driven.control, case.instance.model.spec
     if not case.answered:
-        raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no answer: {case.message}")
+        raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no answer: {case.message}")
     if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
-        raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no {name}; name instances that do")
+        raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no {name}; name instances that do")
     return case
 
 
@@ -220,9 +220,9 @@ def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[flo
     """
     options = instance.classical
     if options is None or options.damping is None:
-        raise BadInput(f"{instance.name}: [classical] damping: missing; a range of it needs one to begin with")
+        raise BadInput(f"{instance.called}: [classical] damping: missing; a range of it needs one to begin with")
     if not all(d > 0.0 and math.isfinite(d) for d in dampings):
-        raise BadInput(f"{instance.name}: a range of dampings must be positive")
+        raise BadInput(f"{instance.called}: a range of dampings must be positive")
     spec, shape = instance.model.spec, (len(dampings), len(commands))
     control, impulse = np.empty(shape), np.empty(shape)
     peaks = {name: np.empty(shape) for name in spec.state_names}

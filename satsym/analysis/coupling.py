@@ -51,7 +51,7 @@ def nodes_of(instance: Instance) -> Array:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.name}: time.tf: a driven motion needs a number, not a free final time")
+        raise BadInput(f"{instance.called}: time.tf: a driven motion needs a final time; write a number")
     return Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
 
 

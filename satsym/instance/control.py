@@ -129,7 +129,7 @@ def _control_set(spec: ProblemSpec) -> str:
     if spec.control_parts:
         return "the model takes " + "; ".join(map(_taken, spec.control_parts))
     return {
-        "box": "the model bounds its controls one by one; write u = [lower, upper] for each",
+        "box": f"the model bounds its controls one by one; write {spec.control_names[0]} = [lower, upper], and so on",
         "ball": f"the model bounds the norm of its controls; write {MAX_NORM} = a number",
         "free": "the model's controls are free; remove this bound",
         None: "the model has no cost, hence no control set; remove this bound",

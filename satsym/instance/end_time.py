@@ -49,7 +49,7 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
         root = _root(instance, name)
         if root is None or (found is not None and abs(root - found) > SAME * max(abs(root), abs(found))):
             when = "after the start" if found is None else f"{found:.6g} that is given"
-            raise BadInput(f"{instance.name}: terminal inequality {name}: it is met at no final time {when}")
+            raise BadInput(f"{instance.called}: terminal inequality {name}: it is met at no final time {when}")
         found = root
     return found
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from satsym import sources
 from satsym.status import BadInput
 from satsym.wording import printable, shown, some, suggestion
 
@@ -45,10 +46,19 @@ def locate(name_or_path: str) -> Path:
         return own
     if path.suffix == ".toml" or len(path.parts) > 1 or _exists(path):
         return path
-    instead = suggestion(name_or_path, shipped())
     raise BadInput(
-        f"no instance of this name; {instead} (`satsym instances` lists all; or give the path of a TOML file)"
+        f"no instance of this name; {_instead(name_or_path)} (`satsym instances` lists all; or give the path of a TOML "
+        "file)"
     )
+
+
+def _instead(name: str) -> str:
+    """What to write for a name that is none: a file here, instances of a model that is called so, or what is near."""
+    if _exists(Path(f"{name}.toml")):
+        return f'did you mean "{printable(name)}.toml"?'
+    if sources.is_model(name) and (own := [one for one in shipped() if read(SHIPPED / f"{one}.toml")["model"] == name]):
+        return f"instances of this model: {some(own)}"
+    return suggestion(name, shipped())
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -83,7 +93,7 @@ def _parse(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise BadInput(f"not valid TOML: {printable(str(error), 150)}; correct it there") from None
+        raise BadInput(f"not valid TOML: {printable(str(error), 150)}; {_repair(str(error))}") from None
     except RecursionError:
         raise BadInput("brackets are nested too deeply; a matrix needs two levels") from None
     except ValueError:
@@ -92,6 +102,13 @@ def _parse(text: str) -> dict[str, Any]:
         if shorter == text:
             raise BadInput("a number is out of range; write numbers with fewer digits") from None
     return _parse(shorter)
+
+
+def _repair(error: str) -> str:
+    """What is wrong most often where a reader of TOML says so."""
+    if error.startswith("Invalid value"):
+        return 'put text into quotes, such as "free"'
+    return "correct it there; numbers have a point" if "end of document after" in error else "correct it there"
 
 
 def _exists(path: Path) -> bool:

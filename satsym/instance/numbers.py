@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from satsym.instance.control import MAX_NORM
 from satsym.instance.resolve import parameters, quantity, time, value_of
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
-from satsym.wording import printable, shown, suggestion
+from satsym.wording import printable, shown, some, suggestion
 
 if TYPE_CHECKING:
     from satsym.instance.types import Instance
@@ -190,9 +191,9 @@ def find(text: str, instance: Instance) -> Key:
     """
     key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
-        raise BadInput(f"{key.text}: {printable(instance.name)} has a range for it, which is set in its file alone")
+        raise BadInput(f"{key.text}: {instance.called} has a range for it, which is set in its file alone")
     if not key.given(instance):
-        raise BadInput(f"{key.text}: {printable(instance.name)} gives no number for it; give it one there")
+        raise BadInput(f"{key.text}: {instance.called} gives no number for it; give it one there")
     return key
 
 
@@ -215,10 +216,21 @@ def named(text: str, instance: Instance, place: str, without: Table | None = Non
     for key in keys:
         if text in (key.text, key.short):
             return key
-    # bare names, which tables have too, are found by their ends
-    names, ending = [key.text for key in keys], [key.text for key in keys if key.name == text]
-    instead = f'did you mean "{ending[0]}"?' if ending else suggestion(text, names)
-    raise BadInput(f"{place}: {printable(instance.name)} has no such number; {instead}")
+    raise BadInput(f"{place}: {instance.called} has no such number; {_instead(text, keys)}")
+
+
+def _instead(text: str, keys: list[Key]) -> str:
+    """What to write for a name that is none: the one that ends so, a bound's two sides, or what its table has."""
+    if sides := [key.text for key in keys if key.table is Table.CONTROL and key.text.rpartition(".")[0] == text]:
+        return f"bounds are {' and '.join(sides)}"
+    if ending := [key.text for key in keys if key.name == text]:
+        return f'did you mean "{ending[0]}"?'
+    table, _, name = text.partition(".")
+    own = [key.name for key in keys if key.table.value == table]
+    if not own:
+        return suggestion(text, [key.text for key in keys])
+    near = get_close_matches(name, own, n=1)
+    return f'did you mean "{table}.{near[0]}"?' if near else f"known here: {some([f'{table}.{one}' for one in own])}"
 
 
 def changed(instance: Instance, values: Mapping[str, float]) -> Instance:

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Literal
 
 from satsym.instance.continuation import Varied
 from satsym.instance.ends import Side
+from satsym.instance.files import SHIPPED
 from satsym.instance.schema import SolverOptions
 from satsym.instance.unknowns import Unknown
 from satsym.status import BadInput
+from satsym.wording import printable
 
 if TYPE_CHECKING:
     from satsym.control_set import ControlSet
@@ -222,6 +224,12 @@ class Instance:
         found = {name: tuple(s for s in Side if math.isfinite(s.of(ends))) for name, ends in self.ranges.items()}
         return found | dict.fromkeys(stated(self.model).spec.terminal_inequalities, (Side.UPPER,))
 
+    @property
+    def called(self) -> str:
+        """What messages call it: the path of its file, or its name where it comes with satsym or was made in Python."""
+        own = self.path.parent != SHIPPED and self.path.is_file()
+        return printable(str(self.path), 200) if own else self.name
+
     def require_numbers(self) -> None:
         """Refuse, for what does not optimise, an instance that leaves something free.
 
@@ -231,7 +239,7 @@ class Instance:
             With the first of these.
         """
         if self.free:
-            raise BadInput(f'{self.name}: {self.free[0].key}: "free" is found by solving only; write a number')
+            raise BadInput(f'{self.called}: {self.free[0].key}: "free" is found by solving only; write a number')
 
     @property
     def boundary_type(self) -> int:

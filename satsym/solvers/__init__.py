@@ -48,12 +48,12 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
     """
     spec, name = instance.model.spec, instance.solver.method
     if not spec.has_cost:
-        raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
+        raise BadInput(f"{instance.called}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
-        raise BadInput(f"{instance.name}: {refusal}")
+        raise BadInput(f"{instance.called}: {refusal}")
     if spec.in_arcs and instance.free:
         key, beside = instance.free[0].key, "points on the way" if spec.interior else "path constraints"
-        raise BadInput(f'{instance.name}: {key}: "free" is not solved beside {beside}; write a number')
+        raise BadInput(f'{instance.called}: {key}: "free" is not solved beside {beside}; write a number')
     found = partial(_with_free, examined=examined)
     return _solved_in_steps(instance, progress, found) if instance.continuation else found(instance, progress)
 

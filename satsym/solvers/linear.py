@@ -179,5 +179,6 @@ def _violation(arcs: Arcs) -> float:
 
 def _refusal(instance: Instance, reason: str) -> BadInput:
     return BadInput(
-        f'{instance.name}: solver.method: {instance.model.spec.name} is not linear: {reason}; use method "collocation"'
+        f"{instance.called}: solver.method: {instance.model.spec.name} is not linear: {reason}; use method "
+        '"collocation"'
     )

@@ -113,9 +113,9 @@ def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
     spec = case.model.spec
     if command is Command.SOLVE:
         if not spec.has_cost:
-            raise BadInput(f"{case.name}: model {spec.name} has no cost, so there is nothing to solve")
+            raise BadInput(f"{case.called}: model {spec.name} has no cost, so there is nothing to solve")
         if refusal := methods.refusal(case.solver.method, case):
-            raise BadInput(f"{case.name}: {refusal}")
+            raise BadInput(f"{case.called}: {refusal}")
         return
     case.require_numbers()
     from satsym.analysis.regulator.feedback import FEEDBACKS
@@ -123,4 +123,4 @@ def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
     if feedback is not None and feedback not in FEEDBACKS:
         raise BadInput(f"feedback: {shown(feedback)}: {suggestion(feedback, FEEDBACKS)}")
     if (command is Command.LQR or feedback == "lqr") and case.lqr is None:
-        raise BadInput(f"{case.name}: has no table [lqr]; add one with Q and R")
+        raise BadInput(f"{case.called}: has no table [lqr]; add one with Q and R")

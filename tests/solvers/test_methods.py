@@ -66,7 +66,7 @@ def test_adding_a_method_is_one_record(coasting: Method, tmp_path: Path) -> None
     found = solve(asked)
     assert (found.status, found.method, found.certificate) == (Status.CONVERGED, coasting.name, None)
     assert not found.u.any()
-    with pytest.raises(BadInput, match=r"case: time\.tf: coasting never ends"):
+    with pytest.raises(BadInput, match=r"case\.toml: time\.tf: coasting never ends"):
         solve(instance.load(str(case(tmp_path, "coasting", tf='"free"'))))
     with pytest.raises(BadInput, match=r'\[solver\] method: got "gliding"; write one of "auto", .*, "coasting"'):
         instance.load(str(case(tmp_path, "gliding")))

@@ -184,7 +184,7 @@ def within_already(plant: Plant) -> BadInput:
     """That there is nothing to simulate."""
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
-        f"{case.name}: [initial] {name} lies within the deadband of its target already; state another one, or a "
+        f"{case.called}: [initial] {name} lies within the deadband of its target already; state another one, or a "
         "final time to simulate to"
     )
 

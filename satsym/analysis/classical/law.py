@@ -99,7 +99,7 @@ def loop(instance: Instance) -> Loop:
     """
     options, spec, model = instance.classical, instance.model.spec, instance.model
     if options is None:
-        raise BadInput(f"{instance.name}: no [classical] table; state the law there, or choose another feedback")
+        raise BadInput(f"{instance.called}: no [classical] table; state the law there, or choose another feedback")
     rest, none = [0.0] * len(spec.states), [0.0]
     a = np.array(model.jacobian_x(instance.t0, rest, none, instance.parameters)).reshape(len(rest), -1)
     b = np.array(model.jacobian_u(instance.t0, rest, none, instance.parameters)).ravel()
@@ -107,7 +107,7 @@ def loop(instance: Instance) -> Loop:
     (rates,) = np.nonzero(a[place])
     if len(rates) != 1 or a[place, rates[0]] != 1.0 or not b[rates[0]] or b[place]:
         raise BadInput(
-            f"{instance.name}: [classical] follows: the control does not act on the rate of {options.follows}"
+            f"{instance.called}: [classical] follows: the control does not act on the rate of {options.follows}"
         )
     rate = int(rates[0])
     if options.gains is not None:
@@ -146,12 +146,12 @@ def simulate(instance: Instance) -> Simulation:
         If there is no such law, no final time, or one that is very long for so fast a loop.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
+        raise BadInput(f"{instance.called}: time.tf: a simulation needs a final time; write a number")
     found = loop(instance)
     if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
         raise BadInput(
-            f"{instance.name}: [classical]: the loop's shortest time constant, {1.0 / found.fastest:.3g}, is too short "
-            f"to be followed until {instance.tf:.6g}; give an earlier time.tf, or a slower law or differentiator"
+            f"{instance.called}: [classical]: the loop's shortest time constant, {1.0 / found.fastest:.3g}, is too "
+            f"short to be followed until {instance.tf:.6g}; give an earlier time.tf, or a slower law or differentiator"
         )
     limits, _ = watched(instance, None)
     try:

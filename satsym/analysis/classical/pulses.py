@@ -33,7 +33,7 @@ def simulate(instance: Instance) -> Simulation:
     found = plant(instance, "pulses")
     if found.target[1]:
         name = instance.model.spec.switching_curve[1]
-        raise BadInput(f"{instance.name}: [final] {name}: pairs of pulses end at rest; write 0, or choose another")
+        raise BadInput(f"{instance.called}: [final] {name}: pairs of pulses end at rest; write 0, or choose another")
     if instance.tf is None and abs(found.error(np.array(instance.initial))) <= found.deadband:
         raise within_already(found)
     arcs, pairs = _flown(found)

@@ -38,7 +38,7 @@ def survey(case: Instance) -> Survey:
         state = case.model.inertial_state(case.t0, case.initial, case.parameters)
         found = elements(state[:3], state[3:6], state[6])
     except ArithmeticError:
-        raise BadInput(f"{case.name}: [initial]: beyond the range of floats; check the units") from None
+        raise BadInput(f"{case.called}: [initial]: beyond the range of floats; check the units") from None
     except BadInput as error:
-        raise BadInput(f"{case.name}: [initial]: {error}") from None
+        raise BadInput(f"{case.called}: [initial]: {error}") from None
     return Survey(case, found, at_start(case, found), floquet(found))

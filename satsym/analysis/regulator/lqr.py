@@ -161,7 +161,7 @@ def required(case: Instance) -> LqrOptions:
         If it has none.
     """
     if case.lqr is None:
-        raise BadInput(f"{case.name}: [lqr]: missing; add a table with the weights Q and R")
+        raise BadInput(f"{case.called}: [lqr]: missing; add a table with the weights Q and R")
     return case.lqr
 
 

@@ -88,7 +88,7 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
         if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
-                f"{instance.name}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
+                f"{instance.called}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
                 f"control changes at once, so it is violated right {when}; change the velocity there"
             )
 
@@ -106,7 +106,7 @@ def _refuse_values(
     for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
         if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
-                f"{instance.name}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
+                f"{instance.called}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
                 "change that state, or the constraint's parameters"
             )
 

@@ -81,20 +81,20 @@ class Repeated:
     def __init__(self, instance: Instance, compiled: bool | None = None) -> None:
         if not instance.model.spec.has_cost:
             raise BadInput(
-                f"{instance.name}: model {instance.model.spec.name} has no cost, so there is nothing to solve"
+                f"{instance.called}: model {instance.model.spec.name} has no cost, so there is nothing to solve"
             )
         instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
-                f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
+                f"{instance.called}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
                 "and again; solve each instance by itself"
             )
         if instance.end_limits:
             name = next(iter(instance.end_limits))
-            raise BadInput(f"{instance.name}: whether {name} is active at the end is not looked for again and again")
+            raise BadInput(f"{instance.called}: whether {name} is active at the end is not looked for again and again")
         if instance.solver.free_angles:
             raise BadInput(
-                f"{instance.name}: [solver] free_angles: turns are not looked for again and again; remove it"
+                f"{instance.called}: [solver] free_angles: turns are not looked for again and again; remove it"
             )
         compiled = find_spec("numba") is not None if compiled is None else compiled
         self._means = _shooting() if compiled else ByCollocation()

@@ -73,7 +73,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
+        raise BadInput(f"{instance.called}: time.tf: a simulation needs a final time; write a number")
     limits, _ = watched(instance, None)
     try:
         return _simulated(instance, law, limits)

@@ -22,21 +22,22 @@ def refuse(instance: Instance) -> None:
     for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
         if not np.isfinite([low, high]).all():
             raise BadInput(
-                f"{instance.name}: [control] {name}: this control enters without a square, so it needs both bounds; "
+                f"{instance.called}: [control] {name}: this control enters without a square, so it needs both bounds; "
                 f"write {name} = [lower, upper]"
             )
     if instance.lower == instance.upper:
         raise BadInput(
-            f"{instance.name}: [control]: no control has any room between its bounds, so there is nothing to choose; "
+            f"{instance.called}: [control]: no control has any room between its bounds, so there is nothing to choose; "
             "widen one of them"
         )
     if instance.tf is not None and _free_of_charge(instance):
         raise BadInput(
-            f'{instance.name}: [time] tf: with a given final time no control costs more than another; write tf = "free"'
+            f"{instance.called}: [time] tf: with a given final time no control costs more than another; write tf = "
+            '"free"'
         )
     if instance.tf is None and instance.final and _there(instance):
         raise BadInput(
-            f"{instance.name}: [initial]: the motion starts where it is to end, so the best final time is none at "
+            f"{instance.called}: [initial]: the motion starts where it is to end, so the best final time is none at "
             "all; move the start, or give a final time"
         )
 
@@ -45,7 +46,7 @@ def refuse_angles(instance: Instance) -> None:
     """Refuse final angles modulo a turn."""
     if instance.solver.free_angles:
         raise BadInput(
-            f'{instance.name}: [solver] free_angles: method "bang-bang" does not compare turns; give the final angle '
+            f'{instance.called}: [solver] free_angles: method "bang-bang" does not compare turns; give the final angle '
             "that is meant, and remove it"
         )
 

@@ -115,7 +115,7 @@ def _first_form(trials: Trials, here: Trial) -> Array:
                 break
     for unknown in idle:
         reason = "no cost and no end depends on it; give it a number"
-        raise BadInput(f'{trials.instance.name}: {unknown.key}: "free", but {reason}')
+        raise BadInput(f'{trials.instance.called}: {unknown.key}: "free", but {reason}')
     return np.asarray((form + form.T) / 2.0)
 
 
