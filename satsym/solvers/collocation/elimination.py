@@ -1,8 +1,4 @@
-"""The two linear systems of a collocation step: the stages of each interval, and the nodes between the intervals.
-
-Small ones are left to NumPy: SciPy's LAPACK is quicker for several right-hand sides and for many intervals, but loading
-it takes longer than solving a usual problem.
-"""
+"""The two linear systems of a collocation step: the stages of each interval, and the nodes between the intervals."""
 
 from __future__ import annotations
 
@@ -10,15 +6,12 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.lapack import lapack
 
 AT_ONCE = 2
-"""Times that the stages, and the nodes, are solved for without keeping factors or an inverse."""
-
-FEW = 128
-"""Unknowns up to which the system of the nodes is left to NumPy."""
+"""Times that the stages are solved for without keeping factors."""
 
 
 class Blocks:
@@ -49,17 +42,15 @@ class Blocks:
             self._solved += 1
             solutions: Array = np.linalg.solve(self._matrices, right.swapaxes(1, 2)).swapaxes(1, 2)
             return solutions
-        from scipy.linalg.lapack import dgetrf, dgetrs
-
         if self._factors is None:
             # LAPACK reads columns, so it is handed the transposes, without a copy.
-            factored = [dgetrf(matrix.T, overwrite_a=True) for matrix in self._matrices]
+            factored = [lapack().dgetrf(matrix.T, overwrite_a=True) for matrix in self._matrices]
             if any(info for _, _, info in factored):
                 raise np.linalg.LinAlgError("singular")
             self._factors = [(factors, pivots) for factors, pivots, _ in factored]
         solutions = np.array(right)
         for (factors, pivots), columns in zip(self._factors, solutions, strict=True):
-            dgetrs(factors, pivots, columns.T, trans=1, overwrite_b=True)
+            lapack().dgetrs(factors, pivots, columns.T, trans=1, overwrite_b=True)
         return solutions
 
 
@@ -76,23 +67,12 @@ class Nodes:
     Raises
     ------
     numpy.linalg.LinAlgError
-        If it is singular, here or when it is first solved.
+        If it is singular.
     """
 
     def __init__(self, transition: Array, final: Array) -> None:
         count, n = transition.shape[:2]
         half = n // 2
-        self._whole: Array | None = None
-        self._inverse: Array | None = None
-        self._solved = 0
-        if n * (count + 1) <= FEW:
-            whole = _without_transitions(half, count).copy()
-            whole.reshape(-1)[_places(half, count)] = transition
-            whole[-half:, -n:] = final
-            self._whole = whole
-            return
-        from scipy.linalg.lapack import dgbtrf
-
         kl, ku, row, column, first, first_column, last, last_column = _band(half, count)
         band = np.zeros((2 * kl + ku + 1, n * (count + 1)))
         band[row, column] = transition
@@ -100,44 +80,13 @@ class Nodes:
         band[first, first_column] = np.eye(n)[:half]
         band[last, last_column] = final
         self._band = (kl, ku)
-        self._factors, self._pivots, info = dgbtrf(band, kl, ku)
+        self._factors, self._pivots, info = lapack().dgbtrf(band, kl, ku)
         if info:
             raise np.linalg.LinAlgError("singular")
 
     def solve(self, right: Array) -> Array:
-        """Nodes for right-hand sides, initial rows first, shape (2n (N+1), columns); in that shape.
-
-        Few unknowns are solved for at once the first times, and after that with the inverse.
-        """
-        if self._whole is not None:
-            if self._inverse is None and self._solved < AT_ONCE:
-                self._solved += 1
-                return np.asarray(np.linalg.solve(self._whole, right))
-            if self._inverse is None:
-                self._inverse = np.linalg.inv(self._whole)
-            return self._inverse @ right
-        from scipy.linalg.lapack import dgbtrs
-
-        return np.asarray(dgbtrs(self._factors, *self._band, right, self._pivots)[0])
-
-
-@lru_cache
-def _without_transitions(half: int, count: int) -> Array:
-    """The whole matrix, all transitions and final rows left out."""
-    n, size = 2 * half, 2 * half * (count + 1)
-    whole = np.zeros((size, size))
-    whole[:half, :half] = np.eye(half)
-    whole[half : size - half, n:] = -np.eye(size - n)
-    return whole
-
-
-@lru_cache
-def _places(half: int, count: int) -> NDArray[np.intp]:
-    """Where the transitions lie in it, as it is stored, shape (N, 2n, 2n)."""
-    n, size = 2 * half, 2 * half * (count + 1)
-    interval, row, column = np.ogrid[:count, :n, :n]
-    places: NDArray[np.intp] = (half + n * interval + row) * size + n * interval + column
-    return places
+        """Nodes for right-hand sides, initial rows first, shape (2n (N+1), columns); in that shape."""
+        return np.asarray(lapack().dgbtrs(self._factors, *self._band, right, self._pivots)[0])
 
 
 @lru_cache
