@@ -42,8 +42,8 @@ class Judged:
         A referee's sentences, in English and Indonesian; empty for what is confirmed.
     evidence
         Measured numbers, and the command that recomputes them.
-    why
-        Why it is not so, in a sentence for people, where the ledger has one.
+    why, why_id
+        Why it is not so, in a sentence for people, in English and Indonesian, where the ledger has one.
     form
         What rows with the same fault share: the edit that puts them right, or the form of the claim.
     by_formula
@@ -70,6 +70,7 @@ class Judged:
     role: str = ""
     original: str = ""
     why: str = ""
+    why_id: str = ""
     diagnosis_id: str = ""
     form: str = ""
     by_formula: bool = False

@@ -52,6 +52,7 @@ class _Context:
         said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = f'satsym audit {self._bench.ledger.name} --item "{row.key}"'
+        why = sentence(self._why(outcome) if verdict not in SILENT else "")
         numbers = "; ".join(f"{name} = {in_words(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
@@ -61,7 +62,8 @@ class _Context:
             diagnosis=str(said),
             diagnosis_id=said.indonesian,
             evidence=f"{numbers}; {command}" if numbers else command,
-            why=str(sentence(self._why(outcome))) if verdict not in SILENT else "",
+            why=str(why),
+            why_id=why.indonesian,
             by_formula=row.claims is None,
             form=_form(outcome),
             vacuous=outcome.vacuous,
@@ -71,7 +73,7 @@ class _Context:
     def _why(self, outcome: Outcome) -> str:
         """The sentence for people; that of a claim was made when it was judged."""
         row = outcome.row
-        return outcome.remark if row.claims is not None else Pages(self._bench, row).explained(row.why)
+        return outcome.remark if row.claims is not None else Pages(self._bench, row).explained()
 
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row

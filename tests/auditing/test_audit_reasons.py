@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from satsym.auditing import measurements
 from satsym.auditing.causes import findings
+from satsym.auditing.ledger import documents
+from satsym.auditing.ledger.load import read
 from satsym.auditing.measurements.earth import quantity
 from satsym.auditing.measurements.formulas import subs
 from satsym.auditing.propositions.evaluation import Evaluation
@@ -32,6 +35,38 @@ def test_a_formula_that_is_wrong_tells_why_beside_the_edit(tmp_path: Path) -> No
     told = Review(ledger(tmp_path, rows), list(found.values()), load("en")).fact(found["first"])
     assert "sign" in told
     assert told.endswith("Thrust adds -1/r.")
+
+
+def test_reports_in_indonesian_tell_why_in_indonesian_where_the_ledger_does(tmp_path: Path) -> None:
+    """With the same measured terms, of formulas and of claims; English is left where it is all there is."""
+    claim = {"kind": "claim", "original": "so", "from": []}
+    rows = [
+        row("first", WRONG, TANGENTIAL, why="thrust adds {2 + 3}", why_id="dorongan menambah {2 + 3}"),
+        {"item": "second", "printed": "2 == 3", "why": "it is {1 + 1}", "why_id": "nilainya {1 + 1}", **claim},
+        {"item": "third", "printed": "2 == 4", "why": "it is {1 + 1}", **claim},
+    ]
+    found = judged(tmp_path, rows)
+    told = {}
+    for language in ("en", "id"):
+        review = Review.of(ledger(tmp_path, rows), list(found.values()), load(language))
+        told[language] = [review.fact(one) for one in review.rows]
+    assert [text.endswith(end) for text, end in zip(told["en"], ("adds 5.", "is 2.", "is 2."), strict=True)] == [
+        True
+    ] * 3
+    assert told["id"][0].endswith("Dorongan menambah 5.")
+    assert "sign" not in told["id"][0]
+    assert told["id"][1:] == ["Nilainya 2.", "It is 2."]
+    assert found["second"].diagnosis.endswith("It is 2.")
+
+
+@pytest.mark.parametrize("path", documents.shipped(), ids=lambda path: path.name)
+def test_what_the_five_documents_are_answered_is_told_in_both_languages_with_the_same_terms(path: Path) -> None:
+    for one in read(path).rows:
+        texts = (one.table.why, one.table.why_id)
+        english, indonesian = (sorted(re.findall(r"{[^{}]*}", text)) for text in texts)
+        assert english == indonesian, one.key
+        assert bool(texts[0]) == bool(texts[1]), one.key
+        assert not texts[0] or texts[0] != texts[1], one.key
 
 
 def test_a_right_formula_tells_no_reason(tmp_path: Path) -> None:

@@ -211,7 +211,7 @@ def test_mathematics_is_read_as_it_is_written() -> None:
 def test_the_summary_says_what_falls_and_stands_and_why(
     document: Ledger, judged: dict[str, list[Judged]], language: str
 ) -> None:
-    review = Review(document, judged["small"], load(language))
+    review = Review.of(document, judged["small"], load(language))
     assert 3 <= len(review.summary) <= 6
     checked, falls, stands, *_ = review.summary
     assert "7" in checked
@@ -225,7 +225,7 @@ def test_a_conclusion_without_a_reason_of_its_own_falls_with_that_of_its_cause(
     document: Ledger, judged: dict[str, list[Judged]]
 ) -> None:
     rows = [replace(row, why="") for row in judged["small"]]
-    english, indonesian = (Review(document, rows, load(language)).summary[1] for language in ("en", "id"))
+    english, indonesian = (Review.of(document, rows, load(language)).summary[1] for language in ("en", "id"))
     assert english.endswith("(3): because of 2: The sign of `x` is reversed.")
     assert indonesian.endswith("(3): karena 2: Tanda `x` terbalik.")
 

@@ -12,6 +12,7 @@ from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import Proposition, matching, proposition
 from satsym.auditing.propositions.relations import Fit
+from satsym.auditing.sentences import Said
 from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
@@ -39,7 +40,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
         artefact=produced is not None and bool(produced.truth),
         near=found.miss is Fit.NEAR,
         unit=found.miss is Fit.UNIT,
-        remark="" if found.truth and sound and not found.vacuous else pages.explained(row.why),
+        remark="" if found.truth and sound and not found.vacuous else pages.explained(),
         evidence={**found.evidence, **deciding.evidence},
     )
 
@@ -63,8 +64,11 @@ class Pages:
                 raise
             return Answer(None, (str(error),))  # letters that stand there may make no sense
 
-    def explained(self, why: tuple[str | Proposition, ...]) -> str:
-        """A sentence with what its terms measure."""
+    def explained(self) -> Said:
+        """The sentence for people, with what its terms measure."""
+        return Said(*(self._filled(why) for why in (self._row.why, self._row.why_id)))
+
+    def _filled(self, why: tuple[str | Proposition, ...]) -> str:
         return "".join(part if isinstance(part, str) else self._evaluation.term(part) for part in why)
 
     @cached_property

@@ -39,6 +39,8 @@ class Row:
     """The reason given, and what tells that the printed algorithm produces it."""
     why: tuple[str | Proposition, ...] = ()
     """A sentence that explains why it is not so: texts, and terms to be measured between them."""
+    why_id: tuple[str | Proposition, ...] = ()
+    """The same in Indonesian, where the ledger has it."""
 
     @property
     def uses(self) -> list[str]:

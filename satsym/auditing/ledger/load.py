@@ -179,10 +179,7 @@ class _Reader:
             found["holds"] = rows.held_against(table, self._derived, self._own, self._inputs)
         with self._telling("row", "from", index, key):
             found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
-        with self._telling("row", "why", index, key):
-            if table.why:  # measurements load what a ledger without propositions need not wait for
-                found["why"] = explanation(table.why, measurements.words(scope.meanings), own=True)
-        return replace(row, **found)
+        return replace(row, **found, **self._explanations(index, row, scope, own=True))
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
         """A row that a proposition judges: its own, or what it is held against."""
@@ -201,12 +198,19 @@ class _Reader:
         ):
             with self._telling("row", key if key in REASONS else "holds" if own else "printed", index, row.key):
                 found[key] = proposition(str(text), words, own=own) if text else None
-        with self._telling("row", "why", index, row.key):
-            found["why"] = explanation(table.why, words, own=own)
         with self._telling("row", "from", index, row.key):
             if isinstance(table.follows, str) and table.follows:
                 raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')
-        return replace(row, **found)
+        return replace(row, **found, **self._explanations(index, row, scope, own=own))
+
+    def _explanations(self, index: int, row: Row, scope: Scope, *, own: bool) -> dict[str, Any]:
+        """The sentence for people in each language that it is written in."""
+        found: dict[str, Any] = {}
+        for key in ("why", "why_id"):
+            with self._telling("row", key, index, row.key):
+                if text := getattr(row.table, key):  # measurements load what ledgers without propositions never need
+                    found[key] = explanation(text, measurements.words(scope.meanings), own=own)
+        return found
 
     def _check_references(self, found: Sequence[Row]) -> None:
         by_key: dict[str, Row] = {}

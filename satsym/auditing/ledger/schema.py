@@ -56,7 +56,8 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
 
     Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
     it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
-    ``why`` is a sentence for people, with measured terms in braces, that explains why it is not confirmed.
+    ``why`` is a sentence for people, with measured terms in braces, that explains why it is not confirmed;
+    ``why_id`` is the same in Indonesian.
     """
 
     item: Text
@@ -72,6 +73,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     because: Text = ""
     produced: Text = ""
     why: Text = ""
+    why_id: Text = ""
     role: Role = "step"
     columns: Texts = ()
     inputs: Formulas = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -39,6 +39,15 @@ class Review:
     ledger: Ledger
     rows: Sequence[Judged]
     texts: Texts
+
+    @classmethod
+    def of(cls, ledger: Ledger, rows: Sequence[Judged], texts: Texts) -> Review:
+        """What was judged, in the language of a report as far as it is known in that."""
+        if texts.language == "id":
+            rows = [
+                replace(row, why=row.why_id or row.why, diagnosis=row.diagnosis_id or row.diagnosis) for row in rows
+            ]
+        return cls(ledger, rows, texts)
 
     @property
     def key(self) -> str:
@@ -111,10 +120,8 @@ class Review:
         """What is so instead: the sentence for people where there is one, else the diagnosis."""
         if row.why and not (row.by_formula and row.form):
             return row.why
-        if self.texts.language == "id" and row.diagnosis_id:
-            said = row.diagnosis_id.removeprefix(f"{say('denied').indonesian}: ")
-        else:
-            said = row.diagnosis.removeprefix(f"{say('denied')}: ")
+        denied = say("denied")
+        said = row.diagnosis.removeprefix(f"{denied}: ").removeprefix(f"{denied.indonesian}: ")
         return f"{said} {row.why}".rstrip()
 
     def brief(self, found: Finding) -> str:

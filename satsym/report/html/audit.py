@@ -40,7 +40,7 @@ def render(
         HTML that depends on nothing but the arguments.
     """
     texts = load(language)
-    reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     parts = [Section(review) for review in reviews]
     wanted = {address for part in parts for row in part.rows for address in derived.addresses(row)}
     equations = derived.typeset(wanted, announce)

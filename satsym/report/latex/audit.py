@@ -52,7 +52,7 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
         LaTeX that depends on nothing but the arguments.
     """
     texts = load(language)
-    reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     head = [
         rf"\begin{{center}}{{\LARGE {_breakable(title(reviews))}\par}}\vspace{{1ex}}",
         rf"{escape(texts.get('audit', 'made'))}\end{{center}}",

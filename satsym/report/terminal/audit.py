@@ -47,7 +47,7 @@ def audit_text(
         Of all but what the documents print and of what is measured.
     """
     texts = load(language)
-    reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     return "\n\n".join("\n".join(_document(review, rows)) for review in reviews)
 
 
