@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py b28fc210988413ee7c05e3bbfde2e565
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
 Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 6d95af5211654bedac1e7e3bb9942d01ca569e4185ab7e2c7dba6aa410b9072d
+Digest: 8e12928af457566adbb68411673c025aa2facd925364839a9cea9e95e1d01e91
 """
 
 import math
@@ -307,21 +307,19 @@ def boundary_control(t, x, lam, p, bounds):
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
-    slope_sq = slope*slope
-    w = slope_sq + 1.0
+    w = slope*slope + 1.0
     inv_w = 1.0/w
-    twice_omega = 2.0*omega
-    twice_omega_x4 = twice_omega*x4
-    omega_sq = omega*omega
-    w_2 = 3.0*omega_sq*x1
-    w_3 = lambda_x2*slope_sq + twice_omega_x4 + w_2
-    w_4 = slope*twice_omega_x4 + slope*w_2 - lambda_x2*slope
-    twice_omega_x2 = twice_omega*x2
+    lambda_x4_slope = lambda_x4*slope
+    w_2 = 2.0*slope*x2
+    w_3 = 3.0*omega*x1 + 2.0*x4
+    w_4 = inv_w*(omega*(w_3 - w_2) - lambda_x2 - lambda_x4_slope)
+    w_5 = -lambda_x2
+    w_6 = inv_w*(-lambda_x4_slope - omega*(w_2 + w_3) - w_5)
     return (
-        inv_w*(lambda_x4*slope + 2.0*omega*slope*x2 - w_3),
-        inv_w*(2.0*omega*slope_sq*x2 - lambda_x4 - w_4),
-        -inv_w*(lambda_x4*slope + slope*twice_omega_x2 + w_3),
-        inv_w*(slope_sq*twice_omega_x2 + w_4 - lambda_x4),
+        -lambda_x2 - w_4,
+        -lambda_x4 - slope*w_4,
+        w_5 + w_6,
+        -lambda_x4 - slope*w_6,
     )
 
 
@@ -970,20 +968,18 @@ def boundary_control_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    slope_sq = slope*slope
-    w = slope_sq + 1.0
+    w = slope*slope + 1.0
     inv_w = 1.0/w
-    twice_omega = 2.0*omega
-    twice_omega_x4 = twice_omega*x4
-    omega_sq = omega*omega
-    w_2 = 3.0*omega_sq*x1
-    w_3 = lambda_x2*slope_sq + twice_omega_x4 + w_2
-    w_4 = slope*twice_omega_x4 + slope*w_2 - lambda_x2*slope
-    twice_omega_x2 = twice_omega*x2
-    out[0, 0] = inv_w*(lambda_x4*slope + 2.0*omega*slope*x2 - w_3)
-    out[0, 1] = inv_w*(2.0*omega*slope_sq*x2 - lambda_x4 - w_4)
-    out[1, 0] = -inv_w*(lambda_x4*slope + slope*twice_omega_x2 + w_3)
-    out[1, 1] = inv_w*(slope_sq*twice_omega_x2 + w_4 - lambda_x4)
+    lambda_x4_slope = lambda_x4*slope
+    w_2 = 2.0*slope*x2
+    w_3 = 3.0*omega*x1 + 2.0*x4
+    w_4 = inv_w*(omega*(w_3 - w_2) - lambda_x2 - lambda_x4_slope)
+    w_5 = -lambda_x2
+    w_6 = inv_w*(-lambda_x4_slope - omega*(w_2 + w_3) - w_5)
+    out[0, 0] = -lambda_x2 - w_4
+    out[0, 1] = -lambda_x4 - slope*w_4
+    out[1, 0] = w_5 + w_6
+    out[1, 1] = -lambda_x4 - slope*w_6
     return out
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
 Source: ../derivations/examples/obstacle.py 3ec78a7c8707327607d302db3be43cea
-Digest: 03eddf4859f1128169c81f5d4fbbb238515a40a0b77ffbd3aa6a830aa18412ed
+Digest: 6654693c9781bf8246e3869afc0efa598a1580816f44938fc772c3e1b8a7c119
 """
 
 import math
@@ -306,30 +306,25 @@ def boundary_control(t, x, lam, p, bounds):
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
-    x_1_sq = x_1*x_1
-    y_1_sq = y_1*y_1
-    twice_x_value = 2.0*x_value
-    twice_y = 2.0*y
-    x_value_sq = x_value*x_value
-    y_sq = y*y
-    w = x_value_sq + y_sq
-    w_2 = w + x_1_sq + y_1_sq - twice_x_value*x_1 - twice_y*y_1
-    inv_w_2 = 1.0/w_2
-    vy_sq = vy*vy
-    lambda_vy_x_value = lambda_vy*x_value
-    vx_sq = vx*vx
-    w_3 = lambda_vx*y_sq + vx_sq*x_value + vy_sq*x_value - lambda_vy*x_value*y
-    lambda_vx_x_value = lambda_vx*x_value
-    w_4 = lambda_vy*x_value_sq + vx_sq*y + vy_sq*y - lambda_vx*x_value*y
-    x_2_sq = x_2*x_2
-    y_2_sq = y_2*y_2
-    w_5 = w + x_2_sq + y_2_sq - twice_x_value*x_2 - twice_y*y_2
+    w = -x_value
+    w_2 = w + x_1
+    w_3 = -lambda_vx
+    w_4 = y_1 - y
+    w_5 = w_2*w_2 + w_4*w_4
     inv_w_5 = 1.0/w_5
+    w_6 = vx*vx + vy*vy
+    w_7 = inv_w_5*(lambda_vx*w_2 + lambda_vy*w_4 + w_6)
+    w_8 = -lambda_vy
+    w_9 = w + x_2
+    w_10 = y_2 - y
+    w_11 = w_10*w_10 + w_9*w_9
+    inv_w_11 = 1.0/w_11
+    w_12 = inv_w_11*(lambda_vx*w_9 + lambda_vy*w_10 + w_6)
     return (
-        inv_w_2*(2.0*lambda_vx*y*y_1 + lambda_vy*x_1*y_1 + vx_sq*x_1 + vy_sq*x_1 - lambda_vx*y_1_sq - lambda_vy*x_1*y - lambda_vy_x_value*y_1 - w_3),
-        inv_w_2*(lambda_vx*x_1*y_1 + 2.0*lambda_vy*x_1*x_value + vx_sq*y_1 + vy_sq*y_1 - lambda_vx*x_1*y - lambda_vx_x_value*y_1 - lambda_vy*x_1_sq - w_4),
-        inv_w_5*(2.0*lambda_vx*y*y_2 + lambda_vy*x_2*y_2 + vx_sq*x_2 + vy_sq*x_2 - lambda_vx*y_2_sq - lambda_vy*x_2*y - lambda_vy_x_value*y_2 - w_3),
-        inv_w_5*(lambda_vx*x_2*y_2 + 2.0*lambda_vy*x_2*x_value + vx_sq*y_2 + vy_sq*y_2 - lambda_vx*x_2*y - lambda_vx_x_value*y_2 - lambda_vy*x_2_sq - w_4),
+        w_2*w_7 + w_3,
+        w_4*w_7 + w_8,
+        w_12*w_9 + w_3,
+        w_10*w_12 + w_8,
     )
 
 
@@ -917,29 +912,24 @@ def boundary_control_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    x_1_sq = x_1*x_1
-    y_1_sq = y_1*y_1
-    twice_x_value = 2.0*x_value
-    twice_y = 2.0*y
-    x_value_sq = x_value*x_value
-    y_sq = y*y
-    w = x_value_sq + y_sq
-    w_2 = w + x_1_sq + y_1_sq - twice_x_value*x_1 - twice_y*y_1
-    inv_w_2 = 1.0/w_2
-    vy_sq = vy*vy
-    lambda_vy_x_value = lambda_vy*x_value
-    vx_sq = vx*vx
-    w_3 = lambda_vx*y_sq + vx_sq*x_value + vy_sq*x_value - lambda_vy*x_value*y
-    lambda_vx_x_value = lambda_vx*x_value
-    w_4 = lambda_vy*x_value_sq + vx_sq*y + vy_sq*y - lambda_vx*x_value*y
-    x_2_sq = x_2*x_2
-    y_2_sq = y_2*y_2
-    w_5 = w + x_2_sq + y_2_sq - twice_x_value*x_2 - twice_y*y_2
+    w = -x_value
+    w_2 = w + x_1
+    w_3 = -lambda_vx
+    w_4 = y_1 - y
+    w_5 = w_2*w_2 + w_4*w_4
     inv_w_5 = 1.0/w_5
-    out[0, 0] = inv_w_2*(2.0*lambda_vx*y*y_1 + lambda_vy*x_1*y_1 + vx_sq*x_1 + vy_sq*x_1 - lambda_vx*y_1_sq - lambda_vy*x_1*y - lambda_vy_x_value*y_1 - w_3)
-    out[0, 1] = inv_w_2*(lambda_vx*x_1*y_1 + 2.0*lambda_vy*x_1*x_value + vx_sq*y_1 + vy_sq*y_1 - lambda_vx*x_1*y - lambda_vx_x_value*y_1 - lambda_vy*x_1_sq - w_4)
-    out[1, 0] = inv_w_5*(2.0*lambda_vx*y*y_2 + lambda_vy*x_2*y_2 + vx_sq*x_2 + vy_sq*x_2 - lambda_vx*y_2_sq - lambda_vy*x_2*y - lambda_vy_x_value*y_2 - w_3)
-    out[1, 1] = inv_w_5*(lambda_vx*x_2*y_2 + 2.0*lambda_vy*x_2*x_value + vx_sq*y_2 + vy_sq*y_2 - lambda_vx*x_2*y - lambda_vx_x_value*y_2 - lambda_vy*x_2_sq - w_4)
+    w_6 = vx*vx + vy*vy
+    w_7 = inv_w_5*(lambda_vx*w_2 + lambda_vy*w_4 + w_6)
+    w_8 = -lambda_vy
+    w_9 = w + x_2
+    w_10 = y_2 - y
+    w_11 = w_10*w_10 + w_9*w_9
+    inv_w_11 = 1.0/w_11
+    w_12 = inv_w_11*(lambda_vx*w_9 + lambda_vy*w_10 + w_6)
+    out[0, 0] = w_2*w_7 + w_3
+    out[0, 1] = w_4*w_7 + w_8
+    out[1, 0] = w_12*w_9 + w_3
+    out[1, 1] = w_10*w_12 + w_8
     return out
 
 

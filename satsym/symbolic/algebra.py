@@ -101,6 +101,11 @@ def shortened(expression: sp.Expr) -> sp.Expr:
     return sp.simplify(expression.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
 
 
+def shortest(*forms: sp.Expr) -> sp.Expr:
+    """The form of an expression with the fewest operations, the first of several."""
+    return min(forms, key=sp.count_ops)
+
+
 def vanishes(expression: sp.Expr) -> bool:
     """Whether an expression is identically zero, as far as simplifying shows it; a number elsewhere shows that not."""
     return expression == 0 or (not _differs_from_zero(expression) and bool(simplified(expression) == 0))

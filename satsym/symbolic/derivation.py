@@ -93,6 +93,8 @@ class Step:
         At least one.
     conclusions
         Sentences behind the equations.
+    kinds
+        Keys of the texts of what the rule lists, where it does.
     """
 
     name: str
@@ -101,6 +103,7 @@ class Step:
     follows_from: tuple[str, ...]
     checks: tuple[Check, ...]
     conclusions: tuple[Conclusion, ...] = ()
+    kinds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

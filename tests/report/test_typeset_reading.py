@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 
 import pytest
+import sympy as sp
 
 from satsym.report.latex.document import render
 from satsym.report.latex.references import cited
 from satsym.report.texts import languages
 from satsym.symbolic import notation as n
+from satsym.symbolic.latex.products import united
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle import path_notation
 from tests.support.derived import each, shipped
@@ -75,3 +77,59 @@ def test_a_figure_is_referred_to_before_it_and_stands_before_the_quantities() ->
 def test_works_cited_together_are_in_the_order_of_their_numbers() -> None:
     body, _ = cited(r"\cite{bryson} \cite{hartl,bryson}", "it")
     assert body.endswith(r"\cite{it:bryson,it:hartl}")
+
+
+def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() -> None:
+    text = render(shipped("shuttle"))
+    assert r"{(r_e + h)^{3}}" in text
+    assert r"r_e^{3}" not in text
+    assert r"r_e \cos \theta + h \cos \theta" not in text
+
+
+def test_squares_of_sine_and_cosine_that_make_one_are_not_written() -> None:
+    assert r"\sin^{2} \theta + \cos^{2} \theta" not in render(shipped("shuttle"))
+    x, a, b = sp.symbols("x a b", real=True)
+    assert united(a + b * sp.sin(x) ** 2 + b * sp.cos(x) ** 2) == a + b
+    assert united(a * sp.sin(x) ** 2 + b * sp.cos(x) ** 2).has(sp.sin)
+
+
+def test_equations_of_motion_look_the_same_wherever_they_stand() -> None:
+    derivation = shipped("cart_pole")
+    assert derivation.rhs("state_equations") == derivation.rhs("first_order")
+
+
+def test_what_controls_gain_stands_apart_in_the_minimised_hamiltonian() -> None:
+    gain = r"\frac{(\ell \lambda_{v_1} - \lambda_{v_2} \cos q_2)^{2}}{4 \ell^{2} (m_1 + m_2 \sin^{2} q_2)^{2}}"
+    assert gain in render(shipped("cart_pole"))
+
+
+def test_of_several_path_constraints_each_has_its_own_equations() -> None:
+    text = render(shipped("approach_cone"))
+    steps = ("constraint_order", "boundary_control", "constraint_multiplier", "constrained_costates")
+    for step in (*steps, "junction_conditions"):
+        part = text.partition(rf"\satsymstep{{approach_cone:{step}}}")[2].partition(r"\satsymstep")[0]
+        assert part.count(r"Of $\Gamma_{1}$:") == part.count(r"Of $\Gamma_{2}$:") == 1
+    assert r"Of $\Gamma" not in render(shipped("beam"))
+
+
+def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
+    text = re.sub(r"\\(?:label|ref|eqref|tag)\{[^}]*\}+", "", render(shipped("pitch_scaled_time")))
+    assert r"\tau_0 \le \tau \le \tau_f" in text
+    assert r"\int_{\tau_0}^{\tau_f} L \,d\tau" in text
+    assert not re.search(r"(?<![a-z])t_[0f]", text)
+    assert r"e^{A \tau} &=" in render(shipped("pitch_scaled")).replace("e^{A \\tau} =", "e^{A \\tau} &=")
+
+
+def test_laws_list_what_they_are_made_of_and_no_more() -> None:
+    angle, thrust, parts = (render(shipped(name)) for name in ("transfer_time", "transfer_fuel", "shuttle"))
+    assert r"$H$ is minimised by the direction of $(-a, -b)$:" in angle
+    assert "switching function" not in angle
+    assert r"switching function $|\mathbf{p}| - w$" in thrust
+    assert r"T^{\max}" in thrust
+    assert r"u^{\max}" not in thrust
+    assert "parts are named $q$" in parts
+
+
+def test_fixed_axes_are_not_said_to_turn() -> None:
+    assert "The unit vectors are fixed" in render(shipped("two_body"))
+    assert "The unit vectors turn" in render(shipped("polar_orbit"))

@@ -40,10 +40,10 @@ def collected(context: Context) -> Iterator[str]:
     states = symbols_of(derivation.model.states)
     yield said("start") + "\n" + _shown(_at(context, ends, "t_0", [s.name for s in states]))
     multipliers = [n.costate_of(s).name for s in states]
-    either = _at(context, ends, "t_f", multipliers)
+    either, end = _at(context, ends, "t_f", multipliers), context.typeset.at("t_f")
     given = [
         plain(
-            rf"{context.typeset.symbol(s.name)}(t_f) = \bar{{{context.typeset.symbol(s.name)}}}"
+            rf"{end.symbol(s.name)} = {end.symbol(n.target(s).name)}"
             rf" \quad\text{{{texts.get('words', 'or')}}}\quad {row.left_tex}"
         )
         for s, row in zip(states, either, strict=True)

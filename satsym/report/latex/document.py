@@ -7,7 +7,7 @@ objects, and carries its address as its label.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
 from satsym.report.latex.references import cited
@@ -18,12 +18,20 @@ from satsym.symbolic import Derivation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import translated
+from satsym.symbolic.notation import TIME
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
 
 _NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*(?=\})")
 """At the foot of a symbol: what the model calls a part of it."""
+
+
+OF_TIME = ("openings", "boundary_value", "statement", "rules", "groups", "boundary", "conclusions", "claims")
+"""Tables of texts in whose formulas time may stand."""
+OF_OLD_TIME = ("new units",)
+_FORMULA = re.compile(r"\$[^$]*\$|\\\[.*?\\\]")
+_TIME = re.compile(r"(?<![A-Za-z\\])t(?![A-Za-z])")
 
 
 def render(derivation: Derivation, language: str = "en", standalone: bool = True) -> str:
@@ -76,7 +84,17 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
 def in_language(derivation: Derivation, language: str) -> Texts:
     """The texts of a language, with what the model brings: its kind's sentences, its own words."""
     model = derivation.model
-    return load(language).with_own({**model.sentences().get(language, {}), PHRASES: translated(model, language)})
+    texts = load(language).with_own({**model.sentences().get(language, {}), PHRASES: translated(model, language)})
+    time = derivation.notation[TIME.name]
+    return texts if time == "t" else texts.with_own({table: _timed(texts.tables[table], time) for table in OF_TIME})
+
+
+def _timed(table: Mapping[str, str], letter: str) -> dict[str, str]:
+    """Texts in whose formulas time has another letter, but for those of the old time."""
+    return {
+        key: text if key in OF_OLD_TIME else _FORMULA.sub(lambda found: _TIME.sub(lambda _: letter, found[0]), text)
+        for key, text in table.items()
+    }
 
 
 class _Composer:

@@ -55,8 +55,9 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
         return Part()
     terminal = not typeset.is_zero(problem.terminal_cost)
     controls = [v.latex for v in problem.model.controls]
-    end, lead = r"S\bigl(\mathbf{x}(t_f), t_f\bigr)", "-" if problem.maximise else ""
-    functional = (f"{lead}{end} {lead or '+'} " if terminal else lead) + r"\int_{t_0}^{t_f} L \,dt"
+    time, final = (typeset.symbol(s.name) for s in (n.TIME, n.FINAL_TIME))
+    end, lead = rf"S\bigl(\mathbf{{x}}({final}), {final}\bigr)", "-" if problem.maximise else ""
+    functional = (f"{lead}{end} {lead or '+'} " if terminal else lead) + rf"\int_{{{time}_0}}^{{{final}}} L \,d{time}"
     costs = {n.RUNNING_COST: problem.running_cost} | ({n.TERMINAL_COST: problem.terminal_cost} if terminal else {})
     rows = [
         Row(_address(derivation, symbol.name), typeset.terms(symbol), typeset.terms(cost))

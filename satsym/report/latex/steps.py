@@ -13,6 +13,7 @@ from satsym.symbolic import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.principle.path_notation import of_states, rate
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,22 @@ def _as_they_stand(context: Context, step: Step) -> Shown:
     if any(e.rhs.is_Matrix for e in step.equations):
         return _with_whole_matrices(context, step)
     return _once([row_of(context, step, e) for e in step.equations])
+
+
+def _by_constraint(context: Context, step: Step) -> Shown:
+    """What holds on the boundary of each constraint apart, where there are several."""
+    problem = context.derivation.problem
+    names = list(of_states(problem)) if problem else []
+    if len(names) < 2:
+        return _as_they_stand(context, step)
+    groups: dict[str, list[Row]] = {}
+    for e in step.equations:
+        of = max((name for name in names if e.name == name or e.name.startswith(f"{name}_")), key=len)
+        groups.setdefault(of, []).append(row_of(context, step, e))
+    heads = {name: context.typeset.tex(rate(name, 0)) for name in groups}
+    parts = [f"{context.texts.get('groups', 'constraint', of=heads[k])}\n{display(v)}" for k, v in groups.items()]
+    rows = [row for group in groups.values() for row in group]
+    return Shown("\n".join(parts), rows[0].address, rows[-1].address)
 
 
 def _once(rows: Sequence[Row]) -> Shown:
@@ -110,8 +127,9 @@ def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
 def rule(context: Context, step: Step, sources: str) -> str:
     """The sentence by which a step follows: that for free controls or for a single one, where there is such a form."""
     texts, problem, controls = context.texts, context.derivation.problem, context.derivation.model.controls
-    fill = {"sources": sources, "quantities": quantities(context, step)}
-    free = problem is not None and problem.control_set == "free" and not problem.control_sets
+    kinds = texts.listed([texts.get("kinds", kind) for kind in step.kinds])
+    fill = {"sources": sources, "quantities": quantities(context, step), "kinds": kinds}
+    free = problem is None or (problem.control_set == "free" and not problem.control_sets)
     forms = [form for form, meant in (("free", free), ("one control", len(controls) == 1)) if meant]
     keys = [f"{step.rule}, {form}" for form in forms if texts.find("rules", f"{step.rule}, {form}")]
     return texts.get("rules", [*keys, step.rule][0], **fill)
@@ -208,6 +226,13 @@ def quantities(context: Context, step: Step) -> str:
 
 
 LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
+    **dict.fromkeys(
+        (
+            *("constraint_order", "boundary_control", "control_rates", "constraint_multiplier"),
+            *("constrained_costates", "junction_conditions"),
+        ),
+        _by_constraint,
+    ),
     "stationarity": _stationarity,
     "state_equations": _state_equations,
     "costate_equations": _costate_equations,

@@ -163,7 +163,8 @@ def unit_vectors(so_far: Derivation) -> Step:
             [c for vector in model.directions.values() for c in _derivative_along_path(model, vector, point, 1)],
         ),
     )
-    return Step("unit_vectors", "differentiate directions", tuple(rates), ("directions",), (orthonormal, moving))
+    rule = "fixed directions" if all(e.rhs == 0 for e in rates) else "differentiate directions"
+    return Step("unit_vectors", rule, tuple(rates), ("directions",), (orthonormal, moving))
 
 
 def position(so_far: Derivation) -> Step:

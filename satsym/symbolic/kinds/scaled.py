@@ -17,6 +17,7 @@ from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equat
 from satsym.symbolic.dimension_algebra import Dimension
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import SECOND, SpecialCase, original_equations, there_and_back
+from satsym.symbolic.linear.notation import TRANSITION
 from satsym.symbolic.model import MaybeStep, Output, Problem, Requirement, symbols_of, t
 from satsym.symbolic.motion import steps as motion
 
@@ -91,7 +92,10 @@ class Scaled(SpecialCase):
     def names(self, problem: Problem | None) -> dict[str, str]:
         """The new time, whose symbol the old one had, and rates by both."""
         new = {f"d_{v.symbol}": rf"\frac{{d {v.latex}}}{{d\tau}}" for v in self.states}
-        return super().names(problem) | new | {"t": r"\tau", "t_f": r"\tau_f", ORIGINAL_TIME.name: "t"}
+        new |= {f"d_lambda_{v.symbol}": rf"\frac{{d \lambda_{{{v.latex}}}}}{{d\tau}}" for v in self.states}
+        new |= {"t": r"\tau", "t_f": r"\tau_f", n.RESIDUAL_TIME.name: r"\mathcal{B}_{\tau_f}"}
+        new |= {TRANSITION.name: r"e^{A \tau}"}
+        return super().names(problem) | new | {ORIGINAL_TIME.name: "t"}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
         """Of the old time and the old rates; what is stated must have those of its variables."""

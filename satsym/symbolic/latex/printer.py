@@ -79,10 +79,13 @@ class Printer(LatexPrinter):
         groups: dict[Any, list[sp.Expr]] = {}
         for place, summand in enumerate(summands):
             parts = take_apart(summand)
-            costates = any(self._rank(s)[0] is Kind.COSTATE for s in summand.free_symbols)
-            alone = self._small or parts.number_below == 1 or parts.bottom or not parts.top or costates
+            alone = self._small or parts.number_below == 1 or parts.bottom or not parts.top
+            alone = alone or self._has_costates(summand)
             groups.setdefault(("alone", place) if alone else ("over", parts.number_below), []).append(summand)
         return list(groups.values())
+
+    def _has_costates(self, expression: sp.Expr) -> bool:
+        return any(self._rank(s)[0] is Kind.COSTATE for s in expression.free_symbols)
 
     def _halves(self, summands: Sequence[sp.Expr]) -> Term:
         """Summands over the same whole number as one term."""
@@ -96,8 +99,9 @@ class Printer(LatexPrinter):
         parts = take_apart(summand)
         ranked = [(*self._rank(base(f)), exponent(f)) for f in parts.top]
         inside = {self._rank(s)[0] for s in summand.free_symbols}
+        squares = [exponent(f) for f in parts.top if base(f).is_Add and self._has_costates(base(f))]
         return (
-            sum((power for kind, _, power in ranked if kind is Kind.COSTATE), sp.Integer(0)),
+            sum((power for kind, _, power in ranked if kind is Kind.COSTATE), sum(squares, sp.Integer(0))),
             [place for kind, place, _ in ranked if kind is Kind.COSTATE],
             [place for kind, place, _ in ranked if kind is Kind.DIRECTION],
             Kind.ACCELERATION not in inside,

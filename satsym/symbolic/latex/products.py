@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy as sp
+
+MANY = 12
+"""Terms of a sum below a fraction line that is looked at as a product, at most."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +89,36 @@ def exponent(factor: sp.Expr) -> sp.Expr:
     return factor.exp if factor.is_Pow and factor.exp.is_Rational else sp.Integer(1)
 
 
+@lru_cache(maxsize=4096)
+def _as_product(total: sp.Expr) -> sp.Expr:
+    """A sum below a fraction line as a product, if that is shorter."""
+    if len(total.args) > MANY or total.has(sp.Float):
+        return total
+    return min(total, sp.factor(total), key=sp.count_ops)
+
+
+def united(expression: sp.Expr) -> sp.Expr:
+    """The expression with every a sin^2 + a cos^2 in its sums as a."""
+    if not expression.has(sp.cos):
+        return expression
+    return expression.replace(lambda e: e.is_Add and e.has(sp.cos), _united)
+
+
+def _united(total: sp.Expr) -> sp.Expr:
+    terms = list(total.args)
+    for term in total.args:
+        for square in (p for p in sp.Mul.make_args(term) if p.is_Pow and p.exp == 2 and isinstance(p.base, sp.cos)):
+            partner = term / square * sp.sin(square.base.args[0]) ** 2
+            if term in terms and partner in terms:
+                terms = [t for t in terms if t not in (term, partner)] + [term / square]
+    return sp.Add(*terms)
+
+
 def _factors(expression: sp.Expr) -> Iterator[sp.Expr]:
     for factor in sp.Mul.make_args(expression):
         if factor.is_Mul:
             yield from _factors(factor)
+        elif factor.is_Pow and factor.base.is_Add and factor.exp.is_Integer and factor.exp.is_negative:
+            yield from sp.Mul.make_args(sp.Pow(_as_product(factor.base), factor.exp))
         else:
             yield factor

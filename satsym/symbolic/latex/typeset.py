@@ -11,6 +11,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.latex.printer import Kind, Printer
+from satsym.symbolic.latex.products import united
 from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
@@ -43,12 +44,12 @@ class Typesetter:
         self._printer = Printer(_notation(derivation, time), _ranks(derivation))
 
     def at(self, time: str) -> Typesetter:
-        """A typesetter that writes states, costates and H as functions of the time given, which t is."""
-        return Typesetter(self._derivation, time)
+        """A typesetter that writes states, costates and H as functions of ``t_0`` or ``t_f``, which t is."""
+        return Typesetter(self._derivation, time.replace("t", self.symbol(n.TIME.name)))
 
     def tex(self, expression: Any) -> str:
         """The expression on one line."""
-        return self._printer.doprint(sp.sympify(expression))
+        return self._printer.doprint(_readable(expression))
 
     def items(self, value: Any) -> list[str]:
         """An expression, or each one of a tuple of them."""
@@ -64,7 +65,7 @@ class Typesetter:
         plus_first
             Whether a term with a plus is moved to the front, if the first one has a minus.
         """
-        return tuple(self._printer.terms(sp.sympify(expression), plus_first=plus_first))
+        return tuple(self._printer.terms(_readable(expression), plus_first=plus_first))
 
     def by_powers(self, polynomial: Any) -> list[tuple[Term, ...]]:
         """The terms of a characteristic polynomial, the highest power first."""
@@ -103,6 +104,11 @@ def matrices(derivation: Derivation, step: Step) -> list[NamedMatrix]:
 
 def _has_prefix(equation: Equation, prefix: str) -> bool:
     return isinstance(equation.lhs, sp.Symbol) and equation.lhs.name.startswith(f"{prefix}_")
+
+
+def _readable(expression: Any) -> Any:
+    found = sp.sympify(expression)
+    return united(found) if isinstance(found, sp.Expr) else found
 
 
 def _notation(derivation: Derivation, time: str) -> dict[str, str]:

@@ -76,16 +76,21 @@ def matrix_symbols(letter: str, rows: int, columns: int) -> sp.ImmutableMatrix:
 def results(model: Model) -> dict[str, str]:
     """Notation of what the steps for linear models find; no variable of a model that is analysed has such a name."""
     notation = {s.name: latex for s, latex in FIXED.items()}
-    n, m = len(model.states), len(model.controls)
-    notation[EIGENVALUES.name] = rf"(s_1, \dots, s_{{{n}}})" if n > 1 else "s_1"
+    states, controls = len(model.states), len(model.controls)
+    notation[EIGENVALUES.name] = {1: "s_1", 2: "(s_1, s_2)"}.get(states, rf"(s_1, \dots, s_{{{states}}})")
     notation[DISTINCT.name] = r"\mathbf{s}"
     notation[ALGEBRAIC.name] = r"\mathbf{m}_a"
     notation[GEOMETRIC.name] = r"\mathbf{m}_g"
-    notation |= {small(k).name: rf"\varepsilon_{{{k}}}" for k in range(1, n + 2)}
+    notation |= {small(k).name: rf"\varepsilon_{{{k}}}" for k in range(1, states + 2)}
     for v in model.states:
         notation[f"lambda_{v.symbol}"] = rf"\lambda_{{{v.latex}}}"
         notation[f"d_lambda_{v.symbol}"] = rf"\dot\lambda_{{{v.latex}}}"
-    for letter, rows, columns in (("K", m, n), ("P", n, n), ("Q", n, n), ("R", m, m)):
+    for letter, rows, columns in (
+        ("K", controls, states),
+        ("P", states, states),
+        ("Q", states, states),
+        ("R", controls, controls),
+    ):
         notation |= {s.name: rf"{letter.lower()}_{{{s.name[2:]}}}" for s in matrix_symbols(letter, rows, columns)}
     return notation | weights(model) | _of_ports(model)
 

@@ -25,8 +25,14 @@ def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[V
         upper = tuple(Variable(f"{c.symbol}_max", rf"{c.latex}^{{\max}}", c.unit) for c in controls)
         return lower + upper
     if control_set == "ball":
-        return (Variable("u_max", r"u^{\max}", controls[0].unit, positive=True),)
+        return (Variable("u_max", rf"{letter_of(controls)}^{{\max}}", controls[0].unit, positive=True),)
     return ()
+
+
+def letter_of(controls: Sequence[Variable]) -> str:
+    """The letter of a vector of controls: the one that they share, as in T_r and T_t, or else u."""
+    letters = {c.latex.partition("_")[0] for c in controls}
+    return letters.pop() if len(letters) == 1 and len(controls) > 1 else "u"
 
 
 def project(

@@ -67,7 +67,9 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
     check = compare("H at the minimiser", everything, sides)
     name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
     equation = Equation("H_star", n.MINIMISED, h_star)
-    return Step(name, worded("substitute controls", problem), (equation,), ("hamiltonian", "control_law"), (check,))
+    bounded = any(one.branch == "quadratic" and one.part.kind != "free" for one in every)
+    rule = worded("substitute the law, inside" if bounded else "substitute the law", problem)
+    return Step(name, rule, (equation,), ("hamiltonian", "control_law"), (check,))
 
 
 def _wide(every: Sequence[Minimum]) -> dict[sp.Symbol, Any]:

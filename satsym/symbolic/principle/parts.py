@@ -24,7 +24,7 @@ def minimum_norm_of(part: Part) -> Variable:
 
     With that and the largest norm the same, the law gives a vector of this norm.
     """
-    latex = rf"u_{{\mathrm{{{part.name}}}}}^{{\min}}"
+    latex = rf"{control_sets.letter_of(part.controls)}_{{\mathrm{{{part.name}}}}}^{{\min}}"
     return Variable(f"{part.name}_least", latex, part.controls[0].unit, positive=True)
 
 
@@ -103,7 +103,8 @@ def limits_of(problem: Problem) -> tuple[Variable, ...]:
 def _part(name: str, kind: PartKind, controls: tuple[Variable, ...], mark: str) -> Part:
     index = rf"_{{\mathrm{{{mark}}}}}" if mark else ""
     prefix = f"{mark}_" if mark else "u_"
-    largest = Variable(f"{prefix}max", rf"u{index}^{{\max}}", controls[0].unit, positive=True)
+    letter = control_sets.letter_of(controls)
+    largest = Variable(f"{prefix}max", rf"{letter}{index}^{{\max}}", controls[0].unit, positive=True)
     if kind in ("free", "box"):
         return Part(name, kind, controls, control_sets.bounds("box" if kind == "box" else "free", controls))
     if kind == "angle":
@@ -116,7 +117,7 @@ def _part(name: str, kind: PartKind, controls: tuple[Variable, ...], mark: str) 
         )
     if kind == "ball":
         return Part(name, kind, controls, (largest,))
-    smallest = Variable(f"{prefix}min", rf"u{index}^{{\min}}", controls[0].unit, positive=True)
+    smallest = Variable(f"{prefix}min", rf"{letter}{index}^{{\min}}", controls[0].unit, positive=True)
     return Part(name, kind, controls, (smallest, largest))
 
 

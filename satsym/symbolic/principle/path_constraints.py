@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, simplified, tidy, total_derivative
+from satsym.symbolic.algebra import gradient, shortest, simplified, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
@@ -76,7 +76,11 @@ def boundary_control(so_far: Derivation) -> Step | None:
         effect, rest = affine(so_far, found, controls)
         turned = weight.LUsolve(effect)
         missed = (effect.T * free)[0] + rest
-        laws = [tidy(simplified(law)) for law in free - turned * missed / (effect.T * turned)[0]]
+        moved = turned * (missed / (effect.T * turned)[0])
+        laws = [
+            shortest(tidy(simplified(hat - move)), tidy(hat) - sp.factor_terms(move))
+            for hat, move in zip(free, moved, strict=True)
+        ]
         equations += [
             Equation(f"{found.name}_{u.name}", pn.boundary_control(found.name, u), law)
             for u, law in zip(controls, laws, strict=True)

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, simplified, tidy
+from satsym.symbolic.algebra import gradient, shortest, simplified, tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
@@ -131,7 +131,8 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
     controls = symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     hats = {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
-    h_star = tidy(h.xreplace(hats), ())
+    idle = h.xreplace(dict.fromkeys(controls, sp.Integer(0)))
+    h_star = shortest(tidy(h.xreplace(hats)), idle + tidy(simplified(h.xreplace(hats) - idle)))
     value, at_minimum, minimisers = numeric([h]), numeric([h_star]), numeric(list(hats.values()))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
@@ -147,15 +148,14 @@ def state_equations(so_far: Derivation) -> Step:
     """dx/dt = H_lambda."""
     h = so_far.equation("hamiltonian.H").rhs
     lam, states = costates(so_far), symbols_of(so_far.model.states)
-    rates = gradient(h, lam)
-    equations = tuple(Equation(s.name, n.rate_of(s), tidy(f)) for s, f in zip(states, rates, strict=True))
-    f = so_far.rhs("first_order")
+    rates, f = gradient(h, lam), so_far.rhs("first_order")
+    equations = tuple(Equation(s.name, n.rate_of(s), rate) for s, rate in zip(states, f, strict=True))
     return Step(
         "state_equations",
         "differentiate H by costates",
         equations,
         ("hamiltonian",),
-        (identity("equal the equations of motion", [e.rhs - g for e, g in zip(equations, f, strict=True)]),),
+        (identity("equal the equations of motion", [slope - rate for slope, rate in zip(rates, f, strict=True)]),),
     )
 
 

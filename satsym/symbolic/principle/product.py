@@ -95,7 +95,21 @@ def control_parts(so_far: Derivation) -> Step:
                 equations.append(Equation(weight.name, weight, one.weight))
     checks = [adds_up(so_far, h, every)]
     checks += [convex(so_far, one) for one in every if one.branch == "quadratic"]
-    return Step(STEP, worded("set by set", problem), tuple(equations), ("hamiltonian",), tuple(checks))
+    rule = worded("set by set" if len(every) > 1 else "one set", problem)
+    kinds = tuple(f"in H, {kind}" for kind in _kinds(every))
+    return Step(STEP, rule, tuple(equations), ("hamiltonian",), tuple(checks), kinds=kinds)
+
+
+def _kinds(every: Sequence[Minimum]) -> tuple[str, ...]:
+    """What H is made of, of the controls of all sets: keys of texts, each once."""
+    found: dict[str, None] = {}
+    for one in every:
+        if one.directed and one.branch != "switched":
+            found["magnitude" if one.turned_by else "angle" if one.part.kind == "angle" else "vector"] = None
+            found |= {"norm": None} if one.weight != 0 else {}
+        else:
+            found[one.branch] = None
+    return tuple(found)
 
 
 def control_law(so_far: Derivation) -> Step:
@@ -124,7 +138,11 @@ def control_law(so_far: Derivation) -> Step:
     if any(not law.has(Vertex) for one in others for law in one.laws):
         said += (Conclusion("neither linear nor quadratic", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
-    return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
+    named = ("parts" if parts and kind == "stationary" else kind for kind in _kinds(every))
+    kinds = tuple(worded(f"law, {kind}", problem) for kind in named)
+    limits = [s for s in (EPSILON, FACTOR) if any(e.rhs.has(s) for e in equations)]
+    rule = worded(("minimum of all", "minimum as a limit", "minimum as both limits")[len(limits)], problem)
+    return Step("control_law", rule, equations, (STEP,), (check,), said, kinds)
 
 
 def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
@@ -146,7 +164,8 @@ def _norm(one: Minimum) -> sp.Expr:
 def smoothed_law(so_far: Derivation) -> Step | None:
     """Where controls are directions: H of the problem in which half their squares cost a little, and its law."""
     problem = problem_of(so_far)
-    directions = [one for one in found(so_far) if one.directed]
+    every = found(so_far)
+    directions = [one for one in every if one.directed]
     if not directions:
         return None
     short = [component for one in directions for component in pn.components_of(one.part)]
@@ -190,5 +209,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
     everything = {*short, *costates(so_far), EPSILON, *symbols_of(limits_of(problem))}
     everything |= h.free_symbols.union(*(e.free_symbols for e in written_out(so_far, [e.rhs for e in equations[1:]])))
     check = never_below(worded("cheapest admissible", problem), everything, margins)
+    kinds = ("squares", *(kind for kind in _kinds(every) if kind in ("angle", "norm")))
+    kinds = tuple(f"regularised, {kind}" for kind in kinds)
     rule = worded("shorter directions", problem)
-    return Step("smoothed_law", rule, tuple(equations), (STEP, "control_law"), (check,))
+    return Step("smoothed_law", rule, tuple(equations), (STEP, "control_law"), (check,), kinds=kinds)
