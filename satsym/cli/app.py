@@ -33,7 +33,7 @@ Start here:
   satsym instances                       what can be solved as it stands
   satsym solve soft-return --plot        solve one, with pictures
   satsym latex polar_orbit -o orbit.tex  typeset where it comes from
-  satsym audit its_thesis                judge a derivation that a thesis prints
+  satsym audit its_thesis                judge the derivation of a thesis
 
 \b
 Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,

@@ -7,6 +7,7 @@ each option is a text of its own, whose translation is in ``help.toml`` of that 
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Callable, Iterator
 from inspect import cleandoc
 from itertools import pairwise
@@ -102,7 +103,33 @@ def _write(formatter: click.HelpFormatter, text: str | None) -> None:
     if text:
         formatter.write_paragraph()
         with formatter.indentation():
-            formatter.write_text(translated(text))
+            formatter.write_text(_laid_out(translated(text), formatter.width - formatter.current_indent))
+
+
+def _laid_out(text: str, width: int) -> str:
+    """Paragraphs whose lines click leaves alone, as far as they fit; commands are never broken, for they are copied."""
+    return "\n\n".join(_fitting(paragraph, width) for paragraph in text.split("\n\n"))
+
+
+def _fitting(paragraph: str, width: int) -> str:
+    """What is said of entries over several lines beside them; or below them all, where they leave it little room."""
+    lines = paragraph.splitlines()
+    entries = [_ENTRY.fullmatch(line) for line in lines]
+    if max(map(len, lines)) <= width:
+        return paragraph
+    if not any(entries):
+        return _joined(paragraph)
+    beside = max((entry.start(3) for entry in entries if entry and entry[3]), default=0)
+    stacked = beside > width // 2
+    found: list[str] = []
+    for line, entry in zip(lines, entries, strict=True):
+        if entry and entry[3]:
+            inset = " " * (len(line) - len(line.lstrip()) + 4 if stacked else entry.start(3))
+            said = textwrap.wrap(entry[3], width, initial_indent=inset, subsequent_indent=inset)
+            found += [entry[1], *said] if stacked else [line[: len(inset)] + said[0][len(inset) :], *said[1:]]
+        else:
+            found += [line] if entry or len(line) <= width else textwrap.wrap(line, width)
+    return "\n".join(found)
 
 
 def command(epilog: str) -> Callable[[Callable[..., Any]], click.Command]:

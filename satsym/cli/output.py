@@ -130,6 +130,12 @@ def in_colour() -> bool:
     return _is_terminal(sys.stdout) and not os.environ.get("NO_COLOR")
 
 
+_PLAIN = ("ascii", "us-ascii", "ansi_x3.4-1968")
+"""Encodings of terminals that have no more than ASCII."""
+_SPELT = str.maketrans({"\N{PLUS-MINUS SIGN}": "+-", "\N{HORIZONTAL ELLIPSIS}": "...", "\N{MINUS SIGN}": "-"})
+"""What is written there for signs of ours; what is in names of others is escaped."""
+
+
 class Live:
     """One line on stderr that is written over and over; nothing at all where stderr is no terminal.
 
@@ -183,5 +189,7 @@ def _write(stream: TextIO | None, text: str) -> None:
     if stream is None:  # the process was started without it
         return
     encoding = stream.encoding or "utf-8"
+    if not text.isascii() and encoding.lower() in _PLAIN:
+        text = text.translate(_SPELT)
     stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
     stream.flush()

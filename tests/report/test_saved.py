@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from satsym import instance
 from satsym.cli.app import program
 from satsym.cli.saving import save, trajectory_files
+from satsym.instance.numbers import changed
 from satsym.report.look import SCREEN
 from satsym.report.results import trajectory
 from satsym.report.results.objects import simulation_object, solution_object
@@ -71,6 +72,18 @@ def plotted(*arguments: str | Path) -> str:
 
 
 @pytest.mark.slow(in_turn=True)
+def test_a_motion_that_begins_with_an_impulse_comes_back(tmp_path: Path) -> None:
+    """Its first state is not the initial one of the instance, which has not changed all the same."""
+    found = simulate(instance.load("lapan-classical"), "classical")
+    assert found.x[2, 0] != found.instance.initial[2]
+    save(tmp_path, simulation_object(found), trajectory_files(tmp_path, found, look=None))
+    again, _ = trajectory.read(found.instance, tmp_path)
+    assert np.array_equal(again.x, found.x)
+    other = changed(found.instance, {"initial.theta_dot": 1e-3})
+    with pytest.raises(BadInput, match="starts elsewhere"):
+        trajectory.read(other, tmp_path)
+
+
 def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path) -> None:
     files = trajectory_files(tmp_path / "run", solution, look=SCREEN)
     first = save(tmp_path / "run", solution_object(solution), files)

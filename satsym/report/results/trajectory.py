@@ -166,7 +166,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
     instance = instance.meeting(
         {k: v for k, v in result.ends_met.items() if v is not None and k in instance.end_limits}
     )
-    if not _starts_at(stored["x"], instance.initial):
+    if not _starts_at(stored["x"], _begun(instance, result.feedback)):
         raise again(place, f"starts elsewhere than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight
     return make(instance, result, stored), found
@@ -266,6 +266,16 @@ def _passes(stored: Stored) -> bool:
     if not np.isfinite(switching).all() or not np.isfinite(stored["x"]).any():
         return bool(np.isfinite(switching).all())
     return bool(np.isfinite(times).all() and (np.diff(times) >= 0).all() and np.ptp(times) > 0)
+
+
+def _begun(instance: Instance, feedback: str) -> Sequence[float]:
+    """Where a motion begins: under a classical law after its impulse."""
+    if feedback != "classical":
+        return instance.initial
+    from satsym.analysis.classical.law import loop
+
+    states: list[float] = loop(instance).start(np.array(instance.initial))[: len(instance.initial)].tolist()
+    return states
 
 
 def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:

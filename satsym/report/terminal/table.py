@@ -55,7 +55,7 @@ def table(rows: Sequence[Sequence[str]], right: Sequence[int] = (), indent: str 
         Begins every line.
     """
     kept = [i for i, column in enumerate(zip(*rows[1:], strict=True)) if any(column)]
-    rows = _narrowed(rows, kept, len(indent))
+    rows = _with_room(_narrowed(rows, kept, len(indent)), kept, len(indent))
     lines: list[str] = []
     for group in _groups(kept, {i: _width(rows, i) for i in kept}, len(indent)):
         shown = _narrowed(rows, group, len(indent))
@@ -87,6 +87,23 @@ def _narrowed(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -
     for row in rows:
         for k, part in enumerate(textwrap.wrap(row[last], left) or [""]):
             found.append([part if i == last else cell if k == 0 else "" for i, cell in enumerate(row)])
+    return found
+
+
+def _with_room(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -> Sequence[Sequence[str]]:
+    """The rows with what their first column says over several lines, where else no other would fit beside it."""
+    limit = room()
+    if limit is None or len(kept) < 2:
+        return rows
+    first, *others = kept
+    left = limit - indent - len(GAP) - max(_width(rows, i) for i in others)
+    if left < SENTENCE or _width(rows, first) <= left:
+        return rows
+    found: list[Sequence[str]] = []
+    for row in rows:
+        parts = textwrap.wrap(row[first], left, subsequent_indent=GAP, break_on_hyphens=False, break_long_words=False)
+        for k, part in enumerate(parts or [""]):
+            found.append([part if i == first else cell if k == 0 else "" for i, cell in enumerate(row)])
     return found
 
 
