@@ -99,3 +99,21 @@ def test_a_page_without_title_has_none_is_the_same_when_drawn_again_and_leaves_n
         assert style.with_titles()
         pages = plots.figures(found, Look(titled=titled))
         assert {page.get_suptitle() for page in pages.values()} == ({found.instance.title, ""} if titled else {""})
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_what_stands_above_a_panel_never_overlaps(size: str) -> None:
+    """Meaning on the left, switching times or the end on the right; Indonesian is the longer language."""
+    from satsym import instance
+    from satsym.report.said import spoken
+    from satsym.solvers import solve
+
+    found = solve(instance.load("return-to-orbit-005"))
+    with spoken("id"):
+        pages = plots.figures(found, Look(size=size))
+    for name in ("controls", "costates", "states"):
+        pages[name].draw_without_rendering()
+        for axes in pages[name].axes:
+            left, right = (text.get_window_extent() for text in (axes._left_title, axes._right_title))
+            assert left.width > 0.0
+            assert left.x1 < right.x0, (name, axes.get_ylabel())

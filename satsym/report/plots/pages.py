@@ -81,7 +81,7 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
     rows = -(-len(quantities) // columns)
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 1.2 + 2.2 * rows)
     small_multiples(
-        page, scene, [(quantity, colour) for quantity in quantities], columns, title={1: 60, 2: 40}.get(columns, 24)
+        page, scene, [(quantity, colour) for quantity in quantities], columns, title=style.characters(page, columns)
     )
     beside = any(q.free is not None or q.reference is not None for q in quantities)
     entries = legend.motion(scene, colour) if beside else []

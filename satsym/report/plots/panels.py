@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
 MOST_TIMES = 4
+LEAST = 12
+"""Characters of a title that are shown at least."""
 ROUND = [1, 2, 5, 10]
 """Leading digits of the distance between ticks."""
 
@@ -54,7 +56,7 @@ def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: i
     Parameters
     ----------
     title
-        Characters that its meaning may have above the axes; 0 leaves the title out.
+        Characters that its meaning and a remark beside it may have above the axes; 0 leaves them out.
     """
     shown, times = read(series), scene.times
     axes.set_xlim(times[0], times[-1])
@@ -70,8 +72,9 @@ def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: i
     axes.set_ylabel(shown.label, fontsize="large" if series.unit == "1" else None)
     ticks(axes, shown, scene.time_unit == "h")
     if title:
-        axes.set_title(shortened(series.meaning, title))
-        axes.set_title(_remark(scene, series, shown), loc="right")
+        remark = _remark(scene, series, shown)
+        axes.set_title(shortened(series.meaning, max(LEAST, title - len(remark) - 2)))
+        axes.set_title(remark, loc="right")
 
 
 def ticks(axes: Axes, shown: Reading, hours: bool) -> None:

@@ -62,6 +62,8 @@ ARROW: dict[str, Any] = {
     "zorder": 2.6,
 }
 
+MARGIN, CHARACTER = 0.8, 0.075
+"""Inches on a screen: beside a panel, for its ticks and its label; and of a character of a title, on average."""
 WIDTH = 10.0
 """Of a page, in inches."""
 DPI = 160
@@ -177,6 +179,11 @@ def across(panels: int) -> int:
 def points(size: float) -> float:
     """The size of letters that have so many points on a screen."""
     return size * sheet().letters
+
+
+def characters(page: Figure, columns: int) -> int:
+    """How many of a title have room above a panel, where so many stand side by side."""
+    return int((page.get_figwidth() / sheet().letters / columns - MARGIN) / CHARACTER)
 
 
 def figure(width: float, height: float) -> Figure:
