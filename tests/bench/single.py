@@ -52,6 +52,10 @@ def _certified(cases: Sequence[Any]) -> Table:
     """What the parts of a certificate take."""
     from satsym.solvers import solve
     from satsym.solvers.certificate import competitors
+    from satsym.solvers.certificate.jacobi import conjugate
+    from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+    from satsym.solvers.certificate.neighbours import neighbours
+    from satsym.solvers.certificate.reintegration.segments import segments
     from satsym.solvers.certificate.verdict import certify
 
     answers = [solve(case, examined=False) for case in cases]
@@ -62,11 +66,21 @@ def _certified(cases: Sequence[Any]) -> Table:
         comparison = competitors.compared(answer, time.perf_counter() + 60.0)
         counts.add(sum(kind.summary.tried for kind in comparison.kinds))
 
+    def examined(answer: Any) -> None:
+        with_kernels_examined(blank, answer)
+
+    def jacobi(answer: Any) -> None:
+        conjugate(answer, segments(answer))
+
+    blank = certify(answers[0], compared=False)
     solving, measured, each = "all of solve", "conditions, Jacobi's and neighbours", "each competitor"
     found = _in_turn(
         {
             solving: lambda answer: solve(replace(answer.instance), examined=False),
             measured: lambda answer: certify(answer, compared=False),
+            "  of that neighbours": neighbours,
+            "  Jacobi's condition": jacobi,
+            "  whether kernels contradict each other": examined,
             each: compared,
         },
         answers,
