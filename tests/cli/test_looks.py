@@ -117,3 +117,28 @@ def test_what_stands_above_a_panel_never_overlaps(size: str) -> None:
             left, right = (text.get_window_extent() for text in (axes._left_title, axes._right_title))
             assert left.width > 0.0
             assert left.x1 < right.x0, (name, axes.get_ylabel())
+
+
+def test_nothing_is_cut_off_in_a_column() -> None:
+    """Titles, labels and legends of pictures with long ones, in the language that is longer."""
+    from satsym import instance
+    from satsym.analysis.comparison import compare
+    from satsym.analysis.orbits.survey import survey
+    from satsym.analysis.regulator.feedback import designed
+    from satsym.report.plots import comparison, responses
+    from satsym.report.plots.orbits import conics, plane, unit_circle
+    from satsym.report.said import spoken
+
+    orbit, design = survey(instance.load("molniya")), designed(instance.load("geo-lqr"))
+    cases = compare([instance.load("lapan-classical"), instance.load("lapan-minimum-time")], lambda _: None)
+    with spoken("id"), style.applied(Look(size="column")):
+        pages = [each(orbit) for each in (conics.page, plane.of_point, unit_circle.page)]
+        pages += [responses.reach(design, instance.load("geo-lqr")), comparison.page(cases)]
+        for page in pages:
+            style.finished(page).draw_without_rendering()
+            whole = page.bbox
+            for axes in page.axes:
+                shown = [axes._left_title, axes.xaxis.label, *page.legends]
+                for box in (one.get_window_extent() for one in shown):
+                    assert whole.x0 <= box.x0, axes.get_title(loc="left")
+                    assert box.x1 <= whole.x1, axes.get_title(loc="left")

@@ -60,7 +60,8 @@ def page(cases: Sequence[Case]) -> Figure | None:
         last = k == len(panels) - 1 and k % columns == 0
         place = grid[k // columns, :] if last else grid[k // columns, k % columns]
         _over_time(figure.add_subplot(place), answered, variable, apart)
-    _totals([figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)], answered)
+    totals = [figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)]
+    _totals(totals, answered, style.characters(figure, columns))
     if law is not None:
         _range([figure.add_subplot(grid[below + pairs + k // columns, k % columns]) for k in range(2)], law)
     entries = [
@@ -155,7 +156,8 @@ def _until(case: Case) -> float:
     return min(found, whole) if np.isfinite(found) else whole
 
 
-def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
+def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: int) -> None:
+    """Bars, with their sizes beside them; ``room`` is how many characters an axis is long."""
     from satsym.analysis.classical.performance import SETTLED
 
     controls = cases[0].instance.model.spec.controls
@@ -163,7 +165,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
     control = next(used, controls[0])
     bars = (("transition_time", say("transition time")), (f"{control.symbol}_total", say("total impulse")))
     for axes, (key, title) in zip(panels, bars, strict=True):
-        unit = unit_of(cases, key)
+        unit, far = unit_of(cases, key), [1e-300]
         values = [case.metrics[key] for case in cases]
         places = np.arange(len(cases))[::-1]
         axes.barh(
@@ -177,6 +179,8 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
             if key == "transition_time" and case.how == "classical":
                 settled = say("<time>, until within <share>", time=said, share=f"{SETTLED:.0%}")
                 said = settled if np.isfinite(value) else say("not settled")
+            # the text beside a bar is inside the axes, too
+            far.append(float(np.nan_to_num(value)) / (1.0 - min(0.7, (len(said) + 2) / room)))
             axes.text(
                 np.nan_to_num(value),
                 place,
@@ -187,7 +191,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
                 color=style.INK,
             )
         axes.set_yticks([])
-        axes.set_xlim(0.0, 1.6 * np.nanmax(values, initial=0.0) or 1.0)
+        axes.set_xlim(0.0, max(far) if max(far) > 1e-300 else 1.0)
         axes.grid(axis="y", visible=False)
         axes.set_title(title)
         axes.set_xlabel(display.labelled("", unit) if unit else "")

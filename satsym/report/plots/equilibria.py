@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,7 +40,7 @@ def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
     edges = [float(values[0]), *((c.below + c.above) / 2 for c in found.followed.changes), float(values[-1])]
     counts = [len(sets[0]), *(c.counts[1] for c in found.followed.changes)]
     above.stairs(counts, edges, baseline=None, color=style.INK, linewidth=1.4)
-    above.set_ylabel(say("number of equilibria"))
+    above.set_ylabel(textwrap.fill(say("number of equilibria"), 20))
     above.set_ylim(0, 1.08 * max(counts))
     above.set_yticks(sorted({0, *counts}))
     seen = []

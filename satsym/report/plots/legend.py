@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.plots import style
@@ -15,6 +17,8 @@ from satsym.report.said import say
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+HANDLE, CHARACTER = 0.62, 0.08
+"""Inches on a screen that the sign of an entry takes, and a character of its label on average."""
 PER_INCH = 0.71
 """Entries side by side that an inch of a page has room for."""
 Entry = tuple[Any, str]
@@ -61,8 +65,24 @@ def below(page: Figure, entries: list[Entry]) -> None:
     entries = list({label: (handle, label) for handle, label in entries}.values())
     if len(entries) > 1:
         handles, labels = zip(*entries, strict=True)
-        rows = math.ceil(len(entries) / (PER_INCH * page.get_figwidth() / style.sheet().letters))
-        page.legend(handles, labels, loc="outside lower center", ncols=-(-len(entries) // rows))
+        width = page.get_figwidth() / style.sheet().letters
+        most = -(-len(entries) // math.ceil(len(entries) / (PER_INCH * width)))
+        across = next((n for n in range(most, 1, -1) if _width(labels, n) <= width), 1)
+        room = int((width - HANDLE) / CHARACTER)
+        shown = [textwrap.fill(label, room) if across == 1 else label for label in labels]
+        page.legend(handles, shown, loc="outside lower center", ncols=across)
+
+
+def _width(labels: Sequence[str], across: int) -> float:
+    """Inches on a screen that entries take in so many columns, which are filled one after the other."""
+    rows = -(-len(labels) // across)
+    columns = (labels[k : k + rows] for k in range(0, len(labels), rows))
+    return sum(HANDLE + CHARACTER * max(map(_length, column)) for column in columns)
+
+
+def _length(label: str) -> int:
+    """Characters that are seen of a label; the names of signs in a formula are not."""
+    return len(re.sub(r"\\[a-zA-Z]+|[${}^_\\]", "", label))
 
 
 def line(**look: Any) -> Any:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
 MOST_TIMES = 4
-LEAST = 12
+SHORTEST = 12
 """Characters of a title that are shown at least."""
 ROUND = [1, 2, 5, 10]
 """Leading digits of the distance between ticks."""
@@ -73,7 +73,7 @@ def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: i
     ticks(axes, shown, scene.time_unit == "h")
     if title:
         remark = _remark(scene, series, shown)
-        axes.set_title(shortened(series.meaning, max(LEAST, title - len(remark) - 2)))
+        axes.set_title(shortened(series.meaning, max(SHORTEST, title - len(remark) - 2)))
         axes.set_title(remark, loc="right")
 
 

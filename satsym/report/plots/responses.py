@@ -211,6 +211,7 @@ def _interval(axes: Axes, state: Variable, extent: tuple[float, float], start: f
     axes.axvline(0.0, color=style.GREY, linewidth=0.8, zorder=2.1)
     axes.plot([start / scale], [0.0], color=style.BLUE, **style.START)
     axes.set_yticks([])
+    axes.locator_params(axis="x", nbins=9 if style.across(2) == 2 else 4)
     axes.spines["left"].set_visible(False)
     symbol = display.formula(prefix + state.latex, state.symbol)
     axes.set_ylabel(display.labelled(symbol, measure.unit), rotation=0, ha="right", va="center")

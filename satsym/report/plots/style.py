@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import textwrap
 import warnings
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from satsym.report.results import files
 from satsym.report.said import say
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 # Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
@@ -62,8 +64,10 @@ ARROW: dict[str, Any] = {
     "zorder": 2.6,
 }
 
-MARGIN, CHARACTER = 0.8, 0.075
+MARGIN, CHARACTER = 1.3, 0.08
 """Inches on a screen: beside a panel, for its ticks and its label; and of a character of a title, on average."""
+SMALLER = 0.75
+"""How many of a label there is room for where so many of a title fit."""
 WIDTH = 10.0
 """Of a page, in inches."""
 DPI = 160
@@ -181,7 +185,7 @@ def points(size: float) -> float:
     return size * sheet().letters
 
 
-def characters(page: Figure, columns: int) -> int:
+def characters(page: Figure, columns: float) -> int:
     """How many of a title have room above a panel, where so many stand side by side."""
     return int((page.get_figwidth() / sheet().letters / columns - MARGIN) / CHARACTER)
 
@@ -225,6 +229,7 @@ def finished(page: Figure) -> Figure:
     from satsym.report.plots.powers import WithPowers
 
     for axes in page.axes:
+        _fit(page, axes)
         for axis in (axes.xaxis, axes.yaxis):
             if type(axis.get_major_formatter()) is ScalarFormatter:
                 axis.set_major_formatter(WithPowers())
@@ -232,6 +237,24 @@ def finished(page: Figure) -> Figure:
             line.set_linewidth(points(line.get_linewidth()))
             line.set_markersize(points(line.get_markersize()))
     return page
+
+
+def _fit(page: Figure, axes: Axes) -> None:
+    """Break what is written above and below a panel into lines that it has room for."""
+    place = axes.get_subplotspec()
+    if place is None or axes.figure is not page:
+        return
+    room = max(12, characters(page, place.get_gridspec().ncols / len(place.colspan)))
+    axes.set_xlabel(_lines(axes.get_xlabel(), int(SMALLER * room)))
+    if not axes.get_title(loc="right"):
+        axes.set_title(_lines(axes.get_title(loc="left"), room))
+
+
+def _lines(text: str, room: int) -> str:
+    """Formulas with spaces in them are left as they are, and what stands around them."""
+    if re.search(r"\$[^$ ]* [^$]*\$", text):
+        return text
+    return "\n".join(textwrap.fill(line, room, break_long_words=False) for line in text.splitlines())
 
 
 def contents(name: str, page: Figure) -> dict[str, files.Content]:
