@@ -137,6 +137,9 @@ def _met(many: Many, z: Array) -> Met:
         when.append((t + share * h).reshape(-1, many.count))
     room = np.stack(sides, axis=2).reshape(len(sides[0]), -1, many.count)
     times = np.stack(when, axis=1).reshape(-1, many.count)
+    ends = [many.at_nodes(slice(0, 1)), many.at_nodes(slice(-1, None))]
+    first, last = (_room(many, at, z[:, k])[:, None] for at, k in zip(ends, (0, -1), strict=True))
+    room, times = np.concatenate([first, room, last], axis=1), np.concatenate([ends[:1], times, ends[1:]])
     changed = (room[:, 1:] > 0.0) != (room[:, :-1] > 0.0)
     row, place, which = np.nonzero(changed)
     before, after = room[row, place, which], room[row, place + 1, which]
@@ -151,7 +154,7 @@ def _met(many: Many, z: Array) -> Met:
         mine = mine[np.argsort(found[mine], kind="stable")][: len(kept)]
         kept[: len(mine), k], values[:, : len(mine), k] = found[mine], there[:, mine]
     lasting = np.repeat(h.reshape(-1, many.count) > SMALL * many.problem.duration, len(LOOKED_AT), axis=0)
-    grazing = [_grazing(room[:, own, k]) for k, own in enumerate(lasting.T)]
+    grazing = [_grazing(room[:, 1:-1][:, own, k]) for k, own in enumerate(lasting.T)]
     return Met(kept, values, (count <= MOST) & ~np.array(grazing, dtype=bool))
 
 
