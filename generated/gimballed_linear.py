@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
-Digest: e71836bfee173f3dc4a6472f2cb544201a62e5636e9f3b3b0976108b66edcf95
+Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
+Digest: 68e75e5a0eefaf3893bb62c7c5faced76640f1f98e783d0db5abe04070ff3476
 """
 
 import math
@@ -52,9 +52,9 @@ MODEL = {
         {'symbol': 'K_z', 'latex': 'K_z', 'unit': 'N*m/rad', 'meaning': 'stiffness of the spring on the outer gimbal', 'default': 0.9, 'positive': True},
         {'symbol': 'D_x', 'latex': 'D_x', 'unit': 'N*m*s/rad', 'meaning': 'damping on the inner gimbal', 'default': 9.0},
         {'symbol': 'D_z', 'latex': 'D_z', 'unit': 'N*m*s/rad', 'meaning': 'damping on the outer gimbal', 'default': 9.0},
-        {'symbol': 'J_x', 'latex': 'J_x', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_x', 'default': 200.0, 'positive': True},
-        {'symbol': 'J_y', 'latex': 'J_y', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_y', 'default': 200.0, 'positive': True},
-        {'symbol': 'J_z', 'latex': 'J_z', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_z', 'default': 200.0, 'positive': True},
+        {'symbol': 'J_x', 'latex': 'J_x', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in roll', 'default': 200.0, 'positive': True},
+        {'symbol': 'J_y', 'latex': 'J_y', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in pitch', 'default': 200.0, 'positive': True},
+        {'symbol': 'J_z', 'latex': 'J_z', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in yaw', 'default': 200.0, 'positive': True},
         {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, the body fixed', 'default': 0.6, 'positive': True},
         {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, the body fixed', 'default': 0.9, 'positive': True},
         {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, the body fixed', 'default': 0.7, 'positive': True},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
-Digest: f934b9ed20e604674aa7a0b1bc5e1e0bfb36f39d28a1af3d409758918898868f
+Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
+Digest: 4ea5d5a7ce0750864276acbd17f4931c38f6776c8dd71fa506897793c804fd2e
 """
 
 import math

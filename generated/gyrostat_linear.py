@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
-Digest: a15ff7b017e994aba8192f4732ce2ee49dc6e4d6405364d0d0133dbc49e2680f
+Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
+Digest: 7e0d67aeedb816dfc987f3cdd1b6e0b1cd39a398b7bb24069c738e3589d95dd6
 """
 
 import math

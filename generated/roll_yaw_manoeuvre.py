@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
-Digest: 07b507f306551ac1b90bacc5e31d5e5ddcf87cfa7b37d580722294377ecb2aae
+Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
+Digest: 4ebb26185e561549d4c86c7c8d2f6b5a1f88bde3fa019ca473315dec133b92d3
 """
 
 import math

@@ -55,7 +55,9 @@ def test_shipped_models_have_their_titles_and_meanings_in_every_language(languag
         models = with_origins(subject.model if isinstance(subject, Problem) else subject)
         known |= translated(models[0], language)
         said |= {subject.title, *(text for m in models for text in (m.title, *(v.meaning for v in variables_of(m))))}
-        said |= {line.index for m in models for paragraph in m.statement() for line in paragraph.lines}
+        lines = [line for m in models for paragraph in m.statement() for line in paragraph.lines]
+        said |= {line.index for line in lines}
+        said |= {word for line in lines for word in re.findall(r"\\mathrm\{([a-z]\w+)", str(line.left))}
     assert {text for text in said if text} == set(known)
 
 

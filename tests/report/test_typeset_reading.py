@@ -108,8 +108,8 @@ def test_of_several_path_constraints_each_has_its_own_equations() -> None:
     steps = ("constraint_order", "boundary_control", "constraint_multiplier", "constrained_costates")
     for step in (*steps, "junction_conditions"):
         part = text.partition(rf"\satsymstep{{approach_cone:{step}}}")[2].partition(r"\satsymstep")[0]
-        assert part.count(r"Of $\Gamma_{1}$:") == part.count(r"Of $\Gamma_{2}$:") == 1
-    assert r"Of $\Gamma" not in render(shipped("beam"))
+        assert part.count(r"for $\Gamma_{1}$") == part.count(r"for $\Gamma_{2}$") == 1
+    assert r"for $\Gamma" not in render(shipped("beam"))
 
 
 def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
@@ -133,3 +133,16 @@ def test_laws_list_what_they_are_made_of_and_no_more() -> None:
 def test_fixed_axes_are_not_said_to_turn() -> None:
     assert "The unit vectors are fixed" in render(shipped("two_body"))
     assert "The unit vectors turn" in render(shipped("polar_orbit"))
+
+
+def test_a_fraction_that_all_terms_share_stands_before_the_parentheses() -> None:
+    text = render(shipped("reorientation"))
+    assert r"\tfrac{1}{2} \lambda_{q_1} (q_2 \omega_3 - q_3 \omega_2 + q_4 \omega_1)" in text
+    assert r"\bigl(\tfrac{1}{2} (" not in text
+
+
+def test_bodies_in_space_are_named_in_the_language_of_the_document() -> None:
+    text = render(shipped("gimballed_wheel"), "id")
+    assert r"\omega_{\mathrm{roda}, y}" in text
+    assert r"\mathrm{modus\ x}" in text
+    assert not re.search(r"\\mathrm\{(?:body|wheel|mode)\b", text)

@@ -23,8 +23,8 @@ from satsym.symbolic.notation import TIME
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
 
-_NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*(?=\})")
-"""At the foot of a symbol: what the model calls a part of it."""
+_NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*")
+"""At the foot of a symbol: what the model calls a part of it, or the first word of that."""
 
 
 OF_TIME = ("openings", "boundary_value", "statement", "rules", "groups", "boundary", "conclusions", "claims")

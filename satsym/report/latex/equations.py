@@ -17,7 +17,7 @@ INDENT = 1.0
 
 APART = r" \\ \noalign{\vskip 4pt} "
 """Between rows of a matrix with fractions."""
-TALL = 6
+TALL = 4
 """Lines of one equation that are kept on one page, at most."""
 TOGETHER = 4
 """Lines of the longest group of equations that no page may break."""

@@ -92,7 +92,7 @@ class Multibody(Bodies):
         """Bodies along the axes of their inertias, and loads."""
         lines = []
         for body in self.bodies:
-            label, axes = rf"\mathrm{{{body.name}}}", axes_of(body)
+            label, axes = r"\mathrm{" + body.name.replace(" ", r"\ ") + "}", axes_of(body)
             inertia = body.central_inertia.to_matrix(axes).applyfunc(self.static)
             for k, letter in enumerate("xyz"):
                 index = f"{{{label}, {letter}}}"

@@ -37,10 +37,10 @@ def take_apart(expression: sp.Expr) -> Product:
             bottom.append(sp.Pow(factor.base, -factor.exp))
         elif factor.is_Add and expression.is_Mul:
             content, primitive = factor.primitive()
-            if not content.is_Integer:
+            if not content.is_Integer and not all(abs(term.as_coeff_Mul()[0]) == 1 for term in primitive.args):
                 content, primitive = sp.Integer(1), factor
             flip = all(map(is_negative, primitive.args))
-            number *= -content if flip else content
+            number, below = number * (-content.p if flip else content.p), below * content.q
             top.append(-primitive if flip else primitive)
         else:
             top.append(factor)
