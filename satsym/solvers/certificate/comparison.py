@@ -54,13 +54,16 @@ class Compared:
     """That one."""
     interrupted: bool
     """Whether time was up before all were tried."""
+    several: bool = False
+    """Whether one led to a minimum that clearly costs more: then there may be others."""
 
     def joined(self, other: Compared) -> Compared:
         """With what others of the kind came to."""
         least = min(self, other, key=lambda one: one.margin)
         count, solved = (getattr(self.summary, name) + getattr(other.summary, name) for name in ("tried", "solved"))
         summary = Competitors(self.summary.kind, count, solved, least.summary.cheapest)
-        return Compared(summary, least.margin, least.cheapest, self.interrupted or other.interrupted)
+        interrupted, several = self.interrupted or other.interrupted, self.several or other.several
+        return Compared(summary, least.margin, least.cheapest, interrupted, several)
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,6 +38,9 @@ WORK = 15_000
 SEEDS = 4
 """Starts that are drawn, of each kind."""
 
+MORE, MORE_WORK = 16, 4 * WORK
+"""Further starts where the first ones lead to several minima, and the columns after which no other one is begun."""
+
 BENT = (0.3, 1.0)
 """Amplitudes of what is added to a straight line, in sizes of the states."""
 
@@ -59,7 +62,6 @@ ROUGH = 1e-2
 SAMPLES = 401
 """Values of a guess that leads to a cheaper competitor."""
 
-
 Search = Callable[[Limits], Competitor | None]
 """Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
 
@@ -74,15 +76,19 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     seed
         Of starts that are drawn: another one where a solution was found from such a start.
     """
-    kinds, missing = [], []
+    kinds, missing, spec = [], [], solution.instance.model.spec
     for kind, attempts in _attempts(solution, seed):
+        smooth = kind is Kind.STARTS and not (spec.directional or spec.stationary)
         activity.tell(f"certificate: comparing with {kind.value} ...")
         found = _tried(solution, kind, attempts, deadline)
         if found is None:
             missing.append(kind)
             continue
-        if kind is Kind.STARTS and 2 * found.summary.solved < found.summary.tried and not found.interrupted:
+        if smooth and 2 * found.summary.solved < found.summary.tried and not found.interrupted:
             more = _tried(solution, kind, _from_motions(solution, seed), deadline)
+            found = found if more is None else found.joined(more)
+        if smooth and found.several and found.margin >= 0.0 and not found.interrupted:
+            more = _tried(solution, kind, _from_more(solution, seed), deadline, MORE_WORK)
             found = found if more is None else found.joined(more)
         if kind is Kind.STARTS and found.margin >= 0.0:
             far = _tried(solution, kind, _from_controls(solution, seed), deadline)
@@ -132,17 +138,21 @@ def _motion(competitor: Competitor, solution: Solution) -> tuple[Array, Array, f
     return times, z, end
 
 
-def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: float) -> Compared | None:
-    """Every attempt at a kind; ``None`` where there is none."""
+def _tried(
+    solution: Solution, kind: Kind, attempts: list[Search], deadline: float, work: float = math.inf
+) -> Compared | None:
+    """Every attempt at a kind that is begun before so much work is done; ``None`` where there is none."""
     if not attempts:
         return None
     found: list[Competitor] = []
-    count, interrupted = 0, False
+    count, spent, interrupted = 0, 0, False
     for attempt in attempts:
+        if spent > work:
+            break
         limits = Limits(200, deadline, work=WORK)
         with np.errstate(all="ignore"):
             competitor = tried(partial(attempt, limits))
-        interrupted = limits.late
+        interrupted, spent = limits.late, spent + limits.meter.spent
         if interrupted:
             break
         count += 1
@@ -150,7 +160,8 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
             found.append(competitor)
     cheapest = min(found, key=lambda one: one.cost, default=None)
     summary = summed(solution, kind, count, [one.cost for one in found], interrupted)
-    return replace(summary, cheapest=cheapest)
+    several = any(one.cost > solution.objective + ROUGH * abs(solution.objective) for one in found)
+    return replace(summary, cheapest=cheapest, several=several)
 
 
 def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
@@ -159,20 +170,15 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     from satsym.solvers.symmetry import rotation
 
     instance, cost = solution.instance, solution.objective
-    lasting = float(solution.times[-1]) - instance.t0
-    fixed = replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess())
-    problem = two_point(fixed, lasting)
-    rng = np.random.default_rng(seed)
-
-    def leading(paths: Any, softness: float = 1.0) -> list[Search]:
-        return [_from_path(problem, path, softness, cost) for path in paths]
+    problem, lasting = _at_its_duration(solution), float(solution.times[-1]) - instance.t0
+    fixed, rng = problem.instance, np.random.default_rng(seed)
 
     if instance.model.spec.directional or instance.model.spec.stationary:
         bent = tuple(BENT[k % len(BENT)] for k in range(SEEDS))
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
             yield kind, [_rough(search, cost) for search in searches]
         return
-    yield Kind.STARTS, leading(_bent(problem, rng))
+    yield Kind.STARTS, [_from_path(problem, path, 1.0, cost) for path in _bent(problem, rng)]
     if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
         soft = [_from_path(problem, path, softness, cost) for path, softness in starts]
@@ -206,18 +212,26 @@ def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: floa
     return attempt
 
 
+def _at_its_duration(solution: Solution) -> TwoPoint:
+    """The problem of a solution at its duration, without its guess."""
+    from satsym.solvers.collocation.scaling import two_point
+
+    instance, lasting = solution.instance, float(solution.times[-1]) - solution.instance.t0
+    return two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess()), lasting)
+
+
 def _from_motions(solution: Solution, seed: int) -> list[Search]:
     """The minima within the bounds to which motions under controls that are drawn lead."""
-    from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.drawn_motions import motions
 
-    instance, spec = solution.instance, solution.instance.model.spec
-    if spec.directional or spec.stationary:
-        return []
-    lasting = float(solution.times[-1]) - instance.t0
-    problem = two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess()), lasting)
-    drawn = motions(problem, np.random.default_rng(seed))
-    return [_from_path(problem, motion.path, SOFT[-1], solution.objective) for motion in drawn]
+    problem, rng = _at_its_duration(solution), np.random.default_rng(seed)
+    return [_from_path(problem, one.path, SOFT[-1], solution.objective) for one in motions(problem, rng)]
+
+
+def _from_more(solution: Solution, seed: int) -> list[Search]:
+    """The minima within the bounds to which further paths lead that are drawn."""
+    problem, rng = _at_its_duration(solution), np.random.default_rng((seed, MORE))
+    return [_from_path(problem, path, 1.0, solution.objective) for path in _bent(problem, rng, MORE)]
 
 
 def _from_controls(solution: Solution, seed: int) -> list[Search]:
@@ -337,11 +351,11 @@ def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None
     return Competitor(problem, refined.curve, refined.cost * problem.scale.cost)
 
 
-def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any], Any]]:
+def _bent(problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS) -> Iterator[Callable[[Any], Any]]:
     """Paths that are drawn, of both amplitudes in turn."""
     from satsym.solvers.cold_start import paths
 
-    for k in range(SEEDS):
+    for k in range(count):
         yield paths.bent(problem, rng, BENT[k % len(BENT)])
 
 
