@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from satsym.solution import Simulation, Solution
 
 RESULTS = "results"
-DRAWN = ("solve", "simulate")
-"""Commands whose results can be drawn again; here once more, because ``--help`` loads no reader of them."""
+READ = ("solve", "simulate")
+"""Commands whose trajectories can be drawn again; here once more, because ``--help`` loads no reader of them."""
+DRAWN = (*READ, "analyse", "lqr", "compare")
+"""Commands whose results can be drawn again; of the others what they show is found again."""
 
 
 def folder_for(name: str, command: str, out: Path | None, look: Look | None) -> Path | None:
@@ -74,23 +76,29 @@ def study_folder(subject: str, source: Path | None) -> Path | None:
     return next((place for place in places if is_study(place)), None)
 
 
+def newest(name: str, command: str | None) -> Path | None:
+    """Where the results of an instance or a model are: of a command, or of the one that wrote last, if any are."""
+    from satsym.report.results.sets import written_at
+
+    home = Path(RESULTS, name)
+    there = {home / each: written_at(home / each) for each in ([command] if command else DRAWN)}
+    known = {folder: time for folder, time in there.items() if time is not None}
+    return max(known, key=lambda folder: known[folder], default=None)
+
+
 def saved_folder(name: str, command: str | None) -> Path:
-    """Where the results of an instance are: of a command, or of the one that wrote last.
+    """The same.
 
     Raises
     ------
     BadInput
         If there are none.
     """
-    from satsym.report.results.sets import written_at
-
-    home = Path(RESULTS, name)
-    there = {home / each: written_at(home / each) for each in ([command] if command else DRAWN)}
-    known = {folder: time for folder, time in there.items() if time is not None}
-    if not known:
-        which = f"of `satsym {command}` " if command else ""
+    found = newest(name, command)
+    if found is None:
+        home, which = Path(RESULTS, name), f"of `satsym {command}` " if command else ""
         raise BadInput(
             f"{printable(name)}: no results {which}in {printable(str(home))}; `satsym {command or 'solve'} "
             f"{printable(name)} --plot` writes them, or say with --from where they are"
         )
-    return max(known, key=lambda folder: known[folder])
+    return found

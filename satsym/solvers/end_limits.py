@@ -20,7 +20,7 @@ from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.solution import Kind, Progress, Solution
 from satsym.solvers import iteration
-from satsym.solvers.certificate.comparison import Comparison, summed
+from satsym.solvers.certificate.comparison import summed
 from satsym.solvers.certificate.end_limits import BEYOND, SIGN, beyond, pushes
 from satsym.status import BadInput, Status, Verdict
 from satsym.wording import counted
@@ -220,13 +220,12 @@ def _with_others(solution: Solution, others: list[Solution], late: bool) -> Solu
     assert certificate is not None
     kind = summed(solution, Kind.ENDS, len(others), [one.objective for one in filter(_inside, others)], late)
     missing = (Kind.ENDS,) if late or not any(one.status.answered for one in others) else ()
-    checks = Comparison((kind,), missing).checks
-    passed = all(check.passed for check in checks)
+    passed = all(check.passed for check in kind.checks)
     lesser = certificate.verdict is Verdict.CERTIFIED and not passed
     more = replace(
         certificate,
         verdict=Verdict.EXTREMAL_ONLY if lesser else certificate.verdict,
-        checks=(*certificate.checks, *checks),
+        checks=(*certificate.checks, *kind.checks),
         competitors=(*certificate.competitors, kind.summary),
         not_checked=(*certificate.not_checked, *missing),
     )

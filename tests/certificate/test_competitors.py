@@ -12,10 +12,11 @@ from sympy import Matrix, exp, eye
 
 from satsym import instance
 from satsym.instance import Guess, Instance
-from satsym.solution import Certificate, Kind, Progress, Solution
+from satsym.solution import Certificate, Competitors, Kind, Progress, Solution
 from satsym.solvers import solve
 from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.comparison import UNCOMPARED, Compared, Comparison
 from satsym.solvers.certificate.competitors import none_conceivable
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.path_of_problems import along_turns, fading
@@ -26,7 +27,7 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.improving import improved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.symmetry import rotation, spirals
-from satsym.status import BadInput, Status
+from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
 from tests.support.models import build
 
@@ -309,3 +310,25 @@ def test_no_control_is_the_best_only_where_nothing_depends_on_the_state() -> Non
         -1e-6 if name == "k1" else value for name, value in zip(names, thesis.instance.parameters, strict=True)
     )
     assert not none_conceivable(replace(thesis, instance=replace(thesis.instance, parameters=weighed)))
+
+
+def test_what_was_compared_with_nothing_is_not_certified() -> None:
+    """Where the state rests between both ends for a time of 10,000, nothing that is drawn leads anywhere."""
+    found = solve(instance.load("hypersensitive-10000"))
+    assert found.certificate is not None
+    assert not any(one.solved for one in found.certificate.competitors)
+    assert [check.name for check in found.certificate.checks if not check.passed] == [UNCOMPARED]
+    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
+
+
+def test_a_single_competitor_that_was_solved_is_something_to_compare_with() -> None:
+    def tried(kind: Kind, solved: int, interrupted: bool = False) -> Compared:
+        return Compared(Competitors(kind, 4, solved, 2.0), 1.0 if solved else np.inf, None, interrupted)
+
+    def failing(*kinds: Compared) -> list[str]:
+        return [check.name for check in Comparison(kinds, ()).checks if not check.passed]
+
+    assert failing() == []
+    assert failing(tried(Kind.STARTS, 0), tried(Kind.SATURATION, 0)) == [UNCOMPARED]
+    assert failing(tried(Kind.STARTS, 0), tried(Kind.SATURATION, 1)) == []
+    assert failing(tried(Kind.STARTS, 0, interrupted=True)) == ["time was up before: seeded starts"]

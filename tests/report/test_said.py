@@ -93,6 +93,8 @@ COMPOSED = (
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),
     *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
     "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",
+    "[control] <key>: the model bounds its controls one by one; write <name> = [lower, upper], and so on",
+    "bounds are <lower> and <upper>",
     "[control] <name>: this control enters without a square, so it needs both bounds; write <again> = [lower, upper]",
     *(f"<place>: terminal inequality <name>: it is met at no final time {when}" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from satsym import instance
+from satsym.analysis.regulator.feedback import simulate as under_law
 from satsym.cli.app import program
 from satsym.cli.saving import save, trajectory_files
 from satsym.instance.numbers import changed
@@ -74,7 +76,7 @@ def plotted(*arguments: str | Path) -> str:
 @pytest.mark.slow(in_turn=True)
 def test_a_motion_that_begins_with_an_impulse_comes_back(tmp_path: Path) -> None:
     """Its first state is not the initial one of the instance, which has not changed all the same."""
-    found = simulate(instance.load("lapan-classical"), "classical")
+    found = under_law(instance.load("lapan-classical"), "classical")
     assert found.x[2, 0] != found.instance.initial[2]
     save(tmp_path, simulation_object(found), trajectory_files(tmp_path, found, look=None))
     again, _ = trajectory.read(found.instance, tmp_path)
@@ -92,6 +94,50 @@ def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path
     assert [Path(name).name for name in drawn["pictures"]] == [path.name for path in pictures]
     for path in pictures:
         assert (tmp_path / "again" / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize(
+    "command",
+    [
+        "lqr uny-lqr",
+        "lqr geo-lqr --set initial.r=42200",
+        "analyse itb-earth",
+        "analyse clohessy_wiltshire",
+        "compare lapan-minimum-energy lapan-classical",
+    ],
+)
+def test_what_was_found_without_a_trajectory_is_drawn_again(command: str, tmp_path: Path) -> None:
+    """With the bytes of the pictures that the command itself draws."""
+    begun = [*command.split(), "--out", str(tmp_path / "run"), "--plot"]
+    assert CliRunner().invoke(program, begun, standalone_mode=False).return_value == 0
+    drawn = json.loads(plotted(command.split()[1], "--from", tmp_path / "run", "--out", tmp_path / "again", "--json"))
+    names = sorted(path.name for path in (tmp_path / "run").glob("*.png"))
+    assert sorted(Path(name).name for name in drawn["pictures"]) == names != []
+    for name in names:
+        assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "run" / name).read_bytes(), name
+
+
+def test_what_is_of_something_else_is_not_drawn(tmp_path: Path) -> None:
+    case, run = tmp_path / "own.toml", tmp_path / "run"
+    case.write_bytes(instance.load("uny-lqr").path.read_bytes())
+    assert CliRunner().invoke(program, ["lqr", str(case), "--out", str(run)], standalone_mode=False).return_value == 0
+
+    def refused(subject: str, message: str) -> None:
+        done = CliRunner().invoke(program, ["plot", subject, "--from", str(run)], standalone_mode=False)
+        assert done.return_value == 3
+        assert re.search(message, done.stderr), done.stderr
+
+    refused("uny-lqr", "is of own .*, not of uny-lqr .*; `satsym lqr X")
+    refused("clohessy_wiltshire", "is of own .*, not of clohessy_wiltshire .*; `satsym lqr X")
+    case.write_text(case.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
+    refused(str(case), "is of own before its file was changed; `satsym lqr X")
+    listing = run / "result.json"
+    listing.write_text(
+        listing.read_text(encoding="utf-8").replace('"instance": "own"', '"instance": 7'), encoding="utf-8"
+    )
+    refused(str(case), "cannot be read")
+    assert not list(run.glob("*.png"))
 
 
 @pytest.mark.study

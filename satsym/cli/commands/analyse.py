@@ -58,7 +58,7 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
     saved: list[Path] = []
     if as_json or folder is not None:
         result = examination_object(given, found, orbit, attitudes=resting)
-        saved = save(folder, result, _pictures(given, found, orbit, resting, look) if folder and look else {})
+        saved = save(folder, result, pictures_of(given, found, orbit, resting, look) if folder and look else {})
     if as_json:
         emit_json(result)
     else:
@@ -66,9 +66,10 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
     return ExitCode.DONE
 
 
-def _pictures(
+def pictures_of(
     given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, look: Look
 ) -> dict[str, Content]:
+    """Pictures of what was found of an instance or a model: near rest, of its orbit, of all attitudes at rest."""
     from satsym.instance import Instance
     from satsym.report.plots.systems import of_analysis, of_attitudes, of_orbit
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from satsym.cli.help import command
 from satsym.cli.options import json_option, look_options, place_option, subject_argument
 from satsym.cli.output import answer, emit_json, tell
-from satsym.cli.saving import saved_folder, split, study_folder
+from satsym.cli.saving import DRAWN, READ, newest, saved_folder, split, study_folder
 from satsym.report.said import say
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.report.results.sets import Found
-    from satsym.solution import Simulation, Solution
 
 EXAMPLES = """\b
 Examples:
@@ -34,7 +33,7 @@ Examples:
     "--from",
     "source",
     metavar="DIR",
-    help="Where its trajectory.npz and result.json are; by default the newest of results/X/solve, results/X/simulate.",
+    help="Where its result.json is; by default the newest of results/X.",
 )
 @place_option("--out", metavar="DIR", help="Where pictures go; by default there too.")
 @look_options
@@ -42,14 +41,16 @@ Examples:
 def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:
     """Draw a saved result, without solving again.
 
-    X is the instance that was solved or simulated with --out or --plot, or X/COMMAND for what that command wrote, or
-    the folder of a study. A result that is not whole any more is refused.
+    X is the instance or the model whose results were saved with --out or --plot, or X/COMMAND for what that command
+    wrote, or the folder of a study. A result that is not whole any more is refused. What analyse, lqr and compare show
+    is found again.
     """
     from satsym import instance
     from satsym.report import plots
     from satsym.report.results import trajectory
     from satsym.report.results.files import check_writable
     from satsym.report.results.objects import head
+    from satsym.report.results.sets import command_of
     from satsym.report.study import draw
     from satsym.report.terminal.solution import with_files
 
@@ -59,29 +60,50 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
         answer(as_json, shown, lambda: with_files(f"{said['instance']}: study of {said['rows']} rows", drawn))
         return ExitCode.DONE
     name, command = split(subject)
+    home = source or newest(Path(name).stem, command)
+    if home and (wrote := command_of(home)) in DRAWN and wrote not in READ:
+        return _redrawn(name, command, home, out, look, as_json)
     case = instance.load(name)
     source = source or saved_folder(case.name, command)
     check_writable(out or source)
     result, found = trajectory.read(case, source)
-    if command not in (None, found.command):
-        raise BadInput(f"{printable(str(source))}: holds the result of {found.command}, not of {command}")
+    _require(command, found)
     pictures = plots.pictures(result, look)
-    saved = _save(out or source, found, result, pictures) if pictures else []
+    begins = head("plot", case.model.spec, case, result.status)
+    saved = _save(out or source, found, begins, pictures) if pictures else []
     if as_json:
-        begins = head("plot", case.model.spec, case, result.status)
         emit_json(begins | {"pictures": [str(path) for path in saved]})
     else:
         tell(with_files(say(case.title) or case.name, saved) if saved else say("there is no trajectory to draw"))
     return ExitCode.DONE
 
 
-def _save(folder: Path, found: Found, result: Solution | Simulation, pictures: Mapping[str, Content]) -> list[Path]:
+def _redrawn(name: str, command: str | None, home: Path, out: Path | None, look: Look, as_json: bool) -> ExitCode:
+    """Draw what was analysed, designed or compared."""
+    from satsym.cli.redrawing import redrawn
+    from satsym.report.results import sets
+    from satsym.report.results.files import check_writable
+    from satsym.report.terminal.solution import with_files
+
+    check_writable(out or home)
+    found = sets.read(home)
+    _require(command, found)
+    begins, title, pictures = redrawn(name, found, look)
+    saved = _save(out or home, found, begins, pictures)
+    answer(as_json, begins | {"pictures": [str(path) for path in saved]}, lambda: with_files(say(title) or name, saved))
+    return ExitCode.DONE
+
+
+def _require(command: str | None, found: Found) -> None:
+    if command not in (None, found.command):
+        raise BadInput(f"{printable(str(found.folder))}: holds the result of {found.command}, not of {command}")
+
+
+def _save(folder: Path, found: Found, begins: Mapping[str, Any], pictures: Mapping[str, Content]) -> list[Path]:
     """Add pictures to the set they are of; or make them a set of their own, which replaces none but of pictures."""
     from satsym.report.results import sets
-    from satsym.report.results.objects import head
 
     if folder.resolve() == found.folder.resolve():
         return sets.extend(found, pictures)
     sets.keep_apart(folder, "plot")
-    case = result.instance
-    return sets.write(folder, head("plot", case.model.spec, case, result.status), pictures)[:-1]
+    return sets.write(folder, begins, pictures)[:-1]

@@ -26,6 +26,9 @@ SAME = 1e-9
 """Relative error of refined costs; it makes no difference."""
 
 
+UNCOMPARED = "compared with nothing: no competitor was solved"
+"""The check that fails where that is so."""
+
 LARGEST = 1e300
 """Beyond this no margin is: one that is infinite has nothing to compare."""
 
@@ -57,6 +60,13 @@ class Compared:
     several: bool = False
     """Whether one led to a minimum that clearly costs more: then there may be others."""
 
+    @property
+    def checks(self) -> list[Check]:
+        """That none is cheaper, if one has a cost, and that there was time for all."""
+        cheaper = Check(f"cheaper by: {self.summary.kind.value}", max(0.0, -self.margin), COST_MARGIN)
+        late = Check(f"time was up before: {self.summary.kind.value}", 1.0, 0.0)
+        return [*([cheaper] if math.isfinite(self.margin) else []), *([late] if self.interrupted else [])]
+
     def joined(self, other: Compared) -> Compared:
         """With what others of the kind came to."""
         least = min(self, other, key=lambda one: one.margin)
@@ -80,19 +90,11 @@ class Comparison:
         return Comparison(self.kinds + other.kinds, self.not_checked + other.not_checked)
 
     @property
-    def interrupted(self) -> list[Kind]:
-        """Those for which time was up."""
-        return [c.summary.kind for c in self.kinds if c.interrupted]
-
-    @property
     def checks(self) -> list[Check]:
-        """That none is cheaper of those which have a cost, and that there was time for all."""
-        cheaper = [
-            Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
-            for kind in self.kinds
-            if math.isfinite(kind.margin)
-        ]
-        return cheaper + [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in self.interrupted]
+        """Those of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
+        none = not any(kind.summary.solved or kind.interrupted for kind in self.kinds)
+        found = [check for kind in self.kinds for check in kind.checks]
+        return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
 
     @property
     def better(self) -> Competitor | None:

@@ -1,0 +1,134 @@
+"""Pictures of what was analysed, designed or compared, found again from the instances that a result.json names.
+
+Trajectories are read back; of these commands the numbers behind pictures are not saved, because they are soon had.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from satsym import instance
+from satsym.cli.output import live
+from satsym.instance import Instance
+from satsym.instance.numbers import changed
+from satsym.report.results.objects import file_of, head, head_about
+from satsym.report.results.set_list import LIST, unusable
+from satsym.status import Status
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.report.look import Look
+    from satsym.report.results.files import Content
+    from satsym.report.results.sets import Found
+
+
+class _File(msgspec.Struct):
+    name: str
+    digest: str
+
+
+class _Of(msgspec.Struct):
+    """An instance that a result is of."""
+
+    instance: str | None
+    model: str | None
+    instance_file: _File | None = None
+
+
+class _Written(_Of):
+    """What of result.json is read back."""
+
+    settings: dict[str, float] = msgspec.field(name="set", default_factory=dict)
+    instances: list[_Of] = []
+
+
+Drawn = tuple[dict[str, Any], str, dict[str, "Content"]]
+"""What an object about pictures begins with, a title, and the pictures."""
+
+
+def redrawn(subject: str, found: Found, look: Look) -> Drawn:
+    """Pictures of a result of ``satsym analyse``, ``lqr`` or ``compare``.
+
+    Parameters
+    ----------
+    subject
+        The instance or the model that it is of, of several the first.
+    found
+        The result.
+
+    Raises
+    ------
+    BadInput
+        If the result cannot be read, is of something else, or of an instance that has changed since.
+    """
+    listing = found.folder / LIST
+    try:
+        written = msgspec.json.decode(found.result, type=_Written)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise unusable(listing, f"cannot be read ({printable(str(error))})", found.command) from None
+    return (
+        _of_several(subject, written, found, look)
+        if found.command == "compare"
+        else _of_one(subject, written, found, look)
+    )
+
+
+def _of_one(subject: str, written: _Written, found: Found, look: Look) -> Drawn:
+    from satsym.analysis.subject import find
+
+    given = find(subject)
+    own, spec = (given, given.model.spec) if isinstance(given, Instance) else (None, given.spec)
+    _require_same(written, own, spec.name, found, written.settings)
+    if own and written.settings:
+        given = changed(own, written.settings)
+    if found.command == "lqr":
+        from satsym.analysis.regulator.feedback import designed
+        from satsym.report.plots.systems import of_design
+
+        pictures = of_design(designed(given), look)
+    else:
+        from satsym.analysis.subject import examined
+        from satsym.cli.commands.analyse import pictures_of
+        from satsym.report.results.equilibria import attitudes
+
+        pictures = pictures_of(given, *examined(given), attitudes(given), look)
+    return head_about("plot", given, Status.CONVERGED), (own.title if own else "") or spec.title, pictures
+
+
+def _of_several(subject: str, written: _Written, found: Found, look: Look) -> Drawn:
+    from satsym.analysis import comparison
+    from satsym.report.plots.comparison import pictures
+
+    first = instance.load(subject)
+    loaded = list(_loaded(first, written))
+    for one, case in zip(written.instances, loaded, strict=True):
+        _require_same(one, case, case.model.spec.name, found)
+    with live() as line:
+        cases = comparison.compare(loaded, line.show)
+    status = Status.CONVERGED if all(case.answered for case in cases) else Status.NOT_CONVERGED
+    title = ", ".join(case.name for case in loaded)
+    return head("plot", first.model.spec, None, status), title, pictures(cases, look)
+
+
+def _loaded(first: Instance, written: _Written) -> Iterator[Instance]:
+    """The instances by their files beside that of the first, or else by their names."""
+    for one in written.instances:
+        beside = first.path.parent / (one.instance_file.name if one.instance_file else "")
+        yield instance.load(str(beside) if beside.is_file() else one.instance or "")
+
+
+def _require_same(
+    written: _Of, given: Instance | None, model: str, found: Found, settings: dict[str, float] | None = None
+) -> None:
+    """Refuse what is not of an instance as it stands, or not of a model."""
+    listing, own = found.folder / LIST, given.name if given else None
+    more = "".join(f" --set {printable(name)}={value!r}" for name, value in (settings or {}).items())
+    if (written.model, written.instance) != (model, own):
+        theirs = printable(f"{written.instance or written.model} (model {written.model})")
+        raise unusable(listing, f"is of {theirs}, not of {own or model} (model {model})", found.command, more)
+    file = file_of(given) if given else None
+    if file and written.instance_file and file["digest"] != written.instance_file.digest:
+        raise unusable(listing, f"is of {own} before its file was changed", found.command, more)
