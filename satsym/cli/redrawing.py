@@ -91,10 +91,10 @@ def _of_one(subject: str, written: _Written, found: Found, look: Look) -> Drawn:
         pictures = of_design(designed(given), look)
     else:
         from satsym.analysis.subject import examined
-        from satsym.cli.commands.analyse import pictures_of
+        from satsym.report.plots.systems import of_subject
         from satsym.report.results.equilibria import attitudes
 
-        pictures = pictures_of(given, *examined(given), attitudes(given), look)
+        pictures = of_subject(given, *examined(given), attitudes(given), look)
     return head_about("plot", given, Status.CONVERGED), (own.title if own else "") or spec.title, pictures
 
 

@@ -17,8 +17,6 @@ from satsym.status import ExitCode
 if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
-    from satsym.instance import Instance
-    from satsym.kernels import Kernels
     from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.symbolic.equilibria.survey import Attitudes
@@ -58,28 +56,17 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
     saved: list[Path] = []
     if as_json or folder is not None:
         result = examination_object(given, found, orbit, attitudes=resting)
-        saved = save(folder, result, pictures_of(given, found, orbit, resting, look) if folder and look else {})
+        pictures: dict[str, Content] = {}
+        if folder and look:
+            from satsym.report.plots.systems import of_subject
+
+            pictures = of_subject(given, found, orbit, resting, look)
+        saved = save(folder, result, pictures)
     if as_json:
         emit_json(result)
     else:
         tell(with_files(_text(found, orbit, resting), saved))
     return ExitCode.DONE
-
-
-def pictures_of(
-    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, look: Look
-) -> dict[str, Content]:
-    """Pictures of what was found of an instance or a model: near rest, of its orbit, of all attitudes at rest."""
-    from satsym.instance import Instance
-    from satsym.report.plots.systems import of_analysis, of_attitudes, of_orbit
-
-    pictures = (of_analysis(found, look) if found else {}) | (of_orbit(orbit, look) if orbit else {})
-    if resting is None:
-        return pictures
-    spec = given.model.spec if isinstance(given, Instance) else given.spec
-    title = (given.title if isinstance(given, Instance) else "") or spec.title
-    unit = next(v.unit for v in spec.parameters if v.symbol == resting.parameter)
-    return pictures | of_attitudes(resting, title, unit, look)
 
 
 def _text(found: Analysis | None, orbit: Survey | None, resting: Attitudes | None) -> str:

@@ -20,10 +20,27 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.regulator.feedback import Design
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
     from satsym.symbolic.equilibria.survey import Attitudes
 
 Pictures: TypeAlias = dict[str, files.Content]
 """Name -> content of each file."""
+
+
+def of_subject(
+    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, look: Look
+) -> Pictures:
+    """Draw what was found of an instance or a model: near rest, of its orbit, of all attitudes at rest."""
+    from satsym.instance import Instance
+
+    pictures = (of_analysis(found, look) if found else {}) | (of_orbit(orbit, look) if orbit else {})
+    if resting is None:
+        return pictures
+    spec = given.model.spec if isinstance(given, Instance) else given.spec
+    title = (given.title if isinstance(given, Instance) else "") or spec.title
+    unit = next(v.unit for v in spec.parameters if v.symbol == resting.parameter)
+    return pictures | of_attitudes(resting, title, unit, look)
 
 
 def of_analysis(found: Analysis, look: Look = SCREEN) -> Pictures:
