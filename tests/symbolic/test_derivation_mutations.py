@@ -115,7 +115,6 @@ MUTANTS = [
     ("stationarity", pontryagin, "tidy", "-lambda_theta_dot/(c2*r)", "-lambda_theta_dot/c2"),
     ("second_derivative", pontryagin, "_hessian", "diag(c1, c2)", "diag(c1, 2*c2)"),
     ("second_derivative", pontryagin, "_hessian", "diag(c1, c2)", "-diag(c1, c2)"),
-    ("state_equations", pontryagin, "tidy", "r_dot", "-r_dot"),
     (
         "costate_equations",
         pontryagin,
@@ -146,8 +145,26 @@ def test_a_planted_error_is_caught(
     assert planted.hits
 
 
+def test_slopes_of_h_that_are_not_the_rates_are_caught(polar: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
+    gradient = pontryagin.gradient
+    assert redo(polar, "state_equations").equations == polar.step("state_equations").equations
+    monkeypatch.setattr(pontryagin, "gradient", lambda h, by: [*list(gradient(h, by))[:-1], sp.Integer(0)])
+    with pytest.raises(DerivationError, match="failed its check"):
+        redo(polar, "state_equations")
+
+
+def test_both_forms_of_h_at_the_minimiser_are_checked(polar: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two forms the shorter one stands; a falsified one is longer, so that only both at once show."""
+    tidy = pontryagin.tidy
+    monkeypatch.setattr(pontryagin, "tidy", lambda *arguments: 1 - tidy(*arguments))
+    with pytest.raises(DerivationError, match="failed its check"):
+        redo(polar, "minimised_hamiltonian")
+
+
 UNTIDIED = {"control_rates", "newton", "first_order", "reference", "second_derivative", "control_law"}
 """Steps that tidy nothing, next to others that do in one module."""
+
+UNTIDIED |= {"state_equations", "minimised_hamiltonian"}  # these have tests of their own
 
 
 @pytest.mark.slow(in_turn=True)
