@@ -59,6 +59,8 @@ class Compared:
     """Whether time was up before all were tried."""
     several: bool = False
     """Whether one led to a minimum that clearly costs more: then there may be others."""
+    simulated: bool = False
+    """Whether motions under drawn controls were compared, none of which was cheaper unless it is among the others."""
 
     @property
     def checks(self) -> list[Check]:
@@ -92,7 +94,7 @@ class Comparison:
     @property
     def checks(self) -> list[Check]:
         """Those of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
-        none = not any(kind.summary.solved or kind.interrupted for kind in self.kinds)
+        none = not any(kind.summary.solved or kind.interrupted or kind.simulated for kind in self.kinds)
         found = [check for kind in self.kinds for check in kind.checks]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
 

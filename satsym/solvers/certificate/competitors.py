@@ -20,7 +20,7 @@ from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
-from satsym.solvers.certificate.drawn_controls import drawn_below
+from satsym.solvers.certificate.drawn_controls import drawable, drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -92,7 +92,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
             found = found if more is None else found.joined(more)
         if kind is Kind.STARTS and found.margin >= 0.0:
             far = _tried(solution, kind, _from_controls(solution, seed), deadline)
-            found = found if far is None else found.joined(far)
+            found = replace(found if far is None else found.joined(far), simulated=drawable(solution))
         kinds.append(found)
         if found.interrupted or not found.summary.solved:
             missing.append(kind)

@@ -55,6 +55,17 @@ class Drawn:
     cost: float
 
 
+def drawable(solution: Solution) -> bool:
+    """Whether controls are drawn for a solution: where no state is asked of its end."""
+    return _simulated(solution) is not None
+
+
+def _simulated(solution: Solution) -> Simulations | None:
+    spec = solution.instance.model.spec
+    found = None if spec.in_arcs or spec.multipliers else simulations_of(solution)
+    return None if found is None or found.rows.size else found
+
+
 def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
     """The cheapest of the controls drawn about a solution's, if that costs less; ``None`` where none does.
 
@@ -65,9 +76,8 @@ def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
     seed
         Of the controls.
     """
-    instance, spec = solution.instance, solution.instance.model.spec
-    simulations = None if spec.in_arcs or spec.multipliers else simulations_of(solution)
-    if simulations is None or simulations.rows.size:
+    instance, simulations = solution.instance, _simulated(solution)
+    if simulations is None:
         return None
     with np.errstate(all="ignore"):
         change, longer = _cheapest_change(solution, seed)
