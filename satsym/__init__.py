@@ -8,7 +8,7 @@ Importing it imports nothing else: the names below are loaded when they are firs
     solution.objective, solution.x["r"](1.5), solution.u([0.0, 1.0, 2.0])
 """
 
-__version__ = "0.2.0"
+from satsym.version import __version__ as __version__
 
 __all__ = [
     "Angle",

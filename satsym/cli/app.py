@@ -15,7 +15,6 @@ from typing import Any, cast
 
 import click
 
-from satsym import __version__
 from satsym.cli.help import Explained, show_usage, wanted_language
 from satsym.cli.options import language_option, shared_options
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
@@ -23,6 +22,7 @@ from satsym.cli.stopping import comes_of_a_stop, stopped
 from satsym.report import said, texts
 from satsym.report.said import explained
 from satsym.status import BadInput, ExitCode
+from satsym.version import __version__
 from satsym.wording import printable
 
 CLOSED_PIPE = 141

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from satsym.formula import field
 from satsym.formula.evaluation import Engine
+from satsym.formula.functions import OPERATIONS
 from satsym.formula.tree import ONE, ZERO, Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number, substituted
 from satsym.formula.values import Matrix, Sources, without
 from satsym.formula.weight import Scales
@@ -26,6 +27,8 @@ class Calculus(Engine[Node]):
     positive
         Names of symbols that are positive.
     """
+
+    operations = OPERATIONS
 
     def __init__(self, sources: Sources[Node], positive: Collection[str]) -> None:
         super().__init__(sources)

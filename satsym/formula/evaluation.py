@@ -7,18 +7,30 @@ There are two engines: sympy's (:mod:`satsym.symbolic.lookup.operations`) and ou
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Generic
+from typing import Any, ClassVar, Generic
 
-from satsym.formula.functions import OPERATIONS
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Sources, Value, plain, size_of, square, without
 from satsym.status import BadInput
 
 
+@dataclass(frozen=True)
+class Operation:
+    """What a call means, and how many arguments it takes."""
+
+    meaning: Callable[[Any, Call], Value]
+    fewest: int = 1
+    most: int = 1
+
+
 class Engine(ABC, Generic[S]):
     """Evaluates formulas; the abstract methods are what two engines do differently."""
+
+    operations: ClassVar[Mapping[str, Operation]]
+    """What calls mean, by name, besides those of elementary functions."""
 
     def __init__(self, sources: Sources[S]) -> None:
         self._sources = sources
@@ -185,7 +197,7 @@ class Engine(ABC, Generic[S]):
         return Matrix(tuple(tuple(one if i == j else zero for j in range(n)) for i in range(n)))
 
     def _call(self, tree: Call) -> Value:
-        operation = OPERATIONS.get(tree.function)
+        operation = self.operations.get(tree.function)
         if operation is not None:
             return operation.meaning(self, tree)
         return self.function(tree.function, [self.scalar(argument) for argument in tree.arguments])

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
 
+from satsym.formula.evaluation import Engine, Operation
 from satsym.formula.runge_kutta import classical_weights
 from satsym.formula.tree import Call, Grid, Node, Sym, Text, constant
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Value, plain, square, stacked, transposed, without
 from satsym.status import BadInput
-
-if TYPE_CHECKING:
-    from satsym.formula.evaluation import Engine
 
 MANY = 20
 
@@ -132,15 +128,6 @@ def _stack(engine: Engine[S], tree: Call, beside: bool) -> Value:
 
 def _characteristic(engine: Engine[S], tree: Call) -> Value:
     return engine.characteristic(engine.matrix(tree.arguments[0]), engine.scalar(tree.arguments[1]))
-
-
-@dataclass(frozen=True)
-class Operation:
-    """What a call means, and how many arguments it takes."""
-
-    meaning: Callable[[Any, Call], Value]
-    fewest: int = 1
-    most: int = 1
 
 
 OPERATIONS: Mapping[str, Operation] = {

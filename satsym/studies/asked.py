@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from satsym import __version__, sources
+from satsym import sources
 from satsym.arrays import Array
 from satsym.choices import Checked, Command, TableFormat
 from satsym.instance import Instance
 from satsym.instance.numbers import Key
 from satsym.kernels import Kernels
 from satsym.studies.design import Design, chain
+from satsym.version import __version__
 
 LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
 """Rows of a chunk at most, and chunks that a study with enough rows has at least."""

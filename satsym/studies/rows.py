@@ -19,7 +19,6 @@ from satsym.status import BadInput, Status
 if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.spec import ProblemSpec
-    from satsym.studies.together import Found
 
 Scalar = float | str | None
 
@@ -135,6 +134,24 @@ def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
     message = "" if solution.status.answered else solution.status.explain(solution.message)
     trajectory = _kept(solution, solution.lam) if kept and solution.status.answered else {}
     return Row(key, solution.status.value, message, numbers, trajectory)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What came of M rows."""
+
+    minimum: NDArray[np.bool_]
+    """Which are what was asked for; the others are for the single solver, shape (M,)."""
+    method: str
+    origins: Sequence[str]
+    costs: Array
+    """As they are minimised, shape (M,)."""
+    t_final: Array
+    x_final: Array
+    costates: Array
+    """At the end and at the start, shapes (n, M)."""
+    switches: Array
+    """How often controls switch, shape (M,)."""
 
 
 def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:

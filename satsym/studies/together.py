@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym import methods
-from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.numbers import Table
 from satsym.solvers.certificate.corners import positive
@@ -19,7 +17,7 @@ from satsym.solvers.redundant_ends import redundant
 from satsym.status import Verdict
 from satsym.studies import rows
 from satsym.studies.asked import Checked, Command, Task
-from satsym.studies.rows import Cases, Row
+from satsym.studies.rows import Cases, Found, Row
 
 if TYPE_CHECKING:
     from satsym.solvers.batch.many import Many
@@ -32,24 +30,6 @@ row's answer without bounds."""
 
 SHOOTING, LINEAR, SWITCHING = "shooting", "linear", "bang-bang"
 """The methods by which rows are solved together."""
-
-
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What came of M rows."""
-
-    minimum: NDArray[np.bool_]
-    """Which are what was asked for; the others are for the single solver, shape (M,)."""
-    method: str
-    origins: Sequence[str]
-    costs: Array
-    """As they are minimised, shape (M,)."""
-    t_final: Array
-    x_final: Array
-    costates: Array
-    """At the end and at the start, shapes (n, M)."""
-    switches: Array
-    """How often controls switch, shape (M,)."""
 
 
 Together = Callable[[Task, Sequence[Instance]], Found]

@@ -51,7 +51,7 @@ def solve(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> tuple[Array
     b, r = (np.broadcast_to(each, (*lead, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in (b, r))
     for i in np.flatnonzero(~(left <= WANTED)):
         try:
-            P[i], *_ = riccati.stabilising(a[i], b[i], q[i], r[i])
+            P[i] = riccati.stabilising(a[i], b[i], q[i], r[i]).P
             left[i] = riccati.residual(a[i], g[i], q[i], P[i])
         except riccati.NoSolution:
             P[i], left[i] = np.nan, np.nan

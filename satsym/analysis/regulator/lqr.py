@@ -17,6 +17,7 @@ from satsym.analysis.linear.stability import shown
 from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.regulator import riccati
 from satsym.analysis.regulator.doubling import flow
+from satsym.analysis.regulator.refinement import Refined
 from satsym.arrays import Array
 from satsym.instance import Instance, LqrOptions, weights
 from satsym.status import BadInput
@@ -105,7 +106,8 @@ def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None =
     rate: Array | float = 0.0
     error: float | None = None
     if horizon is None:
-        P, eigenvalues, error = _stabilising(given, q, r)
+        found = _stabilising(given, q, r)
+        P, eigenvalues, error = found.P, found.eigenvalues, found.error
     else:
         run = flow(A, G, q, horizon)
         P, rate = run.T, run.E.T @ q @ run.E
@@ -165,14 +167,14 @@ def required(case: Instance) -> LqrOptions:
     return case.lqr
 
 
-def _stabilising(given: LinearSystem, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
-    """P, the closed-loop eigenvalues and the error; why there are none is looked for where there seem to be none."""
+def _stabilising(given: LinearSystem, Q: Array, R: Array) -> Refined:
+    """The solution; why there is none is looked for where there seems to be none."""
     try:
         found = riccati.stabilising(given.A, given.B, Q, R)
     except riccati.NoSolution:
         why = _obstacle(given, Q) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
         raise BadInput(why) from None
-    eigenvalues = found[1]
+    eigenvalues = found.eigenvalues
     if eigenvalues.real.max() > -DOUBTFUL * np.abs(eigenvalues).max() and (why := _obstacle(given, Q)):
         raise BadInput(why)
     return found

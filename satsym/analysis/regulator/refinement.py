@@ -11,14 +11,16 @@ is its error but for D's square: so the size of the last correction is an estima
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.analysis.orbits.double_double import Pair, add, multiply, negative
 from satsym.arrays import Array
+from satsym.lapack import lapack
 
 ACCURATE = 1e-13
 """A correction below this, found without more precision, shows that none is needed."""
@@ -30,7 +32,29 @@ MOST_STEPS = 12
 """Of Newton's method, which needs three or four from a P with some right digits."""
 
 
-def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, float]:
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """A solution made right to the last digits, as far as the problem allows."""
+
+    P: Array
+    """Shape (n, n)."""
+    error: float
+    """Estimate of the error of P, relative to it, in units in which its diagonal elements are 1; infinite where
+    corrections do not become smaller."""
+    eigenvalues: NDArray[np.complexfloating]
+    """Of the closed loop, shape (n,); not numbers where there is no correction of P."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Correction:
+    """What Newton's method would add to P, its size relative to P, and the eigenvalues under the gain of P."""
+
+    step: Array
+    size: float
+    eigenvalues: NDArray[np.complexfloating]
+
+
+def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> Refined:
     """A nearly right solution made right to the last digits, as far as the problem allows.
 
     Parameters
@@ -39,66 +63,68 @@ def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, fl
         Shapes (n, n), (n, m), (n, n) and (m, m).
     P
         Shape (n, n); need not stabilise.
-
-    Returns
-    -------
-    P : array of shape (n, n)
-    error : float
-        Estimate of the error of P, relative to it, in units in which its diagonal elements are 1; infinite where
-        corrections do not become smaller.
     """
-    _, error = _correction(A, B, Q, R, P, rounded)
-    if error <= ACCURATE:  # its own rounding included
-        return P, max(error, SETTLED)
-    correction, error = _correction(A, B, Q, R, P, residual)
+    left = _correction(A, B, Q, R, P, rounded)
+    if left.size <= ACCURATE:  # its own rounding included
+        return Refined(P, max(left.size, SETTLED), left.eigenvalues)
+    left = _correction(A, B, Q, R, P, residual)
     for _ in range(MOST_STEPS):
-        if not SETTLED < error < np.inf:
+        if not SETTLED < left.size < np.inf:
             break
-        better = P + correction
-        again, left = _correction(A, B, Q, R, better, residual)
-        if not left < error and error < 1e-2:  # far away a first step may be a detour
+        better = P + left.step
+        again = _correction(A, B, Q, R, better, residual)
+        if not again.size < left.size and left.size < 1e-2:  # far away a first step may be a detour
             break
-        P, correction, error = better, again, left
-    return P, max(error, SETTLED)
+        P, left = better, again
+    return Refined(P, max(left.size, SETTLED), left.eigenvalues)
 
 
 def _correction(
     A: Array, B: Array, Q: Array, R: Array, P: Array, residual_of: Callable[..., tuple[Array, Array]]
-) -> tuple[Array, float]:
-    """What Newton's method would add to P, and its size relative to P."""
+) -> _Correction:
     diagonal = np.diag(P)
     if not np.isfinite(P).all() or not (diagonal > 0.0).any():
-        return np.zeros_like(P), float("inf") if P.any() else 0.0
+        return _none(P) if P.any() else _Correction(P, 0.0, np.linalg.eigvals(A).astype(complex))
     unit = np.exp2(-np.rint(0.5 * np.log2(np.where(diagonal > 0.0, diagonal, 1.0))))  # powers of two round nothing
     weight = np.outer(unit, unit)
     a, b, q, p = A * (unit / unit[:, None]), B / unit[:, None], Q * weight, P * weight
     off, gain = residual_of(a, b, q, R, p)
     if not np.isfinite(off).all():
-        return np.zeros_like(P), float("inf")
+        return _none(P)
     try:
-        found = lyapunov(a - b @ gain, off)
+        found, eigenvalues = lyapunov(a - b @ gain, off)
     except ArithmeticError:
-        return np.zeros_like(P), float("inf")
-    return found / weight, float(np.linalg.norm(found) / np.linalg.norm(p))
+        return _none(P)
+    return _Correction(found / weight, float(np.linalg.norm(found) / np.linalg.norm(p)), eigenvalues)
 
 
-def lyapunov(closed: Array, cost: Array) -> Array:
-    """The symmetric X with closed' X + X closed + cost = 0.
+def _none(P: Array) -> _Correction:
+    return _Correction(np.zeros_like(P), float("inf"), np.full(len(P), complex("nan")))
+
+
+def lyapunov(closed: Array, cost: Array) -> tuple[Array, NDArray[np.complexfloating]]:
+    """The symmetric X with closed' X + X closed + cost = 0, and the eigenvalues of the closed loop.
+
+    By the Schur form of the closed loop (R. H. Bartels and G. W. Stewart, CACM 15, 1972).
 
     Raises
     ------
     ArithmeticError
         If the sum of two eigenvalues of the closed loop is zero, so that they do not all decay.
     """
-    from scipy.linalg import solve_continuous_lyapunov
+    form, _, real, imaginary, vectors, _, failed = lapack().dgees(_unsorted, closed, lwork=40 * len(closed))
+    if failed:
+        raise ArithmeticError
+    found, scale, perturbed = lapack().dtrsyl(form, form, vectors.T @ cost @ vectors, trana="T")
+    if perturbed:
+        raise ArithmeticError
+    found = vectors @ found @ vectors.T / -scale
+    return 0.5 * (found + found.T), real + 1j * imaginary
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", RuntimeWarning)
-        try:
-            found = solve_continuous_lyapunov(closed.T, -cost)
-        except RuntimeWarning as warning:
-            raise ArithmeticError from warning
-    return np.asarray(0.5 * (found + found.T))
+
+def _unsorted(*_: float) -> bool:
+    """For Schur forms whose eigenvalues may stand in any order."""
+    return True
 
 
 def residual(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, Array]:

@@ -6,7 +6,6 @@ import shlex
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from satsym import __version__
 from satsym.instance.files import text as text_of
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page import answer
@@ -17,6 +16,7 @@ from satsym.report.results.objects import file_of
 from satsym.report.said import message, say, spoken
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution
+from satsym.version import __version__
 
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from satsym import __version__
 from satsym.control_part import ControlPart
 from satsym.control_set import stated_constraints
 from satsym.instance.unknowns import Place
@@ -15,6 +14,7 @@ from satsym.report.results.unit_names import units
 from satsym.sources import digest_of
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
+from satsym.version import __version__
 
 if TYPE_CHECKING:
     from satsym.arrays import Array

@@ -8,6 +8,7 @@ from fractions import Fraction
 import sympy as sp
 
 from satsym.formula.evaluation import Engine
+from satsym.formula.functions import OPERATIONS
 from satsym.formula.values import Matrix
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
@@ -15,6 +16,8 @@ from satsym.symbolic.lookup import formulas
 
 class Sympy(Engine[sp.Expr]):
     """Evaluates formulas over expressions of sympy's."""
+
+    operations = OPERATIONS
 
     def number(self, value: Fraction) -> sp.Expr:
         return formulas.rational(value)

@@ -8,7 +8,6 @@ has its axes, turned from those of the orbit, and the sense of each angle.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from math import atan2, cos, hypot, isclose, pi, sin
 from typing import Any
 
@@ -16,8 +15,7 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
-
-Place = tuple[float, float]
+from satsym.symbolic.motion.picture import Arrow, Picture, Place
 
 TIME, ANGLE, BEYOND = 0.6, 0.75, 1.3
 """When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
@@ -29,43 +27,6 @@ OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))
 """Where axes that are forward, towards the reader and down lie on the page."""
 ROUND = tuple(-2.1 + 0.2 * k for k in range(22))
 """Angles of an arrow about an axis."""
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """From where and where to, with the names of what points there, as LaTeX."""
-
-    start: Place
-    end: Place
-    labels: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Picture:
-    """What is drawn, in a unit of length that suits it.
-
-    Attributes
-    ----------
-    kind
-        Key of what it shows: a motion, deviations, bodies, an attitude.
-    path
-        Points of the reference.
-    arrows
-        From the centre, and where the body is.
-    angle
-        That of the body as seen from the centre, and its name; none if no coordinate is that angle.
-    bodies
-        Names of concentric bodies.
-    turns
-        Arrows about axes, each with the name of the angle.
-    """
-
-    kind: str
-    path: tuple[Place, ...] = ()
-    arrows: tuple[Arrow, ...] = ()
-    angle: tuple[float, str] | None = None
-    bodies: tuple[str, ...] = ()
-    turns: tuple[tuple[tuple[Place, ...], str], ...] = ()
 
 
 def bodies(model: Model, angle: sp.Symbol, names: tuple[str, ...]) -> Picture:

@@ -2,56 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, power_of, product
 from satsym.symbolic.kinds.closed_loop import answers, steps
 from satsym.symbolic.kinds.closed_loop import names as cn
-from satsym.symbolic.kinds.derived import Derived, original_equations
+from satsym.symbolic.kinds.closed_loop.declared import Statement
+from satsym.symbolic.kinds.derived import original_equations
 from satsym.symbolic.model import MaybeStep, Problem, Requirement, symbols_of
 from satsym.symbolic.motion import steps as motion
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClosedLoop(Derived):
+class ClosedLoop(Statement):
     """Small motions about rest under a linear law that follows a command, critically damped.
 
     Its controls are none: the law takes their place. Its states are those of the motion.
-
-    Parameters
-    ----------
-    of
-        The model that is controlled by one control; all its states zero is a motion of it.
-    follows
-        The state that is to follow the command.
-    command
-        Parameter: the height of the step that is commanded at time 0.
-    gains
-        Variables K1, K2, which critical damping determines.
-    law
-        The control, in terms of states, gains, :data:`~satsym.symbolic.s` for differentiation, and
-        :data:`~satsym.symbolic.COMMAND`.
-    damping
-        Parameter: the negative of the double pole.
-    where
-        Parameters that have special values in the closed forms of the answer to a step.
+    What is stated of it: :class:`~satsym.symbolic.kinds.closed_loop.declared.Statement`.
     """
-
-    follows: sp.Symbol
-    command: Variable
-    gains: tuple[Variable, Variable]
-    law: sp.Expr
-    damping: Variable
-    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-
-    def brings(self) -> tuple[Variable, ...]:
-        """The control that the law takes the place of, and its gains."""
-        return (*self.of.controls, *self.gains)
 
     def steps(self) -> tuple[MaybeStep, ...]:
         """Small motions, the law, transfer functions, and the answer to a step."""
@@ -68,20 +40,6 @@ class ClosedLoop(Derived):
             steps.first_order,
             motion.linearisation,
         )
-
-    def misfits(self) -> Iterator[str]:
-        """Other states, controls besides the law, a command that is followed by nothing."""
-        states = symbols_of(self.states)
-        if self.states != self.of.states:
-            yield f"the states must be those of {self.of.name}"
-        if len(self.of.controls) != 1:
-            yield f"{self.of.name} must have one control"
-        if self.controls:
-            yield "the law takes the place of the control, so there are none"
-        if self.follows not in states:
-            yield "what follows the command must be a state"
-        if not {self.command, self.damping} <= set(self.parameters):
-            yield "command and damping must be parameters"
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
         """The law, by states and gains."""

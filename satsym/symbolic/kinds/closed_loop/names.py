@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import sympy as sp
 
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.kinds.closed_loop.declared import Statement
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.notation import answer_of, initial, named
-
-if TYPE_CHECKING:
-    from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
 
 s = sp.Symbol("s")
 """Differentiation with respect to time, or the variable of Laplace transforms."""
@@ -53,7 +51,7 @@ def zero(k: int) -> sp.Symbol:
     return sp.Symbol(f"zero_{k}", real=True)
 
 
-def names(model: ClosedLoop) -> dict[str, str]:
+def names(model: Statement) -> dict[str, str]:
     """Name -> LaTeX of all of them."""
     found = {symbol.name: latex for symbol, latex in _FIXED.items()}
     found |= {pole(k).name: f"s_{k}" for k in (1, 2)} | {zero(k).name: f"z_{k}" for k in (1, 2)}
@@ -67,12 +65,12 @@ def names(model: ClosedLoop) -> dict[str, str]:
     return found
 
 
-def control_of(model: ClosedLoop) -> sp.Symbol:
+def control_of(model: Statement) -> sp.Symbol:
     """The control that the law takes the place of."""
     (control,) = symbols_of(model.of.controls)
     return control
 
 
-def loop_of(so_far: Derivation) -> ClosedLoop:
-    """The model; its class, which lists the steps, is beyond what they import."""
-    return cast("ClosedLoop", so_far.model)
+def loop_of(so_far: Derivation) -> Statement:
+    """What the model states; its class lists the steps."""
+    return cast(Statement, so_far.model)
