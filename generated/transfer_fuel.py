@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
 Source: ../derivations/examples/transfer_fuel.py 078cf3905af2aafee1b73814bf026035
-Digest: 32cf889764178c5c42bdb743e35e88fbbe1b391fb63eca883ac8a6da65ba58f4
+Digest: a2d19bf71a28e2c92a82c6f694b7c52c262ef36504ce56e7da87bc9e959c756c
 """
 
 import math
@@ -263,11 +263,12 @@ def regularised_cost(t, x, lam, p, bounds):
     return inv_c_norm_factor*w_5 + 0.5*smoothing*(w*w_6 + w_2*w_6)
 
 
-def throttle_slope(t, x, lam, p):
+def throttle_slope(t, x, lam, p, bounds):
     """How H changes with the norm of each vector that may be none, along its best direction."""
     r, theta, u_value, v, m = x
     lambda_r, lambda_theta, lambda_u, lambda_v, lambda_m = lam
     mu, c = p
+    u_max, smoothing, norm_factor, thrust_least = bounds
     inv_m = 1.0/m
     inv_m_sq = inv_m*inv_m
     w = inv_m_sq*lambda_u*lambda_u + inv_m_sq*lambda_v*lambda_v
@@ -1200,14 +1201,15 @@ def regularised_cost_batch(t, x, lam, p, bounds, out=None):
     return out
 
 
-def throttle_slope_batch(t, x, lam, p, out=None):
+def throttle_slope_batch(t, x, lam, p, bounds, out=None):
     """How H changes with the norm of each vector that may be none, along its best direction. Batch form."""
     r, theta, u_value, v, m = x
     lambda_r, lambda_theta, lambda_u, lambda_v, lambda_m = lam
     mu, c = p
+    u_max, smoothing, norm_factor, thrust_least = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_m = 1.0/m
     inv_m_sq = inv_m*inv_m
     w = inv_m_sq*lambda_u*lambda_u + inv_m_sq*lambda_v*lambda_v

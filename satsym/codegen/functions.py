@@ -308,7 +308,7 @@ def _regular_law(derivation: Derivation) -> list[Function]:
         found.append(_regularised_cost(derivation))
         if slopes := set_laws.throttle_slopes(derivation):
             summary = "How H changes with the norm of each vector that may be none, along its best direction."
-            found.append(_vector("throttle_slope", summary, "t x lam p", sp.Matrix(slopes)))
+            found.append(_vector("throttle_slope", summary, "t x lam p bounds", sp.Matrix(slopes)))
     return found
 
 

@@ -81,7 +81,7 @@ DIRECTIONS = {"regularised_cost": _signature("t x lam p bounds")}
 """What a problem has besides in which some controls are directions: its ``canonical`` functions and ``boundary`` are
 those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."""
 
-THROTTLES = {"throttle_slope": _signature("t x lam p", "r")}
+THROTTLES = {"throttle_slope": _signature("t x lam p bounds", "r")}
 """What such a problem has besides in which vectors may be none: their norms switch by its sign."""
 
 PATH_CONSTRAINTS = {

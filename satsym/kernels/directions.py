@@ -22,8 +22,9 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
     law, within = of("control_law"), _within(of)
     slope, straight = of.slope("hamiltonian", "u", u=law), np.zeros_like(law)
     terms = np.abs(of.slope("hamiltonian", "u", u=straight)) + np.abs(slope)
+    turning = {part.turned_by for _, part in within.parts}
     for places, part in within.parts:
-        if part.kind == "angle" and not part.directed:  # which may turn what is none at the zero of all controls
+        if not part.directed and (part.kind == "angle" or places[0] in turning):  # what it turns may be none there
             across = _turned(law, places[0], law[places[0]] + np.pi / 2.0)
             terms += np.abs(of.slope("hamiltonian", "u", u=across))
     left = np.array(slope)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
@@ -95,11 +96,19 @@ def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> lis
 
     values = excess(tau)
     signs = np.where(np.isfinite(values).all(axis=1, keepdims=True), np.sign(values), 1.0)
-    rows, at = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
+    rows, at, after = _changes(signs)
     own = np.arange(len(rows))
-    ends = tau[at], tau[at + 1], values[rows, at], values[rows, at + 1]
+    ends = tau[at], tau[after], values[rows, at], values[rows, after]
     met = enclosed(lambda times: excess(times)[rows, own], *ends, within)
     return [met[rows == row] for row in range(len(values))]
+
+
+def _changes(signs: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and places before and after each change of sign; zeros between, as right at a node on a corner, are none."""
+    row, at = np.nonzero(signs)
+    found = signs[row, at]
+    changed = np.flatnonzero((row[:-1] == row[1:]) & (found[:-1] != found[1:]))
+    return row[changed], at[changed], at[changed + 1]
 
 
 def kept(problem: TwoPoint, curve: Curve) -> bool:

@@ -33,7 +33,8 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
     model, p = instance.model, instance.parameters
     switched = [at for at, part in instance.control_set.parts if part.throttled]
     if any(at == tuple(places) and part.kind == "box" for at, part in instance.control_set.parts):
-        return np.asarray(model.throttle_slope_batch(t, x, lam, p))[[switched.index(tuple(places))]]
+        slopes_of_all = model.throttle_slope_batch(t, x, lam, p, instance.control_set.arguments)
+        return np.asarray(slopes_of_all)[[switched.index(tuple(places))]]
     u = np.zeros((len(model.spec.controls), len(t)))
 
     def slopes() -> Array:

@@ -59,7 +59,7 @@ class ThrottledField(Field):
         return u, found
 
     def sigma(self, t: float, z: list[float], control: int) -> float:
-        return float(self.model.throttle_slope(t, z[: self.n], z[self.n :], self.p)[control])
+        return float(self.model.throttle_slope(t, z[: self.n], z[self.n :], self.p, self.arguments)[control])
 
     def switching(self, t: float, z: list[float], control: int) -> tuple[float, float]:
         slopes = self._slopes(t, z, control)
@@ -78,7 +78,7 @@ class ThrottledField(Field):
         """A switching function by states, costates and explicit time, shape (2n + 1,)."""
         columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(2 * self.n + 1)
         x, lam = columns[: self.n], columns[self.n : -1]
-        found = np.asarray(self.model.throttle_slope_batch(columns[-1], x, lam, self.p))
+        found = np.asarray(self.model.throttle_slope_batch(columns[-1], x, lam, self.p, self.arguments))
         return np.asarray(found[control].imag / NUDGE)
 
 
@@ -93,7 +93,7 @@ def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Ar
     """Switching functions, and weights of magnitudes, at many points, shapes (r, N)."""
     model, p = instance.model, instance.parameters
     if model.spec.throttled:
-        sigma = np.asarray(model.throttle_slope_batch(t, x, lam, p))
+        sigma = np.asarray(model.throttle_slope_batch(t, x, lam, p, instance.control_set.arguments))
         return sigma, np.zeros_like(sigma)
     sigma = model.switching_function_batch(t, x, lam, p)
     return sigma, np.broadcast_to(model.magnitude_weight_batch(t, x, p), sigma.shape)

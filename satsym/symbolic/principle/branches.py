@@ -21,7 +21,7 @@ from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import Part
-from satsym.symbolic.principle.stationary import indefinite, minimiser, with_angle
+from satsym.symbolic.principle.stationary import indefinite, minimiser, nearest_angle, with_angle
 from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
 
 
@@ -54,6 +54,8 @@ class Minimum:
     """Of what is neither linear nor quadratic: the minimisers, within the bounds."""
     turned_by: sp.Symbol | None = None
     """Of a magnitude, such as a thrust: the angle that turns what it multiplies."""
+    turned_to: sp.Expr | None = None
+    """The minimiser of that angle, where it has bounds."""
 
     @property
     def directed(self) -> bool:
@@ -140,22 +142,26 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
 def _turned(
     name: str, circle: tuple[sp.Expr, sp.Expr, sp.Expr], turned: Part, beside: Part, side: int
 ) -> dict[str, Minimum]:
-    """A magnitude and the angle of what it multiplies: the best direction, and a norm that switches."""
+    """A magnitude and the angle of what it multiplies: the best angle, and a magnitude that switches."""
     (angle,), (u,) = turned.symbols, beside.symbols
     rest, *pair = circle
     alone = any(sp.simplify(e.xreplace({u: sp.Integer(0)})) != 0 for e in pair)
-    if alone or turned.kind != "angle" or beside.kind != "box":
+    if alone or beside.kind != "box":
         raise DerivationError(
             f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; this needs "
-            f'"{u.name}": Box("{u.name}"), "{angle.name}": Angle("{angle.name}"), and nothing else that it turns; or '
-            "state the components of this vector as controls in a Ball"
+            f'"{u.name}": Box("{u.name}"), and nothing else that {angle.name} turns; or state the components of this '
+            "vector as controls in a Ball"
         )
     cosine, sine = (tidy(sp.diff(e, u)) for e in pair)
-    law = Bearing(-side * sine, -side * cosine)
+    bounded = turned.kind == "box"
+    law = nearest_angle(side * cosine, side * sine, ends_of(turned, angle)) if bounded else None
+    magnitude = Minimum(
+        beside, "throttled", (cosine, sine), weight=tidy(sp.diff(rest, u)), turned_by=angle, turned_to=law
+    )
+    law = law or Bearing(-side * sine, -side * cosine)
     slope = tidy(u * (cosine * -sp.sin(angle) + sine * sp.cos(angle)))
-    weight = tidy(sp.diff(rest, u))
     return {
-        beside.name: Minimum(beside, "throttled", (cosine, sine), weight=weight, turned_by=angle),
+        beside.name: magnitude,
         turned.name: Minimum(turned, "stationary", gradient=(slope,), laws=(law,)),
     }
 

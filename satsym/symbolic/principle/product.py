@@ -133,12 +133,18 @@ def control_law(so_far: Derivation) -> Step:
         if one.branch == "switched"
     )
     turned = {one.part.symbols[0]: one.turned_by for one in every if one.turned_by}
-    said += tuple(Conclusion("magnitude that is turned", {"size": u, "angle": angle}) for u, angle in turned.items())
+    within = {one.part.symbols[0] for one in every if one.turned_to}
+    said += tuple(
+        Conclusion(f"magnitude that is turned{' within bounds' if u in within else ''}", {"size": u, "angle": angle})
+        for u, angle in turned.items()
+    )
     others = (one for one in every if not {*one.part.symbols} & {*turned.values()})
     if any(not law.has(Vertex) for one in others for law in one.laws):
         said += (Conclusion("neither linear nor quadratic", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
-    named = ("parts" if parts and kind == "stationary" else kind for kind in _kinds(every))
+    longer = {"stationary": "parts"} if parts else {}
+    longer |= {"magnitude": "magnitude within"} if within else {}
+    named = (longer.get(kind, kind) for kind in _kinds(every))
     kinds = tuple(worded(f"law, {kind}", problem) for kind in named)
     limits = [s for s in (EPSILON, FACTOR) if any(e.rhs.has(s) for e in equations)]
     rule = worded(("minimum of all", "minimum as a limit", "minimum as both limits")[len(limits)], problem)
@@ -188,7 +194,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         margin = []
         for scale in SCALES:
             here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
-            for one in directions:
+            for one in every:
                 here = ordered(one, here)
             here |= dict(zip(beside, turned(here), strict=True))
             law = chosen(here)

@@ -8,6 +8,7 @@ import sympy as sp
 
 from satsym.control_part import SWITCHED, PartKind
 from satsym.spec import ControlSetKind
+from satsym.symbolic import notation as n
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.minimisers import Clip, Stretch, Within
@@ -106,8 +107,7 @@ def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
         if one.branch == "switched":
             slopes += pn.slopes_of(one)
             continue
-        length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
-        slopes.append(pn.weight_of(one.part.symbols[0]) - sign(problem_of(so_far)) * length)
+        slopes.append(pn.weight_of(one.part.symbols[0]) - sign(problem_of(so_far)) * _gain(problem_of(so_far), one))
     return written_out(so_far, slopes)
 
 
@@ -126,6 +126,7 @@ def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.E
         for s, value in zip(pn.slopes_of(one), one.vector, strict=True)
     }
     values |= {pn.weight_of(one.part.symbols[0]): one.weight for one in found(so_far) if one.branch == "throttled"}
+    values |= {n.optimal(one.turned_by): one.turned_to for one in found(so_far) if one.turned_by and one.turned_to}
     return [e.xreplace(values) for e in expressions]
 
 
@@ -163,6 +164,14 @@ def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
 
 def _size(problem: Problem, one: Minimum) -> sp.Expr:
     """The norm of that minimiser, where H depends on the norm."""
-    length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
-    margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
+    margin = _gain(problem, one) - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
     return Clip(margin / EPSILON, 0 if one.part.kind == "ball" else one.part.bounds[0], one.part.bounds[-1])
+
+
+def _gain(problem: Problem, one: Minimum) -> sp.Expr:
+    """By how much a norm of one in the best direction makes H better; of an angle between bounds the best of these."""
+    slopes = pn.slopes_of(one)
+    if one.turned_by is None or one.turned_to is None:
+        return sp.sqrt(sum((s**2 for s in slopes), sp.Integer(0)))
+    best = n.optimal(one.turned_by)
+    return -sign(problem) * (slopes[0] * sp.cos(best) + slopes[1] * sp.sin(best))

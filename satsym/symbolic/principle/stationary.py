@@ -52,7 +52,7 @@ def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
     """
     circle = by_circle(h, u)
     if circle is not None and h.has(sp.sin, sp.cos):
-        return _turned(circle[1], circle[2], ends)
+        return nearest_angle(circle[1], circle[2], ends)
     if h.is_polynomial(u) and (several := _of_polynomial(name, sp.Poly(h, u), u, ends)) is not None:
         return several
     terms = _terms(sp.expand(sp.diff(h, u)), u)
@@ -91,7 +91,7 @@ def with_angle(
     length = sp.Dummy("length", real=True)
     laws, turns, values = [], [], []
     for side in (1, -1):
-        turn = Bearing(-side * sine, -side * cosine) if arc is None else _turned(side * cosine, side * sine, arc)
+        turn = Bearing(-side * sine, -side * cosine) if arc is None else nearest_angle(side * cosine, side * sine, arc)
         size = -side * sp.sqrt(tidy(cosine**2 + sine**2))
         if arc is not None:
             size = cosine * sp.cos(turn) + sine * sp.sin(turn)
@@ -123,7 +123,7 @@ def _of_polynomial(name: str, h: sp.Poly, u: sp.Symbol, ends: Ends) -> sp.Expr |
     return Argmin(*ends, *(tidy(c) for c in coefficients[::-1]))
 
 
-def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
+def nearest_angle(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
     """The angle of an interval that is nearest to where a cosine and a sine together are least.
 
     It is turned to within half a turn of the middle: from there the nearer end is the better one.
