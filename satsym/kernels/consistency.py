@@ -173,11 +173,11 @@ def _both_forms(of: Evaluation) -> Iterator[Relation]:
             yield Relation(name, "the same on floats and on arrays", single, batch, _largest(rows))
 
 
-def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[str, Any]) -> Array | None:
+def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[str, Any]) -> list[float] | None:
     """A function on floats, as a row; ``None`` where something in it has no value, which arrays may get over."""
     try:
-        found = of.kernels.functions[name](*(at[a] for a in arguments))
-        return np.atleast_1d(np.asarray(found, dtype=float))
+        found = of.kernels.functions[name](*[at[a] for a in arguments])
+        return [*map(float, found)] if isinstance(found, tuple) else [float(found)]
     except _FAILED:
         return None
 
@@ -185,7 +185,8 @@ def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[s
 def column(at: Mapping[str, Any], k: int) -> dict[str, Any]:
     """One place of many, as floats."""
     return {
-        name: float(values[k]) if name == "t" else tuple(float(row[k]) for row in values) for name, values in at.items()
+        name: float(values[k]) if name == "t" else tuple([float(row[k]) for row in values])
+        for name, values in at.items()
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -97,15 +97,21 @@ def with_copies(at: Mapping[str, Any], seed: int) -> dict[str, Any]:
     """Arguments at places (K,) with copies aside of each, every component by another share of itself."""
     tables = {name: np.asarray(values, dtype=float).reshape(-1, len(at["t"])) for name, values in at.items()}
     all_rows = np.concatenate(list(tables.values()))
-    rng = random.Random(seed)
-    drawn = np.array([rng.random() - 0.5 for _ in range(COPIES * all_rows.size)])
-    aside = 1.0 + ASIDE * (drawn + np.copysign(0.5, drawn)).reshape(len(all_rows), COPIES, -1)
+    aside = _aside(seed, COPIES * all_rows.size).reshape(len(all_rows), COPIES, -1)
     copied = np.concatenate([all_rows, (all_rows[:, None, :] * aside).reshape(len(all_rows), -1)], axis=1)
     found: dict[str, Any] = {}
     for name, table in tables.items():
         rows, copied = copied[: len(table)], copied[len(table) :]
         found[name] = tuple(rows) if name in TUPLES else rows[0] if name == "t" else rows
     return found
+
+
+@lru_cache(maxsize=8)
+def _aside(seed: int, count: int) -> Array:
+    """Factors by which arguments are moved."""
+    rng = random.Random(seed)
+    drawn = np.array([rng.random() - 0.5 for _ in range(count)])
+    return np.asarray(1.0 + ASIDE * (drawn + np.copysign(0.5, drawn)))
 
 
 def size(values: Array) -> Array:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
+from satsym.lapack import lapack
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.jacobi import kernel
@@ -27,6 +28,9 @@ LEFT = 1e-3
 
 NUDGE = 1e-6
 """Relative change of states and costates that shows how the control law follows them."""
+
+INDEPENDENT = 1e-3
+"""Least determinant of products of directions that are far from dependent."""
 
 DROWNED = 1e-8
 """Share of the least weight of a control's change that rounding of the form may come to."""
@@ -55,7 +59,10 @@ class Accessory:
         free = kernel(self.ties)
         if not free.shape[1]:
             return float("inf"), np.zeros(len(self.form))
-        values, vectors = np.linalg.eigh(free.T @ self.form @ free)
+        form = free.T @ self.form @ free
+        values, vectors, *_, failed = lapack().dsyevr(form, range="I", il=1, iu=1)
+        if failed or not np.isfinite(form).all():
+            return float("nan"), np.zeros(len(self.form))
         return float(values[0]), free @ vectors[:, 0]
 
     def along(self, directions: Array) -> Along:
@@ -143,7 +150,7 @@ class _Linear:
         if not (np.isfinite(slopes).all() and np.isfinite(law).all() and np.isfinite(by_control).all()):
             return None
         # The law follows the costates as -K B', with the inverse K of H_uu where no bound holds, and zero elsewhere.
-        inverse = -law[:, :, n:] @ np.linalg.pinv(by_control.transpose(0, 2, 1))
+        inverse = -law[:, :, n:] @ _pseudoinverses(by_control.transpose(0, 2, 1))
         size = np.sqrt(np.maximum(np.einsum("kii->ki", inverse).max(axis=0), 0.0))[:, None]
         size[size == 0.0] = 1.0
         values, axes = np.linalg.eigh((inverse + inverse.transpose(0, 2, 1)) / (2.0 * size * size.T))
@@ -159,18 +166,23 @@ def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
     """The control law by scaled states and costates, by differences, shape (M, m, 2n)."""
     instance, n = solution.instance, len(z) // 2
     size = np.maximum(np.abs(z).max(axis=1), NUDGE * scale)
-    columns = []
-    for i in range(2 * n):
-        nudge = np.zeros((2 * n, 1))
-        nudge[i] = NUDGE * size[i]
-        ahead, behind = (
-            np.asarray(
-                instance.model.control_law_batch(t, y[:n], y[n:], instance.parameters, instance.control_set.arguments)
-            )
-            for y in (z + nudge, z - nudge)
-        )
-        columns.append((ahead - behind) * (scale[i] / (2.0 * NUDGE * size[i])))
-    return np.stack(columns, axis=2).transpose(1, 0, 2)
+    change = NUDGE * size[:, None] * np.concatenate([np.eye(2 * n), -np.eye(2 * n)], axis=1)
+    moved = (z[:, None] + change[:, :, None]).reshape(2 * n, -1)
+    p, bounds = instance.parameters, instance.control_set.arguments
+    law = np.asarray(instance.model.control_law_batch(np.tile(t, 4 * n), moved[:n], moved[n:], p, bounds))
+    ahead, behind = np.split(law.reshape(len(law), 4 * n, len(t)), 2, axis=1)
+    found: Array = (ahead - behind).transpose(2, 0, 1) * (scale / (2.0 * NUDGE * size))
+    return found
+
+
+def _pseudoinverses(matrices: Array) -> Array:
+    """Of a stack of matrices, shape (M, m, n), to (M, n, m)."""
+    size = np.linalg.norm(matrices, axis=2, keepdims=True)
+    unit = matrices / np.where(size > 0.0, size, 1.0)
+    across = unit @ unit.transpose(0, 2, 1)
+    if (np.linalg.det(across) > INDEPENDENT).all():
+        return np.asarray(np.linalg.solve(across, unit).transpose(0, 2, 1) / size.transpose(0, 2, 1))
+    return np.linalg.pinv(matrices)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,7 @@ reached yet, stay there. Two phases that pass together are seen as well as one, 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,42 +82,44 @@ def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
         ``None`` where numbers fail.
     """
     n = transition.shape[1] // 2
-    frames = [np.concatenate([np.zeros((n, n)), np.eye(n)])]
+    frames = np.empty((len(transition) + 1, 2 * n, n))
+    frames[0] = np.concatenate([np.zeros((n, n)), np.eye(n)])
     for k, matrix in enumerate(transition):
-        begin = frames[-1] if k % AFRESH else np.linalg.qr(frames[-1])[0]
-        frames.append(matrix @ begin)
+        begin = frames[k] if k % AFRESH else np.linalg.qr(frames[k])[0]
+        np.matmul(matrix, begin, out=frames[k + 1])
     if not np.isfinite(frames).all():
         return None
-    every = np.linalg.qr(np.array(frames))[0]
-    values = [[0.0] * n]
-    for k, new in enumerate(_angles(every)[1:].tolist()):
-        values.append(_continued(values[-1], new, FULL if k in jumped else HALF))
-    return Phases(np.array(values), every)
+    every = np.linalg.qr(frames)[0]
+    angles = np.concatenate([np.zeros((1, n)), _angles(every)[1:]])
+    onwards = np.where(np.isin(np.arange(len(transition)), list(jumped)), FULL, HALF)
+    steps = _turned(angles[:-1].sum(axis=1), angles[1:].sum(axis=1), onwards)
+    return Phases(_ordered(angles, np.append(0.0, np.cumsum(steps))), every)
 
 
 def _angles(frames: Array) -> Array:
-    """Eigenphases modulo a turn, shape (M, n)."""
+    """Eigenphases modulo a turn, in ascending order, shape (M, n)."""
     n = frames.shape[2]
     upper, lower = (frames[:, rows].transpose(0, 2, 1) for rows in (slice(n), slice(n, None)))
     plane = -np.linalg.solve(upper - 1j * lower, upper + 1j * lower)  # the transpose, which is the same
-    found: Array = np.angle(np.linalg.eigvals(plane)) % TURN
+    found: Array = np.sort(np.angle(np.linalg.eigvals(plane)) % TURN, axis=1)
     return found
 
 
-def _continued(before: Sequence[float], angles: Iterable[float], ahead_by: float = HALF) -> list[float]:
-    """Phases that go on from those before to given angles, keeping their order round the circle.
+def _turned(before: Array, after: Array, onwards: Array | float = HALF) -> Array:
+    """How many phases have come past a full turn while their sum went on, from one to another modulo a turn, (M,).
 
-    Their sum moves by less than a turn, of which so much is onwards.
+    It moves by less than a turn, of which so much is onwards.
     """
-    count, residues = len(before), [phase % TURN for phase in before]
-    order, ahead = sorted(range(count), key=residues.__getitem__), sorted(angles)
-    # So many of the largest come from a turn before.
-    shift = math.ceil((sum(residues) - sum(ahead)) / TURN - (1.0 - ahead_by))
-    found = []
-    for place, phase in enumerate(order, shift):
-        after = ahead[place % count] + TURN * (place // count)
-        found.append(before[phase] + after - residues[phase])
-    return sorted(found)
+    found: Array = np.ceil((before - after) / TURN - (1.0 - onwards))
+    return found
+
+
+def _ordered(angles: Array, passed: Array) -> Array:
+    """Phases in ascending order, shape (M, n): so many of the smallest angles, going round, are turns further, (M,)."""
+    n = angles.shape[1]
+    places = passed[:, None].astype(np.intp) + np.arange(n)
+    found: Array = np.take_along_axis(angles, places % n, axis=1) + TURN * (places // n)
+    return found
 
 
 def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], Array]) -> float | None:
@@ -139,7 +140,7 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
     for _ in range(ROUNDS):
         inner = np.linspace(early, late, PARTS + 1)[1:]
         angles = _angles(np.linalg.qr(between(station, inner) @ phases.frames[station])[0])
-        values = np.array([_continued(phases.values[station].tolist(), new) for new in angles.tolist()])
+        values = _ordered(angles, _turned(phases.values[station].sum(), angles.sum(axis=1)))
         met = np.append(_passed(values)[:-1] > 0, True)  # at the end it has been met
         first = int(np.argmax(met))
         early, late = (float(inner[first - 1]) if first else early), float(inner[first])

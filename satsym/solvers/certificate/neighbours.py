@@ -75,8 +75,10 @@ class Simulations:
     """Of each simulation."""
     end: float
     """The final time."""
+    own: tuple[Array, float] = (np.zeros((0, 0)), 0.0)
+    """States at the nodes and the integral of the running cost under the solution's own control."""
     missed: float = 0.0
-    """Relative distance of the end to which the solution's own control leads from the solution's."""
+    """Relative distance of the end to which that leads from the solution's."""
 
     def grid(self, longer: float = 0.0) -> Grid:
         """To a final time that much later."""
@@ -84,7 +86,10 @@ class Simulations:
 
     def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
         """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
-        x, running = self.motion(control, grid)
+        return self.measured(*self.motion(control, grid), grid)
+
+    def measured(self, x: Array, running: float, grid: Grid) -> tuple[float, Array]:
+        """The same of a motion."""
         instance, end = self.instance, tuple(x[:, -1].tolist())
         terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
         none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
@@ -117,7 +122,7 @@ def neighbours(solution: Solution) -> Neighbours:
     if not np.isfinite(curvature):
         return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)
-    reference = simulations(u, grid)
+    reference = simulations.measured(*simulations.own, grid)
     moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
     missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
     # Corrections of least size combine what ties the end.
@@ -129,7 +134,14 @@ def neighbours(solution: Solution) -> Neighbours:
     unit = direction / size
     search = _Search(simulations, along, solution, reference[1], missed)
     # The grid's own end may make one side cheaper: that is of first order, and cancels in the mean of both.
-    means = [(search.corrected(a * unit) + search.corrected(-a * unit)) / 2.0 for a in AMPLITUDES]
+    means, turned, before = list[float](), np.zeros((2, len(unit))), math.inf
+    for a in AMPLITUDES:
+        # of what corrections add, the part that is the same to both sides goes with the square of the amplitude
+        share, (one, two) = a / before, turned / 2.0
+        same, other = share**2 * (one + two), share * (one - two)
+        both = [search.corrected(side * a * unit, same + side * other) for side in (1.0, -1.0)]
+        means.append((both[0][0] + both[1][0]) / 2.0)
+        turned, before = np.array([added for _, added in both]), a
     solved = [cost for cost in means if np.isfinite(cost)]
     cheapest = min(solved, default=float("inf"))
     stated = solution.objective + (cheapest - reference[0])  # without what simulating makes of both
@@ -164,15 +176,23 @@ class _Search:
         grid = self.simulations.grid()
         return grid, interleave(grid.nodes, grid.midpoints), stated_control(self.solution, grid)
 
-    def corrected(self, change: Array) -> float:
-        """The cost of a neighbour once its end is as the solution's; infinite where it cannot be made so."""
+    def corrected(self, change: Array, added: Array) -> tuple[float, Array]:
+        """The cost of a neighbour once its end is as the solution's, and what that adds to the change.
+
+        The former is infinite, and the latter zero, where it cannot be made so.
+
+        Parameters
+        ----------
+        added
+            Where to begin.
+        """
         response, tried = self.second.ties, change[:0]
         for _ in range(CORRECTIONS):
-            cost, reached = self._simulated(change)
+            cost, reached = self._simulated(change + added)
             gap = reached - self.end
             miss = float(np.abs(gap).max(initial=0.0))
             if miss <= self.missed:
-                return cost
+                return cost, added
             if not np.isfinite(miss):
                 break
             if len(tried):  # Broyden: the response as the last correction found it
@@ -180,8 +200,8 @@ class _Search:
                 if not np.isfinite(response).all():
                     break
             tried = -np.linalg.lstsq(response, gap, rcond=None)[0]
-            change = change + tried
-        return float("inf")
+            added = added + tried
+        return float("inf"), np.zeros_like(change)
 
     def _simulated(self, change: Array) -> tuple[float, Array]:
         longer, (before, times, u) = float(self.second.duration @ change), self._own
@@ -204,10 +224,10 @@ def simulations_of(solution: Solution) -> Simulations | None:
     for steps, limit in STEPS:
         found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
         grid = found.grid()
-        x, _ = found.motion(stated_control(solution, grid), grid)
-        missed = float((np.abs(x[:, -1] - solution.x[:, -1]) / size).max())
+        own = found.motion(stated_control(solution, grid), grid)
+        missed = float((np.abs(own[0][:, -1] - solution.x[:, -1]) / size).max())
         if missed < limit:
-            return replace(found, missed=missed)
+            return replace(found, own=own, missed=missed)
     return None
 
 

@@ -37,9 +37,9 @@ def two_point(instance: Instance, duration: float) -> TwoPoint:
 def final_argument(instance: Instance) -> tuple[float, ...]:
     """The ``final`` argument of the boundary functions."""
     wanted = [instance.final.get(name) for name in instance.model.spec.state_names]
-    given = [float(isinstance(value, float | int)) for value in wanted]
     on_reference = [float(value == "reference") for value in wanted]
-    target = [float(value) if isinstance(value, float | int) else 0.0 for value in wanted]
+    given = [float(value is not None and value != "reference") for value in wanted]
+    target = [0.0 if value is None or value == "reference" else float(value) for value in wanted]
     return (*given, *on_reference, *target)
 
 

@@ -7,7 +7,7 @@ Differential Equations I, II.9). The library's own integrators take longer to im
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Any
@@ -116,12 +116,65 @@ def leap_and_error(
     return next(islice(leaps(rates, t, y, h), columns - 1, None))
 
 
-def leaps(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array) -> Iterator[tuple[Array, Array]]:
-    """The same with one column, two, and so on; the first has an infinite error, having none to be compared with."""
+def leap_varied(
+    rates: Callable[[Any, Array], Array],
+    slopes: Callable[[Array, Array], Array],
+    t: Array,
+    y: Array,
+    h: Array,
+    columns: int = len(SUBSTEPS),
+) -> tuple[Array, Array]:
+    """The same, and how its ends follow their starts by the same rule for the variations, shape (M, d, d).
+
+    Parameters
+    ----------
+    slopes
+        Derivatives of the rates at times (K,) and values (d, K), shape (K, d, d): asked for once, at all places.
+    """
+    places: list[tuple[Array, Array]] = []
+
+    def noted(t: Array, z: Array) -> Array:
+        places.append((t, z))
+        return rates(t, z)
+
+    ends, _ = next(islice(leaps(noted, t, y, h, columns), columns - 1, None))
+    found = slopes(*(np.concatenate(rows, axis=-1) for rows in zip(*places, strict=True)))
+    first, *others = np.split(found, np.cumsum([len(times) for times, _ in places])[:-1])
+    counts = np.array(SUBSTEPS[:columns])
+    width = (h / counts[:, None])[..., None, None]
+    unity = np.broadcast_to(np.eye(len(y)), (columns, *first.shape))
+    whole = _midpoints(lambda i, now: others[i - 1].reshape(now.shape) @ now, unity, width * first, width)
+    squares = counts.astype(float) ** 2
+    apart = np.where(np.eye(columns) > 0.0, squares, squares[:, None] - squares)
+    weights = (squares[:, None] / apart).prod(axis=1)  # of the columns, in what the table comes to (Aitken, Neville)
+    return ends, np.tensordot(weights, whole, 1)
+
+
+def leaps(
+    rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, together: int = 1
+) -> Iterator[tuple[Array, Array]]:
+    """The same with one column, two, and so on; the first has an infinite error, having none to be compared with.
+
+    Parameters
+    ----------
+    together
+        Columns that are computed side by side, which is quicker where starts are few: rates are asked for at several
+        times as many places then.
+    """
     slope = rates(t, y)
+    first: Sequence[Array] = ()
+    if together > 1:
+        width = h / np.array(SUBSTEPS[:together])[:, None, None]
+
+        def every(i: int, now: Array) -> Array:
+            times, values = (t + i * width[-len(now) :]).ravel(), now.transpose(1, 0, 2)
+            found = rates(times, values.reshape(len(y), -1))
+            return np.ascontiguousarray(found.reshape(values.shape).transpose(1, 0, 2))
+
+        first = _midpoints(every, np.broadcast_to(y, (together, *y.shape)), width * slope, width)
     table: list[Array] = []
     for k, count in enumerate(SUBSTEPS):
-        row = [_midpoint(rates, t, y, slope, h, count)]
+        row = [first[k] if k < len(first) else _midpoint(rates, t, y, slope, h, count)]
         for j in range(k):
             ratio = (count / SUBSTEPS[k - j - 1]) ** 2
             row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
@@ -184,3 +237,28 @@ def _midpoint(rates: Callable[[Any, Array], Array], t: Any, y: Array, slope: Arr
     for i in range(1, count):
         before, now = now, before + 2.0 * width * rates(t + i * width, now)
     return now
+
+
+def _midpoints(rates: Callable[[int, Array], Array], begin: Array, change: Array, width: Array) -> list[Array]:
+    """The same for the first columns of the table side by side.
+
+    Parameters
+    ----------
+    rates
+        Function of the number of the step and of the values of those columns that have so many, as a new array.
+    begin, change
+        Values at the start, and by how much they change in the first step, a column of the table each.
+    """
+    before: Array = begin
+    now: Array = begin + change
+    ended: list[Array] = []
+    for i in range(1, SUBSTEPS[len(begin) - 1] + 1):
+        if SUBSTEPS[len(ended)] == i:
+            ended.append(now[0])
+            before, now, width = before[1:], now[1:], width[1:]
+        if len(now):
+            after = rates(i, now)
+            after *= 2.0 * width
+            after += before
+            before, now = now, after
+    return ended

@@ -45,7 +45,7 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
     for _ in range(ROUNDS):
         start = np.append(z[:, :-1], np.zeros((1, len(widths))), axis=0)
         try:
-            for ends, error in islice(leaps(rates, times[:-1], start, widths), FEWEST - 1, None):
+            for ends, error in islice(leaps(rates, times[:-1], start, widths, FEWEST), FEWEST - 1, None):
                 if (error <= TOLERANCE * np.maximum(scale, np.abs(ends))).all():
                     break
             else:

@@ -9,6 +9,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from satsym.arrays import Array, distinct
+from satsym.grid import Grid
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.collocation.scaling import two_point
@@ -24,6 +25,10 @@ FINEST = 4.0 * np.finfo(float).eps
 
 ROUGHLY = 1e-9
 """Error of a step where only the size of what is found matters."""
+
+IDLE_STEPS, IDLE_ERROR = (100, 200), 1e-4
+"""RK4 steps of the motion without control, and what the fewer may change of its distance from the end of the solution,
+relative to that: it tells a size."""
 
 NEGLIGIBLE = 1e-3
 """Share of its unit, or of the largest product with its partner, at which something small counts."""
@@ -102,13 +107,21 @@ def undriven(solution: Solution) -> Array | None:
     """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
     instance, model = solution.instance, solution.instance.model
     none, p = (0.0,) * len(model.spec.controls), instance.parameters
+    size, ends = typical(solution)[0], list[Array]()
+    for steps in IDLE_STEPS:
+        grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), steps)
+        idle = np.zeros((len(none), steps + 1))
+        ends.append(model.forward(grid.nodes, instance.initial, idle, idle[:, 1:], p)[0][:, -1])
+    coarse, fine = (np.abs(end - solution.x[:, -1]) / size for end in ends)
+    if (np.abs(fine - coarse) <= IDLE_ERROR * fine.max()).all():
+        return ends[-1]
 
     def rates(t: float, x: Array) -> Array:
         return np.array(model.dynamics(t, tuple(x.tolist()), none, p))
 
     times = np.array([float(solution.times[0]), float(solution.times[-1])])
     try:
-        return integrate(rates, times, np.array(instance.initial), ROUGHLY, typical(solution)[0])[0].end
+        return integrate(rates, times, np.array(instance.initial), ROUGHLY, size)[0].end
     except FAILURES:
         return None
 

@@ -13,7 +13,7 @@ from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.control.slopes import without_poles
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.simulation.extrapolation import leap
+from satsym.solvers.simulation.extrapolation import leap_varied
 
 FEWEST = 64
 """Segments."""
@@ -30,6 +30,9 @@ FRACTION = 0.75
 
 COLUMNS = 5
 """Of the extrapolation table, for transitions; errors of phases matter only where they are a full turn."""
+
+BLOCK = 64
+"""Steps at a time: few enough for their derivatives to stay in memory that is at hand."""
 
 BEYOND = 1e16
 """Growth at which nothing is left of a number's digits."""
@@ -139,15 +142,17 @@ def balanced(scale: Array, sizes: Array, duration: float) -> Array:
         return scale
     costates = 1.0 / (response * duration)  # so that the response is one over the duration
     unit = np.repeat([1.0, costates], n)
-    square, smallest = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
+    rates, smallest = (((size * unit / unit[:, None]) ** 2).ravel(), 1.0 / duration**2)
+    moves = np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)])
+    powers = (moves[:, None, :] - moves[:, :, None]).reshape(len(moves), -1)
     change = np.ones(2 * n)
     for _ in range(SWEEPS):
         before = change
-        for move in np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)]):
-            rates, power = square * (change / change[:, None]) ** 2, move - move[:, None]
-            rising, falling = (float((rates * np.maximum(sign * power, 0.0)).sum()) for sign in (1.0, -1.0))
-            moved = float(change[np.argmax(move)] ** 2)
-            change = change * ((falling + smallest / moved) / (rising + smallest * moved)) ** (move / 8.0)
+        for move, power, own in zip(moves, powers, np.argmax(moves, axis=1), strict=True):
+            rising, falling = (float(np.maximum(sign * power, 0.0) @ rates) for sign in (1.0, -1.0))
+            moved = float(change[own] ** 2)
+            factor = ((falling + smallest / moved) / (rising + smallest * moved)) ** 0.125
+            change, rates = change * factor**move, rates * factor ** (2.0 * power)
         if (np.abs(change / before - 1.0) < STEADY).all():
             break
     return scale * unit * change
@@ -197,18 +202,16 @@ def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: 
 
 def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tuple[Array, Array]:
     """Where steps from many beginnings end, shape (2n, M), and their transitions, (M, 2n, 2n)."""
-    instance, size, n = solution.instance, len(z), len(z) // 2
+    instance, n = solution.instance, len(z) // 2
+    p, bounds = instance.parameters, instance.control_set.arguments
 
-    def rates(t: Array, y: Array) -> Array:
-        found = np.empty_like(y)
-        found[:size] = instance.model.canonical_batch(
-            t, y[:n], y[n:size], instance.parameters, instance.control_set.arguments
-        )
-        slopes = _slopes(solution, t, y[:size]) * (scale / scale[:, None])
-        varied = slopes @ y[size:].reshape(size, size, -1).transpose(2, 0, 1)
-        found[size:] = varied.transpose(1, 2, 0).reshape(size * size, -1)
-        return found
+    def rates(t: Array, z: Array) -> Array:
+        return np.asarray(instance.model.canonical_batch(t, z[:n], z[n:], p, bounds))
 
-    unity = np.repeat(np.eye(size).reshape(-1, 1), len(t), axis=1)
-    reached = leap(rates, t, np.concatenate([z, unity]), h, COLUMNS)
-    return reached[:size], reached[size:].reshape(size, size, -1).transpose(2, 0, 1)
+    def slopes(t: Array, z: Array) -> Array:
+        return np.ascontiguousarray(_slopes(solution, t, z))
+
+    blocks = [slice(at, at + BLOCK) for at in range(0, len(t), BLOCK)]
+    found = [leap_varied(rates, slopes, t[own], z[:, own], h[own], COLUMNS) for own in blocks]
+    ends, transition = (np.concatenate(rows, axis=k) for k, rows in zip((1, 0), zip(*found, strict=True), strict=True))
+    return ends, transition * (scale / scale[:, None])
