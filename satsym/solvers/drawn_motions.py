@@ -1,42 +1,58 @@
-"""Motions under controls that are drawn, those that come nearest to the end: from these one starts where others fail.
+"""Motions that meet: extremals that are drawn from the initial state onwards, and from the end backwards in time.
 
-Where motions swing, only those arrive that push at the right times; no straight line, bent or not, leads to these. Many
-controls are simulated at once: constant on pieces, most of them at bounds, and others that switch where the state
-crosses a plane, which push what swings in its way.
+Where one from the start comes close to one to the end, at the same time, the two are almost a motion from end to end,
+and no control does either part for less: from these one starts where others fail. Where motions swing, only those
+arrive that push at the right times, as costates do; and what is unstable onwards is stable backwards.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.simulation.together import together
+from satsym.solvers.collocation.scaling import straight
 
 STEPS = 200
-"""Of each motion, by the classical Runge-Kutta method; a control is kept for each step."""
+"""Of each motion, by the classical Runge-Kutta method."""
 
-KEPT, SAMPLES, PIECES = 4, 500, 10
-"""Motions that are kept, controls of which each is the one that comes nearest, and most of their constant pieces."""
+DRAWN, SIZES = 512, (-1.5, 4.0)
+"""Extremals that are drawn on each side, and decimal logarithms between which the sizes of their costates lie."""
 
-SATURATED = 0.8
-"""Share of the pieces that lie at a bound."""
+ROUNDS, CHILDREN, PARENTS, NEAR = (0.3, 0.1), 256, 48, 0.15
+"""Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
+cheapest whose gaps are below that."""
 
-Law = Callable[[int, Array], Array]
-"""Shares of the way from lower to upper bounds, shape (m, SAMPLES), at a step and scaled states (n, SAMPLES)."""
+TIMES, NEIGHBOURS = 16, 4
+"""At which they may meet, and how many of the nearest of the other side are looked at."""
+
+RANGE = (10.0, 90.0)
+"""Percentiles between which states range: what is close is so relative to that."""
+
+CLOSE, FEWEST, MOST = 0.05, 64, 2000
+"""Gaps that are small, pairs that are looked at if none is, and at most."""
+
+KEPT, APART, SHOWN = 4, 0.4, 21
+"""Motions that are kept, how far they are from each other, and at how many times that is looked at."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A motion under a control that was drawn."""
+    """Two extremals that nearly meet."""
 
     control: Array
     """At the nodes, shape (m, STEPS + 1)."""
     states: Array
-    """Scaled, at the same, shape (n, STEPS + 1)."""
+    """Scaled, at the same, shape (n, STEPS + 1); the gap is spread over both parts."""
+    meeting: int
+    """The node of the gap."""
+    gap: float
+    """Between them, relative to what states range over."""
+    cost: float
+    """Of both, scaled."""
 
     def path(self, tau: Array) -> Array:
         """Scaled states at times tau in [0, 1], shape (n, M)."""
@@ -44,63 +60,195 @@ class Motion:
         return np.array([np.interp(tau, nodes, row) for row in self.states])
 
 
-def motions(problem: TwoPoint, rng: np.random.Generator) -> list[Motion]:
-    """The nearest motion of each sample; none where controls have no bounds, or nothing is asked of the end.
+@dataclass(frozen=True, eq=False)
+class Bundle:
+    """Extremals through one state, or one end."""
+
+    z: Array
+    """Scaled states and costates at the nodes in order of time, shape (STEPS + 1, 2n, S)."""
+    costs: Array
+    """Up to the nodes, or from there to the end, shape (STEPS + 1, S); infinite once the motion has left its domain."""
+
+    def joined(self, other: Bundle) -> Bundle:
+        """With others."""
+        return Bundle(np.concatenate([self.z, other.z], axis=2), np.concatenate([self.costs, other.costs], axis=1))
+
+
+def motions(problem: TwoPoint, rng: np.random.Generator, *, cheapest: bool = False) -> list[Motion]:
+    """Different motions that nearly meet; none where nothing is asked of the end.
 
     Parameters
     ----------
     problem
         With its bounds, and a given duration.
+    cheapest
+        Whether the cheapest are kept, rather than those with the smallest gaps.
     """
-    limits = problem.instance.control_set.around(len(problem.instance.model.spec.controls))
-    given = problem.fixed.any() or problem.unknowns
-    if not np.isfinite(limits).all() or problem.free_time or not given:
+    if problem.free_time or not (problem.fixed.any() or problem.unknowns):
         return []
-    found = (_nearest(problem, limits, (_pieces, _planes)[k % 2](problem, len(limits[0]), rng)) for k in range(KEPT))
-    return [motion for motion in found if motion is not None]
+    with np.errstate(all="ignore"):
+        field = _drawn(problem, rng)
+        pairs = field.cheapest(CLOSE, FEWEST) if cheapest else field.pairs
+        return field.different(pairs)
 
 
-def _pieces(problem: TwoPoint, controls: int, rng: np.random.Generator) -> Law:
-    """Constant on pieces of any lengths."""
-    levels = rng.uniform(size=(controls, SAMPLES, PIECES))
-    levels = np.where(rng.uniform(size=levels.shape) < SATURATED, levels.round(), levels)
-    edges = np.sort(rng.uniform(size=(SAMPLES, PIECES - 1)), axis=1)
-    edges[np.arange(PIECES - 1) >= rng.integers(PIECES, size=(SAMPLES, 1))] = 2.0  # with fewer pieces
-    piece = (edges[:, :, None] < np.linspace(0.0, 1.0, STEPS + 1)).sum(axis=1)
-    return lambda step, _: np.asarray(levels[:, np.arange(SAMPLES), piece[:, step]])
+def _drawn(problem: TwoPoint, rng: np.random.Generator) -> _Field:
+    """Extremals of any direction, then others about those that nearly meet."""
+    onwards = _onwards(problem, _costates(problem, rng))
+    if problem.unknowns:
+        return _Field(problem, onwards, onwards)
+    found = _Field(problem, onwards, _backwards(problem, onwards, _costates(problem, rng), rng))
+    for size in ROUNDS:
+        parents = found.cheapest(NEAR, PARENTS)[:PARENTS]
+        if not len(parents):
+            break
+        found = found.beside(parents, size, rng)
+    return found
 
 
-def _planes(problem: TwoPoint, controls: int, rng: np.random.Generator) -> Law:
-    """Zero or one, by the side of a plane on which the state is, through some of the axes."""
-    normals = rng.standard_normal((controls, SAMPLES, problem.states))
-    normals *= rng.uniform(size=normals.shape) < 0.5
-    offsets = rng.standard_normal((controls, SAMPLES)) * (rng.uniform(size=SAMPLES) < 0.5)
-    return lambda _, x: np.asarray(np.einsum("mkn,nk->mk", normals, x) + offsets > 0.0, dtype=float)
+def _costates(problem: TwoPoint, rng: np.random.Generator) -> Array:
+    """Of any direction, and of sizes of many orders."""
+    found = rng.standard_normal((problem.states, DRAWN))
+    return np.asarray(found / np.linalg.norm(found, axis=0) * 10.0 ** rng.uniform(*SIZES, DRAWN))
 
 
-def _nearest(problem: TwoPoint, limits: tuple[Array, Array], law: Law) -> Motion | None:
-    """That of a sample which misses the end by least; ``None`` where none stays in the domain."""
-    instance, unit = problem.instance, problem.scale.state[:, None]
-    assert instance.tf is not None
-    low, high = limits
-
-    def steady(step: int, x: Array) -> tuple[Array, Array, Array]:
-        u = low + (high - low) * law(step, x / unit)
-        return u, u, u
-
-    lasting = np.full(SAMPLES, instance.tf - instance.t0)
-    found = together(instance, steady, lasting, STEPS, costing=False)
-    misses = np.array([_miss(problem, end) for end in (found.states[-1] / unit).T])
-    misses[np.isinf(found.costs)] = np.inf
-    best = int(np.argmin(misses))
-    if not np.isfinite(misses[best]):
-        return None
-    return Motion(found.controls[:, :, best].T, found.states[:, :, best].T / unit)
+def _onwards(problem: TwoPoint, costates: Array) -> Bundle:
+    start = np.repeat(problem.initial[:, None], costates.shape[1], axis=1)
+    return _simulated(problem, np.concatenate([start, costates]), backwards=False)
 
 
-def _miss(problem: TwoPoint, end: Array) -> float:
-    """Largest residual of what ties the end, scaled."""
-    n = problem.states
-    residual = problem.boundary(np.append(end, np.zeros(n)), problem.theta)
-    found = float(np.abs(np.append(residual[:n][problem.fixed], residual[n:])).max())
-    return found if np.isfinite(found) else float("inf")
+def _backwards(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.Generator) -> Bundle:
+    """From the end; where a final state is free it is that of a motion from the start, and transversality holds."""
+    n, free, reached = problem.states, ~problem.fixed, np.flatnonzero(np.isfinite(onwards.costs[-1]))
+    count = costates.shape[1]
+    end, terminal = np.repeat(straight(problem)[:, 1:], count, axis=1), np.zeros(count)
+    if free.any() and len(reached):
+        end[free] = onwards.z[-1][:n, rng.choice(reached, count)][free]
+        for k, z in enumerate(np.concatenate([end, costates]).T):
+            costates[free, k] -= problem.boundary(z, problem.theta)[:n][free]
+            terminal[k] = problem.terminal_cost(z, problem.theta)
+    found = _simulated(problem, np.concatenate([end, costates]), backwards=True)
+    return Bundle(found.z, found.costs + terminal)
+
+
+def _simulated(problem: TwoPoint, z: Array, *, backwards: bool) -> Bundle:
+    """Extremals through states and costates, shape (2n, S), at the start or at the end."""
+    tau, theta = np.linspace(0.0, 1.0, 2 * STEPS + 1)[:: -1 if backwards else 1], problem.theta
+    times, h = np.repeat(tau[:, None], z.shape[1], axis=1), problem.duration * (tau[2] - tau[0])
+    found = [z]
+    for first, middle, last in zip(times[:-2:2], times[1::2], times[2::2], strict=True):
+        f1 = problem.rates(first, z, theta)
+        f2 = problem.rates(middle, z + h / 2.0 * f1, theta)
+        f3 = problem.rates(middle, z + h / 2.0 * f2, theta)
+        z = z + h / 6.0 * (f1 + 2.0 * (f2 + f3) + problem.rates(last, z + h * f3, theta))
+        found.append(z)
+    nodes = np.array(found)
+    flat = nodes.transpose(1, 0, 2).reshape(len(z), -1)
+    running = problem.running_cost(times[::2].ravel(), flat, theta).reshape(len(nodes), -1)
+    costs = np.zeros_like(running)
+    costs[1:] = abs(h) * np.cumsum((running[1:] + running[:-1]) / 2.0, axis=0)
+    inside = np.isfinite(nodes).all(axis=1) & (nodes[:, list(problem.positive)] > 0.0).all(axis=1)
+    costs[~np.logical_and.accumulate(inside & np.isfinite(costs), axis=0)] = np.inf
+    return Bundle(nodes[::-1], costs[::-1]) if backwards else Bundle(nodes, costs)
+
+
+@dataclass(frozen=True, eq=False)
+class _Field:
+    """Extremals of both sides. A pair of them is a row: node, one from the start, one to the end, gap and cost."""
+
+    problem: TwoPoint
+    onwards: Bundle
+    backwards: Bundle
+
+    def beside(self, pairs: Array, size: float, rng: np.random.Generator) -> _Field:
+        """With others about these pairs, so far away relative to their costates."""
+        problem, n = self.problem, self.problem.states
+        of = pairs[rng.integers(len(pairs), size=CHILDREN)].astype(int)
+        first, last = self.onwards.z[0][n:, of[:, 1]], self.backwards.z[-1][n:, of[:, 2]]
+        changed = [
+            one + size * np.linalg.norm(one, axis=0) * rng.standard_normal(one.shape) / np.sqrt(n)
+            for one in (first, last)
+        ]
+        onwards = _onwards(problem, changed[0])
+        backwards = _backwards(problem, onwards, changed[1], rng)
+        return _Field(problem, self.onwards.joined(onwards), self.backwards.joined(backwards))
+
+    @cached_property
+    def unit(self) -> Array:
+        """What the states range over on the side where that is less, shape (n, 1)."""
+        n, ranges = self.problem.states, []
+        for side in (self.onwards, self.backwards):
+            seen = [side.z[node][:n, np.isfinite(side.costs[node])] for node in self.nodes]
+            low, high = np.percentile(np.concatenate(seen, axis=1), RANGE, axis=1)
+            ranges.append(np.where(high > low, high - low, np.inf))
+        least = np.min(ranges, axis=0)
+        return np.asarray(np.where(np.isfinite(least), least, 1.0)[:, None])
+
+    @property
+    def nodes(self) -> list[int]:
+        """Where motions may meet, or arrive."""
+        return [int(node) for node in np.linspace(0, STEPS, TIMES + 1)[1:]]
+
+    @cached_property
+    def pairs(self) -> Array:
+        """Those with the smallest gaps first, shape (P, 5)."""
+        found = self._arrivals if self.problem.unknowns else self._meetings
+        return np.asarray(found[np.argsort(found[:, 3])])
+
+    def cheapest(self, gap: float, fewest: int) -> Array:
+        """Those with gaps below that, or the closest so many, the cheapest first."""
+        found = self.pairs[: max(fewest, int(np.searchsorted(self.pairs[:, 3], gap)))]
+        return np.asarray(found[np.argsort(found[:, 4])])
+
+    @property
+    def _meetings(self) -> Array:
+        """Pairs that are close at a node."""
+        from scipy.spatial import cKDTree
+
+        n, found = self.problem.states, [np.zeros((0, 5))]
+        for node in self.nodes:
+            here, there = self.onwards.costs[node], self.backwards.costs[node]
+            first, second = np.flatnonzero(np.isfinite(here)), np.flatnonzero(np.isfinite(there))
+            near = min(NEIGHBOURS, len(second))
+            if not (len(first) and near):
+                continue
+            tree = cKDTree((self.backwards.z[node][:n, second] / self.unit).T)
+            gaps, places = tree.query((self.onwards.z[node][:n, first] / self.unit).T, k=np.arange(1, near + 1))
+            one, other = np.repeat(first, near), second[places.ravel()]
+            found.append(np.column_stack([np.full(len(one), node), one, other, gaps.ravel(), here[one] + there[other]]))
+        return np.concatenate(found)
+
+    @property
+    def _arrivals(self) -> Array:
+        """Motions from the start with themselves, by how much they miss what ties the end."""
+        problem, found = self.problem, [np.zeros((0, 5))]
+        n, costs = problem.states, self.onwards.costs[-1]
+        for k in np.flatnonzero(np.isfinite(costs)).tolist():
+            z = self.onwards.z[-1][:, k]
+            residual = problem.boundary(z, problem.theta)
+            missed = np.abs(np.append(residual[:n][problem.fixed], residual[n:])).max()
+            found.append(np.array([[STEPS, k, k, missed, costs[k] + problem.terminal_cost(z, problem.theta)]]))
+        pairs = np.concatenate(found)
+        return np.asarray(pairs[np.isfinite(pairs).all(axis=1)])
+
+    def different(self, pairs: Array) -> list[Motion]:
+        """The first pairs that are not close to one before."""
+        kept: list[Motion] = []
+        for row in pairs[:MOST]:
+            motion = self._joined(*row[:3].astype(int).tolist(), gap=float(row[3]), cost=float(row[4]))
+            apart = (np.abs(motion.states - other.states) / self.unit for other in kept)
+            if all(one[:, :: STEPS // (SHOWN - 1)].max() >= APART for one in apart):
+                kept.append(motion)
+            if len(kept) == KEPT:
+                break
+        return kept
+
+    def _joined(self, node: int, one: int, other: int, *, gap: float, cost: float) -> Motion:
+        problem, n, tau = self.problem, self.problem.states, np.linspace(0.0, 1.0, STEPS + 1)
+        before, after = self.onwards.z[: node + 1, :, one], self.backwards.z[node:, :, other]
+        jump = (after[0] - before[-1])[:n, None]
+        z = np.concatenate([before, after[1:]]).T
+        ahead = tau <= tau[node]
+        halves = np.where(ahead, tau / tau[node], (tau - 1.0) / max(1.0 - tau[node], tau[1])) / 2.0
+        states = z[:n] + jump * (halves if node < STEPS else tau)
+        return Motion(problem.control(tau, z, problem.theta), states, node, gap, cost)

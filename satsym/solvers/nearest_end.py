@@ -1,13 +1,16 @@
 """How near to the given end a control within its bounds can come: evidence that an instance is infeasible.
 
-The miss is minimised alone, whatever it costs, from several controls, with the gradient by the adjoint equation.
-Where the least miss is not zero, no control near these arrives; that is evidence, not a proof, and the distance
-itself is never called a solution.
+The miss is minimised alone, whatever it costs, from several controls, with the gradient by the adjoint equation; first
+from motions that nearly meet, the gap between them closed as far as it can be. Where the least miss is not zero, and
+most searches end there, no control near these arrives; that is evidence, not a proof, and the distance itself is never
+called a solution.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,18 +18,23 @@ from satsym import activity
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.grid import Grid
+from satsym.solvers.closing_gaps import closed
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.drawn_motions import motions
+from satsym.solvers.drawn_motions import STEPS, motions
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
-STEPS = 200
 ROUNDS = 150
 """Iterations from each start."""
 
 ARRIVED, CLOSE = 1e-4, 5e-3
 """Relative miss that the grid and the minimisation may leave of none, and that below which nobody can tell: controls
 that switch between nodes of the grid may do better."""
+
+ALIKE, AGREEING = 0.1, 0.5
+"""Relative difference of misses that are the same, and the share of the searches that have to find the least one: where
+fewer do, others may arrive."""
 
 NO_MOTION = 1e10
 """In place of the miss where a motion is not finite or leaves its domain."""
@@ -47,6 +55,10 @@ class Nearest:
     """The largest of them, relative to the size of its state along the way."""
     starts: int
     """Controls from which the miss was minimised."""
+    agreeing: int
+    """How many of them led to this miss."""
+    states: Array
+    """Of the motion that ends there, scaled, at evenly spaced times, shape (n, STEPS + 1)."""
 
     @property
     def arrives(self) -> bool:
@@ -55,8 +67,13 @@ class Nearest:
 
     @property
     def undecided(self) -> bool:
-        """Whether it may be no miss."""
-        return self.distance <= CLOSE
+        """Whether it may be no miss, or that of others is none."""
+        return self.distance <= CLOSE or self.agreeing < AGREEING * self.starts
+
+    def path(self, tau: Array) -> Array:
+        """Scaled states at times tau in [0, 1], shape (n, M)."""
+        nodes = np.linspace(0.0, 1.0, STEPS + 1)
+        return np.array([np.interp(tau, nodes, row) for row in self.states])
 
     @property
     def message(self) -> str:
@@ -94,17 +111,19 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
         if limits.expired:
             raise StopIteration
 
-    law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
-    starts = [np.zeros_like(law), law, law / 2.0, *(one.control for one in motions(problem, np.random.default_rng(0)))]
-    best, tried = None, 0
+    starts = _starts(problem, path, reach.tau)
+    best, misses = None, list[float]()
     for k, start in enumerate(starts):
         if limits.expired:
             return None
         activity.tell(f"looking whether the end can be reached at all: search {k + 1} of {len(starts)} ...")
         with np.errstate(all="ignore"):
+            control = tried(start)
+            if control is None:
+                continue
             found = minimize(
                 reach.miss,
-                reach.parameters(start).ravel(),
+                reach.parameters(control).ravel(),
                 jac=True,
                 method="L-BFGS-B",
                 bounds=reach.box,
@@ -113,20 +132,31 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
             )
         if not found.fun < NO_MOTION:
             continue
-        tried += 1
+        misses.append(float(np.sqrt(found.fun)))
         if best is None or found.fun < best.fun:
             best = found
         if best is not None and best.fun <= ARRIVED**2 / 2.0:
             break
-    if best is None or (2 * tried < len(starts) and best.fun > ARRIVED**2 / 2.0):
+    if best is None or (2 * len(misses) < len(starts) and best.fun > ARRIVED**2 / 2.0):
         return None
-    gap = reach.gap(best.x)
-    if gap is None:
-        return None
+    states, gap, _ = reach.reached(reach.control(best.x))
     spec, units = problem.instance.model.spec, [*problem.scale.state, *(1.0 for _ in range(problem.unknowns))]
     names = [*spec.state_names, *(f"the constraint of {v.symbol}" for v in spec.multipliers)]
     missed = {names[i]: float(gap[k] * units[i]) for k, i in enumerate(reach.rows)}
-    return Nearest(missed, float(np.abs(gap).max()), tried)
+    agreeing = sum(miss <= (1.0 + ALIKE) * min(misses) for miss in misses)
+    scaled = states / problem.scale.state[:, None]
+    return Nearest(missed, float(np.abs(gap).max()), len(misses), agreeing, scaled)
+
+
+def _starts(problem: TwoPoint, path: Path, tau: Array) -> list[Callable[[], Array]]:
+    """Controls from which the miss is minimised: those under which motions nearly meet, and the law of a path."""
+    ways = (partial(motions, problem, np.random.default_rng(0), cheapest=cheapest) for cheapest in (True, False))
+    drawn = [one for way in ways for one in tried(way) or []]
+    law = problem.control(tau, path(tau), path.theta, bounded=False)
+    return [
+        *(partial(closed, problem, one) for one in drawn),
+        *(partial(np.multiply, by, law) for by in (0.0, 1.0, 0.5)),
+    ]
 
 
 def _lengths(part: ControlSet, size: Array) -> tuple[Array, Array]:
@@ -201,11 +231,6 @@ class Reach:
         end = np.append(x[:, -1] / problem.scale.state, np.zeros(problem.states))
         slopes, _ = problem.boundary_slopes(end, problem.theta)
         return x, problem.boundary(end, problem.theta)[self.rows], slopes[self.rows, : problem.states]
-
-    def gap(self, parameters: Array) -> Array | None:
-        """The scaled miss; ``None`` where the motion is not finite."""
-        _, gap, _ = self.reached(self.control(parameters))
-        return gap if np.isfinite(gap).all() else None
 
     def miss(self, parameters: Array) -> tuple[float, Array]:
         """Half the squared miss, and its gradient."""

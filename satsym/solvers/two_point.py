@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from satsym.solvers.cold_start.directions import directed, full_length
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
-from satsym.solvers.cold_start.soft_bounds import within_bounds, within_found
+from satsym.solvers.cold_start.soft_bounds import TRIED, within_bounds, within_found
 from satsym.solvers.cold_start.swept import from_control, loose, swept
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import settled, tighten
@@ -28,8 +29,9 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.drawn_motions import motions
 from satsym.solvers.extremal import nothing, solved
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.nearest_end import nearest
+from satsym.solvers.nearest_end import Nearest, nearest
 from satsym.status import Status
 
 ROUNDING = 1e-12
@@ -44,6 +46,9 @@ GUESSED = 1e-2
 DRAWN, AMPLITUDES = 4, (0.2, 0.5)
 """Paths that are drawn where the bounds cannot be brought in, and how far they leave the straight line. Motions under
 controls that are drawn follow where these lead nowhere."""
+
+PATIENT = 300
+"""Steps of the minimisation from these: among many swings those cost nearly the same that differ by a push."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -102,7 +107,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     elif instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, duration = guessed(problem, limits) or cold_start(problem, limits), ""
-        if not start.found.minimum and problem.control_set.bounded:
+        if not start.found.minimum:
             start = drawn_within(problem, limits) or start
         if start.saddle is not None:
             start = replace(start, found=start.saddle)
@@ -182,9 +187,10 @@ def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
     rng, steps = np.random.default_rng(DRAWN), 0
     found: list[tuple[float, Curve]] = []
     bent = [paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)]) for k in range(DRAWN)]
-    for drawn in (lambda: bent, lambda: [motion.path for motion in motions(problem, rng)]):
+    meeting = partial(motions, problem, rng, cheapest=True)
+    for drawn, most in ((lambda: bent, TRIED), (lambda: [motion.path for motion in tried(meeting) or []], PATIENT)):
         for path in () if found else drawn():
-            one = within_bounds(problem, path, limits, GUESSED)
+            one = within_bounds(problem, path, limits, GUESSED, most)
             steps += one.iterations
             if one.solved:
                 found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
@@ -210,10 +216,22 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
     if near is None or limits.expired:
         return found
     if near.arrives:
-        return replace(found, message=f"{found.message}, though the end can be reached")
+        arrived = _from_arrival(problem, near, limits)
+        known = f"{found.message}, though the end can be reached"
+        return arrived if arrived.status.answered else replace(found, message=known)
     if near.undecided:
-        return replace(found, message=f"{found.message}; {near.message}, which may be none")
+        return replace(found, message=f"{found.message}; {near.message}, and others may arrive")
     return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
+
+
+def _from_arrival(problem: TwoPoint, near: Nearest, limits: Limits) -> Extremal:
+    """The extremal within the bounds to which a motion leads that arrives."""
+    found = within_bounds(problem, near.path, limits, GUESSED, PATIENT)
+    if not found.solved:
+        return unfinished(problem, found.curve, found.message, found.iterations, limits)
+    cost = System(problem, found.curve.mesh, found.curve.order).cost(found.curve)
+    attempt = Attempt(found.curve, Reason.MINIMUM, found.iterations, cost)
+    return within(problem, Start(attempt, Origin.DRAWN, found.iterations, bounded=True), limits)
 
 
 def _separated(problem: TwoPoint, limits: Limits) -> str | None:

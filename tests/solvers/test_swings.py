@@ -11,8 +11,10 @@ from sympy import Expr, sin
 
 from satsym.instance import Instance
 from satsym.solvers import solve
+from satsym.solvers.closing_gaps import closed
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.drawn_motions import motions
+from satsym.solvers.nearest_end import Nearest
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -33,11 +35,14 @@ def _swing(name: str, force: Expr) -> Problem:
     return Problem(name=name, title="Least effort", model=model, running_cost=w**2 / 2, control_set="box")
 
 
+WELLS = _swing("wells", a - a**3 - b / 20)
 PENDULUM, OSCILLATOR = _swing("pendulum", -sin(a)), _swing("oscillator", -a)
 
 
-def _case(folder: Path, problem: Problem, end: float, duration: float, bounds: tuple[float, float]) -> Instance:
-    ends = f"[initial]\na = 0\nb = 0\n[final]\na = {end}\nb = 0\n"
+def _case(
+    folder: Path, problem: Problem, end: float, duration: float, bounds: tuple[float, float], start: float = 0
+) -> Instance:
+    ends = f"[initial]\na = {start}\nb = 0\n[final]\na = {end}\nb = 0\n"
     return build(folder, problem, f"{ends}[time]\ntf = {duration}\n[control]\nw = {list(bounds)}\n")
 
 
@@ -77,18 +82,49 @@ def test_an_end_that_one_control_alone_reaches_is_not_called_out_of_reach(tmp_pa
     assert beyond.status is Status.INFEASIBLE
 
 
-def test_motions_that_are_drawn_obey_their_controls_and_come_nearer_than_a_steady_push(tmp_path: Path) -> None:
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize(
+    ("force", "duration", "cost"),
+    # Hermite-Simpson with CasADi and Ipopt on 800 intervals, from states and controls of the answer
+    [(0.12, 30.0, 0.07761786), (0.1, 31.0, 0.07773124)],
+)
+def test_a_weak_force_pumps_a_mass_from_one_well_into_the_other(
+    tmp_path: Path, force: float, duration: float, cost: float
+) -> None:
+    """A control of twelve arcs that arrives is known in closed steps: this is not infeasible."""
+    found = solve(_case(tmp_path, WELLS, 1.0, duration, (-force, force), start=-1.0))
+    assert found.status is Status.CONVERGED
+    assert found.objective == pytest.approx(cost, rel=1e-5)
+
+
+@pytest.mark.slow(in_turn=True)
+def test_a_force_that_is_too_weak_for_any_pumping_is_infeasible(tmp_path: Path) -> None:
+    """Energy grows by -v^2/20 + w v at most, which is never above 5 w^2: in 20 by 0.01, and 0.25 is asked for."""
+    found = solve(_case(tmp_path, WELLS, 1.0, 20.0, (-0.01, 0.01), start=-1.0))
+    assert found.status is Status.INFEASIBLE
+
+
+def test_where_searches_disagree_others_may_arrive(tmp_path: Path) -> None:
+    few = Nearest({"a": 0.1}, 0.1, starts=9, agreeing=4, states=np.zeros((2, 3)))
+    assert few.undecided
+    assert not replace(few, agreeing=5).undecided
+
+
+def test_motions_that_meet_obey_their_controls_and_arrive_once_gaps_are_closed(tmp_path: Path) -> None:
     case = _case(tmp_path, PENDULUM, np.pi, 40.0, (-0.12, 0.12))
     problem = two_point(case, 40.0)
-    found = motions(problem, np.random.default_rng(0))
+    found = motions(problem, np.random.default_rng(0), cheapest=True)
     assert len(found) == 4
-    again = motions(problem, np.random.default_rng(0))
+    again = motions(problem, np.random.default_rng(0), cheapest=True)
+    arrived = 0
     for one, same in zip(found, again, strict=True):
         assert (one.states == same.states).all()
         assert (np.abs(one.control) <= 0.12).all()
-        rates = case.model.dynamics_batch(0.0, one.states * problem.scale.state[:, None], one.control, ())
-        middles = (np.asarray(rates)[0, 1:] + np.asarray(rates)[0, :-1]) / 2.0
-        moved = np.diff(one.states[0]) * problem.scale.state[0]
-        assert moved == pytest.approx(middles * 0.2, abs=2e-3)
-    highest = max(np.abs(one.states[0]).max() * problem.scale.state[0] for one in found)
-    assert highest > 0.75, "a steady push of 0.12 lifts it by a quarter of a radian"
+        assert one.states[:, 0] == pytest.approx(problem.initial)
+        assert one.states[:, -1] * problem.scale.state == pytest.approx([np.pi, 0.0], abs=1e-12)
+        control = closed(problem, one)
+        assert (np.abs(control) <= 0.12).all()
+        middle = (control[:, 1:] + control[:, :-1]) / 2.0
+        x, _, _ = case.model.forward(np.linspace(0.0, 40.0, 201), case.initial, control, middle, ())
+        arrived += bool(np.abs(x[:, -1] - [np.pi, 0.0]).max() < 1e-4)
+    assert arrived >= 2

@@ -35,7 +35,9 @@ BLOCKED = 5.0
 """Growth of the cost from one softness to the next, tenfold where bounds cannot be kept, that shows it."""
 
 
-def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0) -> Attempt:
+def within_bounds(
+    problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0, most: int = TRIED
+) -> Attempt:
     """The extremal within the bounds to which a path of states leads, its mesh with nodes where these are met.
 
     Parameters
@@ -46,8 +48,10 @@ def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Lim
         Scaled states, shape (n, M), at M times tau.
     softness
         Of the first problem: one for that without bounds.
+    most
+        Steps of its minimisation.
     """
-    first = from_path(problem.softened(softness), path, limits, TRIED)
+    first = from_path(problem.softened(softness), path, limits, most)
     if not first.minimum:
         return first
     if not first.curve.in_domain(problem.positive):
