@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -131,6 +131,11 @@ def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list
             progress(history[-1])
 
     return Limits(instance.solver.max_iterations or MOST, deadline_of(instance), watch, instance.work), history
+
+
+def history_of(passed: Sequence[tuple[float, float]]) -> tuple[Iteration, ...]:
+    """A history from cost and residual, one by one."""
+    return tuple(Iteration(number, *one) for number, one in enumerate(passed))
 
 
 @dataclass(frozen=True)

@@ -246,7 +246,7 @@ def test_a_time_at_which_the_cost_is_largest_is_no_minimum(stiffness: float):
         assert found is not None
         assert found.times[1] == pytest.approx(times[turn], abs=0.1)
         minimum = bool(costs[turn] < costs[turn - 1])
-        verdict = certify(answered(case, found, nothing, 0.0, "here"), compared=False)
+        verdict = certify(answered(case, found, 0.0, "here"), compared=False)
         assert verdict is not None
         assert (verdict.verdict is Verdict.LOCAL_MINIMUM) == minimum, verdict
         seen.add(minimum)

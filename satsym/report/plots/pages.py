@@ -188,7 +188,7 @@ ANEW = 100.0
 
 
 def convergence(scene: Scene) -> Figure | None:
-    """Distance of the cost from its last value, and the residual, over the iterations; nothing for fewer than three."""
+    """Distance of the cost from the answer's, and the residual, over the iterations; nothing for fewer than three."""
     history = scene.history
     if len(history) < 3:
         return None
@@ -198,8 +198,8 @@ def convergence(scene: Scene) -> Figure | None:
     at = np.array([entry.number for entry in history], dtype=float)
     costs = clean(np.array([scene.spec.objective(entry.objective) for entry in history]))
     residuals = clean(np.array([entry.residual for entry in history]))
-    known = costs[np.isfinite(costs)]
-    last = float(known[-1]) if known.size else 0.0
+    assert isinstance(scene.result, Solution)  # nothing else has a history
+    last = scene.spec.objective(scene.result.objective)
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
     begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
     unit, status = scene.spec.objective_unit or "1", message(scene.result.status.value)

@@ -181,6 +181,8 @@ class Arcs:
     unknown: Array
     fixed_times: tuple[float, ...] | None = None
     """Times of points on the way, and the final time where it is free, if they are to be these; else they are found."""
+    passed: tuple[tuple[float, float], ...] = ()
+    """Cost, and the size of a step or how far conditions were from holding, one by one on the way here."""
 
     @property
     def n(self) -> int:

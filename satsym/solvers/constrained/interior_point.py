@@ -50,7 +50,8 @@ class Path:
     solved: bool
     violation: float
     """Of all conditions, at most."""
-    steps: int
+    passed: tuple[tuple[float, float], ...]
+    """Cost, and how far conditions are from holding, step by step."""
 
 
 def regularised(program: Program, start: Point, worth: float, limits: Limits) -> Path:
@@ -69,14 +70,16 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     at = replace(start, s=np.maximum(-g, OPENED * np.where(room > 0.0, room, units.g)))
     weight, at = FIRST * unit, replace(at, z=FIRST * unit / at.s)
     filtered, curved, reopened = list[tuple[float, float]](), 0.0, 0
-    for step in range(STEPS):
+    passed: list[tuple[float, float]] = []
+    for _ in range(STEPS):
         slopes = Slopes.of(program, at)
         error, violation = _error(program, at, slopes, weight, unit, units)
         while error < 10.0 * weight / unit and weight > LAST * unit:
             weight, filtered = max(LAST * unit, min(0.2 * weight, unit * (weight / unit) ** 1.5)), []
             error, violation = _error(program, at, slopes, weight, unit, units)
+        passed.append((program.cost(at), error))
         if error < 10.0 * LAST and weight <= LAST * unit:
-            return Path(at, program.cost(at), True, violation, step)
+            return Path(at, program.cost(at), True, violation, tuple(passed))
         if limits.expired:
             break
         moved = _stepped(program, at, slopes, weight, filtered, curved, units)
@@ -88,7 +91,7 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
             at, filtered = _reopened(program, at, weight, OPENED * NARROWER**reopened), []
         else:
             break
-    return Path(at, program.cost(at), False, _violation(program, at, units), STEPS)
+    return Path(at, program.cost(at), False, _violation(program, at, units), tuple(passed))
 
 
 def _reopened(program: Program, at: Point, weight: float, share: float) -> Point:

@@ -13,8 +13,10 @@ from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.constrained.active import control
 from satsym.solvers.constrained.arcs import Arcs, gradient
 from satsym.solvers.constrained.equations import System
+from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.structure import Structure
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.transcription import Program
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
 ACCURATE = 1e-12
@@ -70,13 +72,14 @@ def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
     return None
 
 
-def from_path(program: Program, at: Point, structure: Structure) -> Arcs:
+def from_path(program: Program, path: Path, structure: Structure) -> Arcs:
     """The unknowns of a structure from a regularised path."""
-    one, lasting = program.instance, at.duration
+    one, at, lasting = program.instance, path.at, path.at.duration
     middles = np.real(program.times(lasting, middle=True))
     table = np.concatenate([(at.x[:, :-1] + at.x[:, 1:]) / 2, at.y])
     c = len(one.model.spec.multipliers)
-    return begun(one, structure, (middles, table, at.v[len(at.v) - c :]), one.t0 + lasting)
+    found = begun(one, structure, (middles, table, at.v[len(at.v) - c :]), one.t0 + lasting)
+    return replace(found, passed=path.passed)
 
 
 def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
@@ -87,7 +90,8 @@ def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
     order = np.argsort(times, kind="stable")
     rest = arcs.rest
     nu = arcs.unknown[rest.nu : rest.nu + rest.constraints]
-    return begun(arcs.instance, structure, (times[order], rows[:, order], nu), arcs.end)
+    found = begun(arcs.instance, structure, (times[order], rows[:, order], nu), arcs.end)
+    return replace(found, passed=arcs.passed)
 
 
 def _at_once(one: float, other: float, lasting: float) -> bool:
@@ -119,6 +123,12 @@ def cost(arcs: Arcs) -> float:
         total += float(running @ weights)
     end = tuple(arcs.node(len(arcs.intervals) - 1, -1)[:n].tolist())
     return total + float(one.model.terminal_cost(arcs.end, end, one.parameters))
+
+
+def _cost_or_none(arcs: Arcs) -> float:
+    """The same on the way to an extremal, where numbers may fail: NaN then."""
+    found = tried(lambda: cost(arcs))
+    return float("nan") if found is None else found
 
 
 def _places(intervals: int) -> Array:
@@ -154,7 +164,7 @@ def converged(arcs: Arcs, limits: Limits) -> Arcs | None:
             length /= 2.0
         else:
             return arcs if whole < np.sqrt(ACCURATE) * 1e-3 else None
-        arcs = there
+        arcs = replace(there, passed=(*arcs.passed, (_cost_or_none(there), whole)))
         if length == 1.0 and again < ACCURATE:
             return arcs
     return None

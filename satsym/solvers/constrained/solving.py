@@ -33,7 +33,7 @@ from satsym.solvers.constrained.structure import Event as Happening
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
-from satsym.solvers.iteration import Limits, computed, deadline_of, watched
+from satsym.solvers.iteration import Limits, computed, deadline_of, history_of, watched
 from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
@@ -104,7 +104,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     if isinstance(found, Stopped):
         nothing = iteration.unsolved(instance, BOUNDARY_ARCS, time.perf_counter() - began)
         return replace(nothing, status=found.status, message=found.message, history=relaxed.history)
-    return answered(instance, found, relaxed, time.perf_counter() - began, PATH)
+    return answered(instance, found, time.perf_counter() - began, PATH)
 
 
 def cheaper(solution: Solution, deadline: float) -> Solution | None:
@@ -117,7 +117,7 @@ def cheaper(solution: Solution, deadline: float) -> Solution | None:
         found = tried(partial(_best, solution.instance, solution, limits))
     if not isinstance(found, Arcs) or not cost(found) < solution.objective:
         return None
-    return answered(solution.instance, found, solution, time.perf_counter() - began, PATH)
+    return answered(solution.instance, found, time.perf_counter() - began, PATH)
 
 
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
@@ -164,7 +164,7 @@ def _exactly(program: Program, worth: float) -> Callable[[Path, Limits], Arcs | 
     def exact(path: Path, limits: Limits) -> Arcs | Stopped:
         if path.solved:
             first = [recognised(program, path, resting=resting) for resting in (False, True)]
-            return revised(first, partial(from_path, program, path.at), limits)
+            return revised(first, partial(from_path, program, path), limits)
         if convex(program.instance) and (reason := impossible(program, worth)):
             return Stopped(Status.INFEASIBLE, reason)
         return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
@@ -247,8 +247,11 @@ def _at_nodes(arcs: Arcs, arc: int, times: Array) -> Array:
     return z
 
 
-def answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float, source: str) -> Solution:
-    """Exact arcs, from what the source says, as a solution; junctions that come at once have one time."""
+def answered(instance: Instance, arcs: Arcs, wall_s: float, source: str) -> Solution:
+    """Exact arcs, from what the source says, as a solution; junctions that come at once have one time.
+
+    Its history is that of the path and of the arcs that led here, not of the problem without constraints.
+    """
     nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
     parts: list[tuple[Array, Array, Array]] = []
     brief = ROUNDED * (arcs.end - instance.t0)
@@ -281,8 +284,8 @@ def answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float, s
             tuple(dict.fromkeys(one.t for one in events if one.name in bounds and instance.t0 < one.t))
             for bounds in bound_names(instance.model.spec)
         ),
-        iterations=len(relaxed.history),
-        history=relaxed.history,
+        iterations=len(arcs.passed),
+        history=history_of(arcs.passed),
         wall_s=wall_s,
         events=events,
     )

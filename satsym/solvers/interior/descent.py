@@ -78,7 +78,7 @@ def _moved(arcs: Arcs, times: Array) -> Arcs:
     """The same values at other times."""
     unknown, first = arcs.unknown.copy(), arcs.places[-1]
     unknown[first : first + len(times)] = times
-    return replace(arcs, unknown=unknown, fixed_times=tuple(times.tolist()))
+    return replace(arcs, unknown=unknown, fixed_times=tuple(times.tolist()), passed=())
 
 
 def _descended(at: Arcs, limits: Limits) -> Arcs | None:

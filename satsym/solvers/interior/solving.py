@@ -72,7 +72,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         stopped = LATE if limits.late or found is None else found
         nothing = iteration.unsolved(instance, BOUNDARY_ARCS, time.perf_counter() - began)
         return replace(nothing, status=stopped.status, message=stopped.message, history=relaxed.history)
-    return answered(instance, found, relaxed, time.perf_counter() - began, "a search of the times")
+    return answered(instance, found, time.perf_counter() - began, "a search of the times")
 
 
 def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[float], bool]:

@@ -73,6 +73,8 @@ class Exact:
     origin: Origin = Origin.STRUCTURE
     smoothing: float = 0.0
     """From where it was found, and by how much that was smoothed."""
+    passed: tuple[tuple[float, float], ...] = ()
+    """Cost and residual, one by one, on the way here, where that is one way and nobody else watched it."""
 
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +12,7 @@ from itertools import chain
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solution import Progress, Solution
+from satsym.solution import Iteration, Progress, Solution
 from satsym.solvers.failures import tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
@@ -77,12 +78,13 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         found = _found(instance, limits)
         endless = _endless(instance, found, limits)
         if endless is not None:
+            limits.tell(endless.objective, history[-1].residual if history else math.nan)
             return replace(endless, iterations=len(history), history=tuple(history), wall_s=time.perf_counter() - began)
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
             return without(instance, _out_of_reach(found, limits), tuple(history), began)
-        return answered(instance, found, tuple(history), began)
+        return _finished(instance, found, limits, history, began)
 
 
 def _throttled(instance: Instance, progress: Progress | None) -> Solution:
@@ -97,6 +99,12 @@ def _throttled(instance: Instance, progress: Progress | None) -> Solution:
         found = homotopy.Stopped(Status.NOT_CONVERGED, 'nothing switches: use method "collocation"')
     if isinstance(found, homotopy.Stopped):
         return without(instance, found, tuple(history), began)
+    return _finished(instance, found, limits, history, began)
+
+
+def _finished(instance: Instance, found: Exact, limits: Limits, history: list[Iteration], began: float) -> Solution:
+    """The answer, whose cost is told last: on the way other problems were solved, and other arcs."""
+    limits.tell(found.trajectory.cost(instance), found.refined.residual)
     return answered(instance, found, tuple(history), began)
 
 

@@ -17,7 +17,7 @@ from satsym.solvers.constrained.search import searched
 from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.constrained.violation import VIOLATED, violation
-from satsym.solvers.iteration import Limits, deadline_of, watched
+from satsym.solvers.iteration import Limits, deadline_of, history_of, watched
 from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
@@ -66,7 +66,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         found = _best(instance, relaxed, limits)
         if isinstance(found, Stopped):
             return replace(without(instance, found, relaxed.history, began), method=BOUNDARY_ARCS)
-        return _with_events(instance, found, answered(instance, found, relaxed.history, began))
+        last = found.trajectory.cost(instance), found.refined.residual
+        history = history_of((*found.passed, last))
+        return _with_events(instance, found, answered(instance, found, history, began))
 
 
 def others(solution: Solution, seed: int, deadline: float) -> tuple[int, list[float], bool]:
@@ -110,9 +112,12 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Exact | Stop
 def _exact(program: Program, path: Path, limits: Limits) -> Exact | None:
     """The first extremal among structures that a regularised path shows."""
     for shortest in (BRIEF, LONGER) if path.solved else ():
-        found = attempt(program.instance, recognised(program, path, shortest), limits)
+        own, history = watched(program.instance, None)
+        guess = recognised(program, path, shortest)
+        found = attempt(program.instance, guess, replace(limits, watch=own.watch))
         if found:
-            return replace(found, origin=Origin.PATH)
+            passed = (*path.passed, *((one.objective, one.residual) for one in history))
+            return replace(found, origin=Origin.PATH, passed=passed)
     return None
 
 

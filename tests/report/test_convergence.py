@@ -1,0 +1,48 @@
+"""The picture of the iterations: they lead to the answer, whatever other problems were solved before it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from satsym import instance
+from satsym.report import display
+from satsym.report.plots import pages, style
+from satsym.report.plots.scene import Scene
+from satsym.solution import Solution
+from satsym.solvers import solve
+
+IN_ARCS = [name for name in instance.shipped() if instance.load(name).model.spec.in_arcs]
+"""With path constraints, or points on the way: the problem without these is solved first, and costs less."""
+
+SWITCHING = ["double-integrator-fuel", "goddard"]
+
+
+def title(solution: Solution) -> str:
+    """What stands above the costs."""
+    with style.applied():
+        page = pages.convergence(Scene.of(solution))
+    assert page is not None
+    return str(page.axes[0].get_title("left"))
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize("name", [*IN_ARCS, *SWITCHING])
+def test_iterations_end_at_the_cost_of_the_answer_and_the_picture_says_it(name: str) -> None:
+    solution = solve(instance.load(name), examined=False)
+    assert solution.status.answered
+    last = solution.history[-1]
+    assert last.objective == pytest.approx(solution.objective, rel=1e-9)
+    assert last.residual < 1e-6
+    spec = solution.instance.model.spec
+    final = display.number(spec.objective(solution.objective), 10)
+    assert title(solution).split()[2] == final
+
+
+def test_a_constraint_that_is_active_shows_in_the_iterations() -> None:
+    solution = solve(instance.load("bryson-denham"), examined=False)
+    costs = np.array([one.objective for one in solution.history])
+    assert solution.objective == pytest.approx(4.0, rel=1e-9)  # 4 / (9 l) of l = 1/9; Bryson and Ho, 3.11
+    assert costs[0] == pytest.approx(2.0), "without the constraint, from where the search with it starts"
+    assert costs[1:].min() > 3.9
+    assert solution.iterations == len(solution.history)
