@@ -87,7 +87,14 @@ def newest(name: str, command: str | None) -> Path | None:
 
 
 def saved_folder(name: str, command: str | None) -> Path:
-    """The same.
+    """As :func:`newest`, but there must be results: what to run is said where there are none.
+
+    Parameters
+    ----------
+    name
+        Of an instance or a model.
+    command
+        Whose results are meant; ``None``: those of the command that wrote last.
 
     Raises
     ------

@@ -15,6 +15,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
+from satsym.solvers.collocation.continuation import kept
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
@@ -126,9 +127,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
         message = "the conditions contradict each other or leave costates open: the end may not be reachable"
         return unfinished(problem, arcs, message, 1, limits)
-    tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
-    control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
-    if instance.control_set.violation(control) > 0.0:
+    if not kept(problem, arcs):
         raise _refusal(instance, "bounds on its control are active")
     cost = arcs.cost() * problem.scale.cost
     limits.tell(cost, error)

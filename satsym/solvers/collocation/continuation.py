@@ -6,6 +6,7 @@ is met or left. Newton converges if it starts near, so the bounds move in as far
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +14,11 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.curve import Curve, Path, stage_times
+from satsym.solvers.collocation.curve import SMALL, Curve, Path
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.corners import LAST_DIGITS, enclosed
+from satsym.solvers.control.corners import BEYOND, LAST_DIGITS, beyond, enclosed
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
@@ -42,6 +43,9 @@ SETTLING = 12
 
 CLOSEST = 1e-7
 """Smallest distance of two corners that get nodes of their own, as a share of the horizon."""
+
+NOTHING = 1e-14
+"""What corners off the nodes may leave out where they do not stand still, being passed at next to no slope."""
 
 
 def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
@@ -87,14 +91,11 @@ def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> lis
     """The same, bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
     if not problem.control_set.bounded:
         return []
-    inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
-    tau = distinct((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
 
     def excess(at: Array) -> Array:
-        law = problem.control(at, curve(at), curve.theta, bounded=False)
-        return problem.control_set.excess(law)
+        return problem.control_set.excess(_unbounded(problem, curve, at))
 
-    values = excess(tau)
+    tau, values = _sampled(curve.mesh, excess)
     signs = np.where(np.isfinite(values).all(axis=1, keepdims=True), np.sign(values), 1.0)
     rows, at, after = _changes(signs)
     own = np.arange(len(rows))
@@ -111,18 +112,70 @@ def _changes(signs: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[
     return row[changed], at[changed], at[changed + 1]
 
 
-def kept(problem: TwoPoint, curve: Curve) -> bool:
+def kept(problem: TwoPoint, curve: Path) -> bool:
     """Whether the control law without bounds keeps them."""
     return _violation(problem, curve) <= 0.0
 
 
-def _violation(problem: TwoPoint, curve: Curve) -> float:
-    """By how much the control law without bounds leaves the control set; negative where there are none."""
-    if not problem.instance.control_set.bounded:
+def _violation(problem: TwoPoint, curve: Path) -> float:
+    """By how much the control law without bounds leaves the control set, but for rounding; not positive if it does not.
+
+    That may be for a moment at either end, or between any two points.
+    """
+    within = problem.instance.control_set
+    if not within.bounded:
         return -np.inf
-    tau = stage_times(curve.mesh, curve.order).ravel()
-    law = problem.control(tau, curve.flat, curve.theta, bounded=False)
-    return problem.instance.control_set.violation(law)
+    tau, _ = _sampled(curve.mesh, lambda at: within.excess(_unbounded(problem, curve, at)))
+    law = _unbounded(problem, curve, tau)
+    found = within.violation(law)
+    return found if found > BEYOND * float(np.abs(law).max()) else min(found, 0.0)
+
+
+def _unbounded(problem: TwoPoint, curve: Path, tau: Array) -> Array:
+    """The control law of a curve without bounds, shape (m, M)."""
+    return problem.control(tau, curve(tau), curve.theta, bounded=False)
+
+
+def _sampled(mesh: Array, excess: Callable[[Array], Array]) -> tuple[Array, Array]:
+    """Times in every interval, with those at which a bound is passed for a moment between them, and the excess there.
+
+    Parameters
+    ----------
+    excess
+        Signed distances to each bound, shape (bounds, M), at times (M,).
+    """
+    inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
+    tau = distinct((mesh[:-1, None] + np.diff(mesh)[:, None] * inside).ravel())
+    values, apart = excess(tau), np.append(True, np.diff(tau) > CLOSEST)
+    momentary: list[float] = []
+    for row, own in enumerate(values[:, apart]):
+        momentary += beyond(lambda at, row=row: float(excess(np.array([at]))[row, 0]), tau[apart], own)  # type: ignore[misc]
+    if not momentary:
+        return tau, values
+    tau = np.union1d(tau, momentary)
+    return tau, excess(tau)
+
+
+def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
+    """What corners off the nodes leave out: the rates on one side, followed up to the node beside it or as far beyond.
+
+    On the side on which no bound is active those are the rates of the other side as well.
+    """
+    if not len(met):
+        return 0.0
+    node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
+    largest = 0.0
+    for at in (node, np.clip(2.0 * met - node, 0.0, 1.0)):
+        followed, free = (one.rates(at, curve(at), curve.theta) for one in (problem, problem.relaxed(float("inf"))))
+        largest = max(largest, apart(problem, curve, followed - free, met - node))
+    return largest
+
+
+def apart(problem: TwoPoint, curve: Path, rates: Array, late: Array) -> float:
+    """What a difference of rates (2n, M) comes to in so much of the time (M,), relative to the size of a curve."""
+    size = np.abs(curve.nodes).reshape(2, -1).max(axis=1)
+    jump = np.abs(rates).reshape(2, problem.states, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
+    return float((jump.max(axis=0) * np.abs(late)).max()) * problem.elapsed(curve.theta) / 2.0
 
 
 def through(points: Array, count: int) -> Array:
@@ -134,6 +187,11 @@ def through(points: Array, count: int) -> Array:
     parts = np.maximum(1, np.ceil(np.diff(ends) * count)).astype(int)
     pieces = [a + (b - a) * np.arange(k) / k for a, b, k in zip(ends[:-1], ends[1:], parts, strict=True)]
     return np.concatenate([*pieces, [1.0]])
+
+
+def stand_still(before: Array, now: Array) -> bool:
+    """Whether corners have not moved."""
+    return len(before) == len(now) and bool(np.abs(now - before).max(initial=0.0) < STILL)
 
 
 def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Attempt:
@@ -151,7 +209,7 @@ def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Lim
     before: Array | None = None
     now, total = corners(problem, curve), 0
     for _ in range(SETTLING):
-        if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
+        if before is not None and stand_still(before, now):
             return Attempt(curve, Reason.EXTREMAL, total)
         mesh = through(now, count)
         outcome = newton(System(problem, mesh, order + 2), curve.on(mesh, order + 2), most=15)
@@ -161,4 +219,7 @@ def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Lim
         total += outcome.iterations
         curve, before = outcome.curve, now
         now = corners(problem, curve)
+    else:
+        if misplaced(problem, curve, now) < NOTHING:
+            return Attempt(curve, Reason.EXTREMAL, total)
     return Attempt(curve, Reason.UNSETTLED, total)

@@ -8,9 +8,9 @@ import numpy as np
 
 from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.continuation import corners
-from satsym.solvers.collocation.curve import SMALL, Curve
-from satsym.solvers.collocation.defect_correction import correct_defects, left_out, resolved
+from satsym.solvers.collocation.continuation import apart, corners, misplaced
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.defect_correction import Corrected, correct_defects, left_out, resolved
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.linearised import Linearised
@@ -70,7 +70,7 @@ def refine(
         corrected = (correct_defects(curve, known, aim) or resolved(problem, curve, ROUGH)) if known else None
         met = corners(problem, corrected.curve) if corrected and keep_nodes else np.zeros(0)
         jumps = found(problem, corrected.curve) if corrected else []
-        error = max(corrected.error, _misplaced(problem, corrected.curve, met, jumps)) if corrected else float("inf")
+        error = _error(problem, corrected, met, jumps) if corrected else float("inf")
         better = error < 0.5 * best.error
         if corrected and error < best.error:
             reason = Reason.EXTREMAL if error < tolerance else Reason.INACCURATE
@@ -100,18 +100,20 @@ def _density(omitted: Array, aim: float, order: int) -> Array:
     return found
 
 
-def _misplaced(problem: TwoPoint, curve: Curve, met: Array, jumps: list[Jump]) -> float:
-    """What corners and jumps off the nodes leave out: the rates on one side, followed up to the node beside it."""
-    met = np.append(met, [jump.time for jump in jumps])
-    if not len(met):
+def _error(problem: TwoPoint, corrected: Corrected, met: Array, jumps: list[Jump]) -> float:
+    """The estimated error, or what corners and jumps leave out that are off the nodes, if that is more."""
+    curve = corrected.curve
+    return max(corrected.error, misplaced(problem, curve, met), _jumping_off(problem, curve, jumps))
+
+
+def _jumping_off(problem: TwoPoint, curve: Curve, jumps: list[Jump]) -> float:
+    """What jumps off the nodes leave out: the change of the rates up to the node beside them."""
+    if not jumps:
         return 0.0
+    met = np.array([jump.time for jump in jumps])
     node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
-    followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.relaxed(float("inf"))))
-    for k, jump in enumerate(jumps, len(met) - len(jumps)):
-        followed[:, k] = free[:, k] + problem.saltation(jump.time, curve(met[k : k + 1])[:, 0], curve.theta, jump).leap
-    n, size = problem.states, np.abs(curve.nodes).reshape(2, -1).max(axis=1)
-    jump = np.abs(followed - free).reshape(2, n, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
-    return float((jump.max(axis=0) * np.abs(met - node)).max()) * problem.elapsed(curve.theta) / 2.0
+    leaps = [problem.saltation(one.time, z, curve.theta, one).leap for one, z in zip(jumps, curve(met).T, strict=True)]
+    return apart(problem, curve, np.array(leaps).T, met - node)
 
 
 def _followed(mesh: Array, met: Array) -> Array:

@@ -14,6 +14,13 @@ LAST_DIGITS = 1e-15
 STENCIL = 5
 """Points of the polynomial through which a zero is found."""
 
+TURNS, TOWARDS = 8, 0.5
+"""Parabolas that are laid through three points at most, and the share of the least value below which one has to lead
+for the function to have zeros nearby."""
+
+BEYOND = 1e-11
+"""Share of the largest value by which a function is beyond zero; less than that is rounding."""
+
 
 def zeros(times: Array, values: Array) -> list[float]:
     """Times at which a function changes sign, by local interpolation.
@@ -35,6 +42,55 @@ def zeros(times: Array, values: Array) -> list[float]:
         first = int(np.clip(k - STENCIL // 2 + 1, 0, max(len(times) - STENCIL, 0)))
         found.append(_zero(times[first : first + STENCIL], values[first : first + STENCIL], times[k], times[k + 1]))
     return sorted(found)
+
+
+def beyond(function: Callable[[float], float], times: Array, values: Array) -> list[float]:
+    """Times between others at which a function is beyond zero for a moment, having the same sign at these others.
+
+    Where it comes near to zero and turns, its extremum is looked for by parabolas.
+
+    Parameters
+    ----------
+    times, values
+        Shape (M,), the former increasing.
+    """
+    sign, size = np.sign(values), np.abs(values)
+    known = size[np.isfinite(size)]
+    floor = BEYOND * float(known.max(initial=0.0))
+    alike = (sign[:-2] == sign[1:-1]) & (sign[2:] == sign[1:-1]) & (size[1:-1] <= np.minimum(size[:-2], size[2:]))
+    found = []
+    for k in np.flatnonzero(alike & np.isfinite(size[:-2]) & np.isfinite(size[2:])) + 1:
+        points = list(zip(times[k - 1 : k + 2].tolist(), size[k - 1 : k + 2].tolist(), strict=True))
+        for _ in range(TURNS):
+            vertex = _vertex(points)
+            if vertex is None:
+                break
+            at = float(sign[k]) * function(vertex)
+            if at < -floor:
+                found.append(vertex)
+                break
+            points = _around(points, (vertex, at))
+    return found
+
+
+def _vertex(points: list[tuple[float, float]]) -> float | None:
+    """Where the parabola through three points has its least value; ``None`` where that is far from zero, or known."""
+    (a, at_a), (b, at_b), (c, at_c) = points
+    left, right = (at_a - at_b) / (b - a), (at_c - at_b) / (c - b)
+    curved = left + right
+    if not curved > 0.0:
+        return None
+    slope = (right * (b - a) - left * (c - b)) / (c - a)
+    move = -slope * (c - a) / (2.0 * curved)
+    least = at_b + slope * move / 2.0
+    return b + move if least < TOWARDS * at_b and a < b + move < c and move else None
+
+
+def _around(points: list[tuple[float, float]], new: tuple[float, float]) -> list[tuple[float, float]]:
+    """Of three points and one more the three around the least."""
+    ordered = sorted([*points, new])
+    least = min((1, 2), key=lambda k: ordered[k][1])
+    return ordered[least - 1 : least + 2]
 
 
 def enclosed(

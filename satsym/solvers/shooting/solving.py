@@ -11,7 +11,7 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.origin import Start
 from satsym.solvers.collocation.attempt import Reason
-from satsym.solvers.collocation.continuation import corners, through
+from satsym.solvers.collocation.continuation import NOTHING, corners, misplaced, stand_still, through
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
@@ -33,9 +33,8 @@ REFINEMENTS = 3
 FEWEST_ARCS = 10
 """Arcs of a problem whose bounds are met."""
 
-STILL = 1e-11
 SETTLING = 12
-"""Times that nodes are moved to the corners, and the share of the horizon by which these may then still move."""
+"""Times that nodes are moved to the corners."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -84,7 +83,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
     # with a remainder of an arc between neighbouring corners, no more arcs
     count = max(FEWEST_ARCS, len(mesh) - 2 - len(met))
     path, why = start, Reason.UNSETTLED.value
-    for _ in range(SETTLING):
+    for last in (*[False] * (SETTLING - 1), True):
         mesh = through(met, count) if len(met) else mesh
         outcome = _shot(problem, path, mesh, accuracy, limits)
         path, mesh, total = outcome.arcs, outcome.arcs.mesh, total + outcome.iterations
@@ -92,7 +91,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
             why = f"Newton's method fails on {len(mesh) - 1} arcs"
             break
         before, met = met, corners(problem, path)
-        if len(met) == len(before) and np.abs(met - before).max(initial=0.0) < STILL:
+        if stand_still(before, met) or (last and misplaced(problem, path, met) < NOTHING):
             arcs, error = doubled(outcome.arcs, outcome.matching)
             limits.tell(arcs.cost() * problem.scale.cost, error)
             if error <= tolerance and not problem.instance.model.in_domain(arcs.course[1]):

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.arrays import Array
+from satsym.arrays import Array, distinct
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.switching.arrivals import Arrivals, stated
@@ -260,7 +260,7 @@ def _curved(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
     moved = np.maximum(np.abs(by_times).max(axis=0, initial=0.0), np.abs(approach)) * found.durations
     sizes = np.maximum(np.maximum(np.abs(flow.values[:, :n]).max(axis=0), moved), 1e-300)
     fine = np.zeros(count, dtype=bool)
-    for used in np.unique(switches).tolist():
+    for used in distinct(switches).tolist():
         own = np.flatnonzero(switches == used)
         by = np.concatenate([by_times[:used, :, own], approach[None, :, own]]).transpose(2, 1, 0)
         hessian = np.zeros((len(own), used + 1, used + 1))
