@@ -21,9 +21,15 @@ ROUGHLY = 1e-5
 SHORTEST = 1.0 / 256.0
 """Of a step of the continuation, as a share of the way."""
 
+MOST_INTERVALS = 60
+
 
 def follow(
-    problem: Callable[[float], TwoPoint], curve: Curve, limits: Limits, shortest: float = SHORTEST
+    problem: Callable[[float], TwoPoint],
+    curve: Curve,
+    limits: Limits,
+    shortest: float = SHORTEST,
+    most: int = MOST_INTERVALS,
 ) -> tuple[Curve, float]:
     """Solutions of a family of problems, from its start to its end, as far as that goes.
 
@@ -35,13 +41,15 @@ def follow(
         A solution at the start.
     shortest
         Step below which it is given up, as a share of the way.
+    most
+        Intervals of the mesh, about.
 
     Returns
     -------
     curve, reached
         The last one, and the share of the way at which it is.
     """
-    at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, 60))
+    at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, most))
     while at < 1.0 and move >= shortest and not limits.expired:
         there = problem(min(at + move, 1.0))
         mesh = through(corners(there, curve, ROUGHLY), count)

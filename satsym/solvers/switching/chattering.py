@@ -39,7 +39,7 @@ POINTS = 12
 LEVELS = 5
 """Of the least smoothed problems that are solved accurately, one after the other, until one is."""
 
-INSIDE = 0.03
+INSIDE = 1e-3
 """Share of the width of its range by which a control is off both bounds, where it may chatter."""
 
 NARROW = 1e-8
@@ -79,16 +79,19 @@ def look(instance: Instance, near: Smoothed, seen: Sample) -> Look:
 
 
 def shows(looks: Sequence[Look]) -> bool:
-    """Whether the less is smoothed the more switches show, and a control that may chatter stays off its bounds.
+    """Whether a control that may chatter switches, and less smoothing leaves it off its bounds, or shows more switches.
 
-    Where it switches once the time between its bounds is proportional to the smoothing; beside a singular arc of second
-    order to the fourth root of it at least.
+    Where it switches once the time between its bounds is proportional to the smoothing, at a free end to a third root
+    of it at least. Beside a singular arc of second order it is so to the fourth root at first, and does not vanish if
+    there is time for rest; that more switches show may take a million times less smoothing where bounds are unlike.
     """
     if not looks:
         return False
     before, last = looks[len(looks) // 2], looks[-1]
-    slowly = last.longest**2 * before.smoothing > before.longest**2 * last.smoothing
-    return last.switches > before.switches and slowly
+    less = last.smoothing / before.smoothing
+    slowly = last.longest > less**0.5 * before.longest
+    stays = last.switches > 0 and last.longest > less**0.125 * before.longest
+    return less < 1.0 and slowly and (stays or last.switches > before.switches)
 
 
 def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) -> Solution | None:

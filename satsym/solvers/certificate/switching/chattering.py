@@ -32,6 +32,9 @@ NARROW = 1e-3
 SAME = 1e-2
 """By this share of its width the lower end of the interval may be off."""
 
+PARTS = 8
+"""Of a step between nodes: what H exceeds its minimum by is tiny beside states, and has corners of its own."""
+
 
 def certify(solution: Solution, interval: CostInterval) -> Certificate:
     """Certify what a regularised problem says; never more than an extremal, for the optimum itself is not shown."""
@@ -95,7 +98,9 @@ def _integrated(smooth: Solution) -> tuple[float, float] | None:
 
     found = np.append(start[:, :-1][:, apart], np.zeros((2, int(apart.sum()))), axis=0)
     try:
-        ends = leap(rates, times[:-1][apart], found, np.diff(times)[apart])
+        ends, begin, length = found, times[:-1][apart], np.diff(times)[apart] / PARTS
+        for part in range(PARTS):
+            ends = leap(rates, begin + part * length, ends, length)
         terminal = instance.model.terminal_cost(float(times[-1]), tuple(smooth.x[:, -1].tolist()), instance.parameters)
     except FAILURES:
         return None

@@ -21,6 +21,7 @@ from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.following import follow
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
@@ -42,6 +43,12 @@ STEPS = 200
 LEVELS = 12
 TIGHTER = 4.0
 """By so much less is smoothed at each level."""
+
+FINER = 1e-6
+"""Error that is left where the next level is not reached from what is solved roughly."""
+
+MOST_INTERVALS = 240
+"""Of a mesh, there."""
 
 
 @dataclass(frozen=True)
@@ -115,12 +122,20 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
+            curve, reached = follow(sharper, _finer(problem, curve), limits, most=MOST_INTERVALS)
+        if reached == 0.0:
             raise Stopped(
                 Status.NOT_CONVERGED, f"a regularisation below {smoothing:.1e} was not reached", problem, curve
             )
         smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
         yield Smoothed(problem, curve)
+
+
+def _finer(problem: TwoPoint, curve: Curve) -> Curve:
+    """The same more accurately, if that is found: what is smoothed less changes ever more quickly where bounds end."""
+    found = refine(problem, curve, FINER, keep_nodes=True)
+    return found.curve if found.solved else curve
 
 
 def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
