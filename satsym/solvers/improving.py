@@ -74,8 +74,13 @@ def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
     constrained = solution.instance.model.spec.in_arcs  # of which descents know nothing
     endless = None if constrained or solution.method == SWITCHED else fall(solution)
+    if endless is None:
+        return None
     advice = "weigh the control or time more, shorten the time, or bound the control"
-    return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
+    spec, within = solution.instance.model.spec, solution.instance.control_set
+    if spec.control_set not in (None, "free") and not within.bounded:
+        advice += "; the model has bounds for it, and [control] gives none"
+    return without_minimiser(solution, f"{endless.message}; {advice}")
 
 
 def without_minimiser(solution: Solution, message: str) -> Solution:

@@ -7,7 +7,7 @@ import json
 import math
 import platform
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -58,6 +58,8 @@ class Study:
         What its table is written as.
     subject
         How a command line names the instance.
+    settings
+        Numbers of it that were given beside it, by key: the instance has them already.
     """
 
     instance: Instance
@@ -69,6 +71,7 @@ class Study:
     trajectories: bool = False
     table: TableFormat = TableFormat.CSV
     subject: str = ""
+    settings: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def size(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import msgspec
@@ -12,6 +13,7 @@ from satsym import instance as instances
 from satsym import methods
 from satsym.choices import Checked, Command
 from satsym.instance import Instance, Written
+from satsym.instance.numbers import changed
 from satsym.instance.schema import StudyTable
 from satsym.instance.schema import study as checked
 from satsym.status import BadInput
@@ -27,7 +29,13 @@ OF_COMMANDS = {
 """Options, and the commands that have them."""
 
 
-def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: str = "") -> Study:
+def asked(
+    written: Written,
+    case: Instance,
+    said: Mapping[str, Any],
+    subject: str = "",
+    settings: Mapping[str, float] = MappingProxyType({}),
+) -> Study:
     """A study, every part of it checked.
 
     Parameters
@@ -39,12 +47,15 @@ def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: st
         If anything varies by this, what varies by the table is left aside.
     subject
         How a command line names the instance.
+    settings
+        Other values of some numbers, by key, that all rows have.
 
     Raises
     ------
     BadInput
         With one line, before anything is computed or written.
     """
+    case = changed(case, settings)
     stated = checked(written.tree.get("study", {}))
     given = checked({name: value for name, value in said.items() if value is not None})
     design = given
@@ -63,7 +74,11 @@ def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: st
         compiled=case.solver.backend == "numba",
         trajectories=bool(options["trajectories"]),
         subject=subject,
+        settings=settings,
     )
+    for key in study.design.keys:
+        if key.text in settings:
+            raise BadInput(f"--set {key.text}: varies from row to row; remove it, or leave it out of what varies")
     return replace(study, compiled=True) if case.solver.backend == "auto" and _worth_compiling(study) else study
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
+from multiprocessing.resource_tracker import ensure_running
 from queue import SimpleQueue
 from threading import Lock, Thread
 from types import ModuleType
@@ -19,8 +20,12 @@ from typing import Any
 from satsym.status import BadInput
 from satsym.wording import shown
 
-ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+LIBRARIES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+ONE_THREAD = dict.fromkeys(LIBRARIES, "1")
 """Read by libraries when they are loaded: on matrices as small as ours, threads cost several times what they save."""
+
+QUIETLY = {"PYTHONWARNINGS": "ignore:resource_tracker"}
+"""Of the process that outlives this one if it is killed: it removes the semaphores that are left, and would warn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +62,7 @@ class Workers(Executor):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """As of ``Executor``, in an idle process."""
         k = self._idle.get()
-        with _single_threaded(), _main_hidden():
+        with _inherited(ONE_THREAD), _main_hidden():
             try:
                 future = self._all[k].pool.submit(fn, *args, **kwargs)
             except BrokenExecutor:  # a process that died with nothing to do
@@ -102,6 +107,8 @@ def processes(wanted: int | None, chunks: int) -> int:
 
 def _begun() -> _Process:
     """A pool whose process begins with its first call."""
+    with _inherited(QUIETLY):
+        ensure_running()
     context = get_context("spawn")
     theirs, ours = context.Pipe(duplex=False)
     return _Process(ProcessPoolExecutor(1, context, _tied, (theirs,)), ours)
@@ -120,10 +127,10 @@ def _tied(lifeline: Connection) -> None:
 
 
 @contextmanager
-def _single_threaded() -> Iterator[None]:
-    """What processes that are started in here inherit."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
+def _inherited(variables: Mapping[str, str]) -> Iterator[None]:
+    """Processes that are started in here have these variables in their environment."""
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
     try:
         yield
     finally:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from sympy import Float, cos
 
 from satsym.solvers import solve
-from satsym.status import Verdict
+from satsym.status import Status, Verdict
 from satsym.symbolic import t
 from tests.support.models import build, k, q, scalar, w
 
@@ -63,3 +63,17 @@ def test_the_least_of_several_negative_costs_over_the_duration_is_found(
     assert found.objective == pytest.approx(least, abs=1e-7)
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.slow
+def test_where_a_cost_has_no_minimum_without_bounds_that_the_model_has_it_is_said_where_they_are_left_out(
+    tmp_path: Path,
+) -> None:
+    said = {}
+    for kind, bounds in (("free", ""), ("box", ""), ("box", "[control]\nw = [-1.0, 1.0]\n")):
+        problem = scalar(f"rewarded_{kind}", w, w**2 / 2 - q**4, 0, kind)
+        found = solve(build(tmp_path, problem, f"[initial]\nq = 0.0\n[time]\ntf = 2.0\n{bounds}"))
+        said[kind, bool(bounds)] = found.status, "[control] gives none" in found.message
+    assert said["free", False] == (Status.NO_MINIMISER, False)
+    assert said["box", False] == (Status.NO_MINIMISER, True)
+    assert said["box", True][0] is Status.CONVERGED

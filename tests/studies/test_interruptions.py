@@ -341,6 +341,21 @@ def test_killed_in_the_middle_of_writing_no_finished_chunk_is_lost(tmp_path: Pat
         assert (tmp_path / "cut" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
 
 
+ORPHANED = """
+import os, signal
+from satsym.studies.workers import Workers
+workers = Workers(2)
+assert workers.submit(abs, -1).result() == 1
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.slow(in_turn=True)
+def test_a_study_that_is_killed_says_nothing_of_what_is_cleaned_up_behind_it() -> None:
+    done = subprocess.run([sys.executable, "-c", ORPHANED], capture_output=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (-signal.SIGKILL, b"")
+
+
 class Client:
     """Of a cluster that does not answer, or has no workers."""
 

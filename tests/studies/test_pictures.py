@@ -34,6 +34,18 @@ def test_where_none_are_far_out_all_are_drawn(values: np.ndarray) -> None:
     assert "not shown" not in title
 
 
+def test_units_on_axes_are_spelled_as_people_write_them() -> None:
+    cost, speed = "objective [m**2/s**3]", "v [km/s/rad]"
+    grid = {speed: np.repeat([1.0, 2.0], 3), "a [m/s**2]": np.tile([1.0, 2.0, 4.0], 2)}
+    for varied, shape in ((grid, (2, 3)), ({speed: np.arange(6.0)}, (6,)), (grid, None)):
+        numbers = Numbers("a study", varied, {cost: np.arange(6.0)}, ["converged"] * 5 + ["infeasible"], shape)
+        axes = [place for page in figures(numbers).values() for place in page.axes]
+        texts = " ".join(text for place in axes for text in (place.get_xlabel(), place.get_ylabel()))
+        assert "objective [m²/s³]" in texts
+        assert "v [km/(s·rad)]" in texts
+        assert "**" not in texts
+
+
 def test_a_duration_that_is_the_objective_is_drawn_once() -> None:
     times = RNG.uniform(1.0, 2.0, 50)
     columns = {"objective [s]": times, "t_final [s]": times * (1.0 + 1e-13), "x_final.r": RNG.uniform(size=50)}

@@ -332,6 +332,27 @@ def test_the_command_of_a_row_computes_that_row(
     assert json.loads(capsys.readouterr().out)["objective"] == pytest.approx(worst["objective"], rel=1e-9)
 
 
+def test_a_study_takes_numbers_that_all_rows_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    varied = ["--vary", "initial.r=0.95:1.1:2", "--certificate", "none", "--workers", "1", "--json"]
+    out = str(tmp_path / "out")
+    assert main(["study", NAME, *varied, "--set", "parameters.c1=50", "--out", out]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["set"] == {"parameters.c1": 50.0}
+    worst = said["worst"][0]
+    assert "--set parameters.c1=50.0 --set initial.r=" in worst["reproduce"]
+    assert main([*shlex.split(worst["reproduce"])[1:], "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["objective"] == pytest.approx(worst["objective"], rel=1e-9)
+    assert json.loads((tmp_path / "out/study.json").read_text(encoding="utf-8"))["set"] == said["set"]
+    for other, line in (
+        (["--set", "parameters.c1=7"], "instance parameters was"),
+        (["--set", "parameters.c1=50", "--set", "initial.r=1"], "--set initial.r: varies from row to row"),
+        (["--set", "c1=50", "--set", "parameters.c1=50"], "is there twice"),
+        (["--set", "initial.q=1"], "has no such number"),
+    ):
+        assert main(["study", NAME, *varied, *other, "--resume", "--out", out]) == 3
+        assert line in capsys.readouterr().err
+
+
 def test_numbers_that_were_set_come_back_with_the_result(tmp_path: Path) -> None:
     place = str(tmp_path / "out")
     given = ["--set", "initial.r=1.05", "--set", "parameters.c1=7"]

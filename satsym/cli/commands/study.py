@@ -11,7 +11,7 @@ import click
 
 from satsym.choices import Checked, Choice, Command, Sampling, TableFormat
 from satsym.cli.help import command
-from satsym.cli.options import json_option, place_option, plot_options, subject_argument
+from satsym.cli.options import json_option, place_option, plot_options, set_option, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
 from satsym.status import ExitCode
@@ -53,8 +53,9 @@ def _listed(choices: type[Choice]) -> str:
     "--certificate",
     metavar="KIND",
     help=f"Of solve: {_listed(Checked)}; by default local, that is all but competitors; full is as `satsym solve`, "
-    "and sample that for one row in fifty.",
+    "and sample that for one row in a hundred.",
 )
+@set_option
 @click.option("--feedback", metavar="LAW", help="Of simulate, as `satsym simulate` has it.")
 @click.option("--trajectories", is_flag=True, help="Keep them, too, in few npz files.")
 @click.option("--table", metavar="FORM", help=f"What the table is written as: {_listed(TableFormat)}; by default csv.")
@@ -81,6 +82,7 @@ def study(
     look: Look | None,
     as_json: bool,
     table: str | None,
+    values: tuple[str, ...],
     **options: Any,
 ) -> ExitCode:
     """Solve, simulate or regulate an instance for many values.
@@ -96,13 +98,13 @@ def study(
     from satsym.report.terminal.study import progress_line, study_text
     from satsym.status import Status
     from satsym.studies.asking import asked, named
-    from satsym.studies.reading import read_pairs
+    from satsym.studies.reading import read_pairs, settings
     from satsym.studies.workers import processes
 
     written = instance.read(subject)
     case = written.instance()
     said = {name: read_pairs(pairs, name) for name, pairs in (("vary", vary), ("normal", normal), ("uniform", uniform))}
-    found = asked(written, case, said | options, named(written) or subject)
+    found = asked(written, case, said | options, named(written) or subject, settings(case, values))
     found = written_as(found, table)
     folder = out or Path(RESULTS, case.name, "study")
     with _computing(scheduler, processes(workers, found.chunks)) as (made, count), live() as line:

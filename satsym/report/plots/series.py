@@ -179,7 +179,7 @@ def costates(scene: Scene) -> list[Series]:
     with np.errstate(all="ignore"):
         along = curves.clean(model.hamiltonian_batch(scene.nodes, scene.x, scene.u, scene.lam, p))
         terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
-    meaning = say("Hamiltonian, constant on an extremal" if scene.spec.autonomous else "Hamiltonian")
+    meaning = say("Hamiltonian (constant)" if scene.spec.autonomous else "Hamiltonian")
     time = time_unit(scene.spec)
     rate = cost_per(time, scene.spec) if time else "1"
     return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]

@@ -53,8 +53,8 @@ def _overview(numbers: Numbers) -> Figure:
     for place, (name, values) in zip(rows, named.items(), strict=False):
         if numbers.shape is not None and len(axes) == 1:
             place.plot(numbers.varied[axes[0]], values, ".-", color=style.BLUE, markersize=4.0)
-            place.set_xlabel(display.plain(axes[0]))
-            place.set_ylabel(display.plain(name))
+            place.set_xlabel(_label(axes[0]))
+            place.set_ylabel(_label(name))
         elif numbers.shape is not None:
             _map(page, place, numbers, name, values)
         else:
@@ -75,14 +75,21 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
     for axis, k, low in (("x", varying[0], x), ("y", varying[1], y)):
         if _logarithmic(low):
             getattr(place, f"set_{axis}scale")("log")
-        getattr(place, f"set_{axis}label")(display.plain(labels[k]))
-    page.colorbar(drawn, ax=place, label=display.plain(name))
+        getattr(place, f"set_{axis}label")(_label(labels[k]))
+    page.colorbar(drawn, ax=place, label=_label(name))
+    values_of = [values.reshape(numbers.shape)[fixed].flat[0] for values in numbers.varied.values()]
     others = [
-        f"{labels[k]} = {display.number(float(numbers.varied[labels[k]].reshape(numbers.shape)[fixed].flat[0]))}"
+        f"{_label(labels[k])} = {display.number(float(values_of[k]))}"
         for k, count in enumerate(numbers.shape)
         if k not in varying and count > 1
     ]
-    place.set_title(display.plain(", ".join(others)))
+    place.set_title(", ".join(others))
+
+
+def _label(column: str) -> str:
+    """A column of the table as an axis has it: its unit as people write it."""
+    name, bracket, unit = column.partition(" [")
+    return display.plain(display.labelled(name, unit.removesuffix("]")) if bracket else name)
 
 
 def _logarithmic(values: Array) -> bool:
@@ -97,7 +104,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
     finite = values[np.isfinite(values)]
     shown = _without_outliers(finite)
     place.hist(shown, bins=min(60, max(5, int(np.sqrt(len(shown))))), color=style.BLUE)
-    place.set_xlabel(display.plain(name))
+    place.set_xlabel(_label(name))
     place.set_ylabel(say("rows"))
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
@@ -137,9 +144,9 @@ def _failures(numbers: Numbers) -> Figure:
         if own.any():
             place.plot(x[own], y[own], linestyle="none", **look)
             seen.append((legend.line(linestyle="none", **look), f"{message(kind)}: {int(own.sum())}"))
-    place.set_xlabel(display.plain(labels[0]))
+    place.set_xlabel(_label(labels[0]))
     if len(labels) > 1:
-        place.set_ylabel(display.plain(labels[1]))
+        place.set_ylabel(_label(labels[1]))
     else:
         place.set_yticks([])
     legend.below(page, seen)

@@ -17,7 +17,7 @@ from satsym.arrays import Array
 from satsym.choices import Command
 from satsym.report.results import study_table
 from satsym.report.results.files import Content, text, to_json
-from satsym.report.results.objects import head
+from satsym.report.results.objects import head, with_settings
 from satsym.report.results.set_list import ASKED
 from satsym.report.results.study_table import BEFORE, table
 from satsym.status import Status
@@ -127,7 +127,7 @@ def asked_object(study: Study) -> dict[str, Any]:
     said = head("study", study.instance.model.spec, study.instance, Status.CONVERGED)
     del said["status"]
     varied = [key.text for key in study.design.keys]
-    return said | {"rows": study.design.count, "varied": varied, "asked": study.identity}
+    return with_settings(said | {"rows": study.design.count, "varied": varied, "asked": study.identity}, study.settings)
 
 
 def study_object(merged: Merged) -> dict[str, Any]:
@@ -150,7 +150,7 @@ def study_object(merged: Merged) -> dict[str, Any]:
         if isinstance(cost := row.numbers.get(Column.OBJECTIVE), float):
             worst = sorted([*worst, (sense * cost, number, values)], reverse=True, key=lambda one: one[0])[:SHOWN]
     status = Status.CONVERGED if statuses[Status.CONVERGED.value] else Status.NOT_CONVERGED
-    return head("study", spec, study.instance, status) | {
+    return with_settings(head("study", spec, study.instance, status), study.settings) | {
         "each": study.command.value,
         "rows": study.design.count,
         "varied": [key.text for key in study.design.keys],
@@ -226,5 +226,5 @@ def _reproduced(study: Study, values: dict[str, float]) -> str:
     words = ["satsym", study.command.value, study.subject]
     if study.command is Command.SIMULATE and study.feedback:
         words += ["--feedback", study.feedback]
-    words += [word for name, value in values.items() for word in ("--set", f"{name}={value!r}")]
+    words += [word for name, value in {**study.settings, **values}.items() for word in ("--set", f"{name}={value!r}")]
     return shlex.join(words)

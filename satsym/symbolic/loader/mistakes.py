@@ -19,6 +19,8 @@ _UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '
 _MISSING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")
 _MANY = re.compile(r"(\w+)\.__init__\(\) takes (?:from \d+ to )?(\d+) positional arguments?")
 
+_POWER = re.compile(r"unsupported operand type\(s\) for \^")
+
 _IMPORTED = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
 
 
@@ -32,6 +34,8 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
     """
     line, text = _line(path, error), " ".join(str(error).split())
     if isinstance(error, TypeError):
+        if _POWER.match(text):
+            return line, "powers are written **, as in x**3; ^ is none in Python"
         if (found := _UNKNOWN.match(text)) and (known := _fields(found[1], names)):
             at = next(_keywords(path, line, found[2]), line)
             return at, f"{found[1]} has no field {found[2]!r}; {suggestion(found[2], known)}"
