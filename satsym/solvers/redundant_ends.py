@@ -141,16 +141,20 @@ def _spans_less(instance: Instance, end: Array) -> bool:
 
     Where they do not, no quantity is conserved, and nothing else needs to be looked at.
     """
-    _, powers = np.frexp(_sizes(instance, end))
-    place = _last(instance), instance.tf is None, tuple(end.tolist()), tuple(powers.tolist())
-    return _spanning_less(instance.model, instance.parameters, instance.control_set, *place)
+    place = _last(instance), instance.tf is None, tuple(end.tolist())
+    columns, made_of = _directions(instance.model, instance.parameters, instance.control_set, *place)
+    size = _sizes(instance, end)[:, None]
+    # what cancels but for rounding must not count: each column is relative to what it is made of
+    table = columns / size / np.maximum((made_of / size).max(axis=0), 1e-300)
+    if not np.isfinite(table).all():
+        return False
+    values = np.linalg.svd(table, compute_uv=False)
+    return bool(values[-1] <= SPANNED * values[0])
 
 
 @lru_cache(maxsize=8)
-def _spanning_less(
-    model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row, powers: tuple[int, ...]
-) -> bool:
-    """The same, known again where only the start differs: all that counts of sizes is their power of two."""
+def _directions(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row) -> tuple[Array, Array]:
+    """Those rates and changes, a column each, and what they are made of; known again where only the start differs."""
     drawn = np.random.default_rng(0).normal(size=(len(model.spec.controls), DRAWN))
     given = np.full(DRAWN, t), np.repeat(np.array(end)[:, None], DRAWN, axis=1), within.project(drawn), p
     rates, slopes = model.dynamics_batch(*given), model.jacobian_x_batch(*given)
@@ -159,14 +163,7 @@ def _spanning_less(
     moved = rates if free_time else rates - rates[:, :1]
     columns = np.concatenate([moved, carried[:, later, earlier] - carried[:, earlier, later]], axis=1)
     own = np.repeat(np.abs(rates).max(axis=1, keepdims=True), DRAWN, axis=1)
-    made_of = np.concatenate([own, terms[:, later, earlier] + terms[:, earlier, later]], axis=1)
-    size = np.ldexp(1.0, powers)[:, None]
-    # what cancels but for rounding must not count: each column is relative to what it is made of
-    table = columns / size / np.maximum((made_of / size).max(axis=0), 1e-300)
-    if not np.isfinite(table).all():
-        return False
-    values = np.linalg.svd(table, compute_uv=False)
-    return bool(values[-1] <= SPANNED * values[0])
+    return columns, np.concatenate([own, terms[:, later, earlier] + terms[:, earlier, later]], axis=1)
 
 
 def _last(instance: Instance) -> float:

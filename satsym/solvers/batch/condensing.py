@@ -17,7 +17,7 @@ class Condensing(Protocol):
     def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
         """Columns at all nodes, shape (2n, c, N+1, M), from those at the first, (2n, c, M).
 
-        Gaps of shape (2n, N, M) are added to each column at the end of each segment.
+        Gaps of shape (2n, N, M) are added to the last column at the end of each segment.
         """
 
 
@@ -35,7 +35,7 @@ def _on_arrays(transition: Array, start: Array, gaps: Array | None) -> Array:
         for k in range(1, len(before)):
             after += transition[:, k, None, s] * before[k]
         if gaps is not None:
-            after += gaps[:, None, s]
+            after[:, -1] += gaps[:, s]
     return found
 
 
@@ -83,11 +83,12 @@ def text(rows: int) -> str:
     stored = ["for i in range({rows}):", "    for j in range(width):"]
     step = [
         *rowwise(rows * rows, slopes, f"transition[i, s, {lane}]"),
-        "if gaps.shape[2]:",
-        *indented(rowwise(rows, added, f"gaps[i, s, {lane}]")),
+        *rowwise(rows, added, "0.0"),
         "for c in range(columns):",
         *indented(
             [
+                "if c == columns - 1 and gaps.shape[2]:",
+                *indented(rowwise(rows, added, f"gaps[i, s, {lane}]")),
                 *rowwise(rows, now, f"found[i * columns + c, s, {lane}]"),
                 *over_lanes(product),
                 stored[0].format(rows=rows),

@@ -33,13 +33,8 @@ class Matching:
     @classmethod
     def of(cls, transition: Array, units: Array, condense: Condensing) -> Matching:
         """The equations with these transitions."""
-        rows, count = len(transition), transition.shape[3]
-        n = rows // 2
-        start = np.zeros((rows, n, count))
-        start[np.arange(n, rows), np.arange(n)] = units[n:, None]
-        field = condense(transition, start, None)
-        reached = (field[:n, :, -1] / units[:n, None, None]).transpose(2, 0, 1)
-        return cls(transition, field, inverses(reached).transpose(1, 2, 0), units, condense)
+        field = condense(transition, _unity(units, transition.shape[3]), None)
+        return cls(transition, field, _inverse(field, units), units, condense)
 
     def only(self, chosen: NDArray[np.intp]) -> Matching:
         """Some of them."""
@@ -60,11 +55,37 @@ class Matching:
         missing
             Where the last should end, less the last node, shape (n, M).
         """
-        n = len(self.inverse)
         begun = np.concatenate([start, np.zeros_like(start)])
-        found = self.condense(self.transition, begun[:, None], gaps)[:, 0]
-        wanted = (missing - found[:n, -1]) / self.units[:n, None]
+        return self._closed(self.condense(self.transition, begun[:, None], gaps)[:, 0], missing)
+
+    def _closed(self, found: Array, missing: Array) -> Array:
+        """Corrections without initial costates, with those that are missing for the end, in place."""
+        wanted = (missing - found[: len(missing), -1]) / self.units[: len(missing), None]
         costates = (self.inverse * wanted).sum(axis=1)
         for column, costate in enumerate(costates):
             found += self.field[:, column] * costate
         return found
+
+
+def corrected(
+    transition: Array, units: Array, condense: Condensing, start: Array, gaps: Array, missing: Array
+) -> Array:
+    """What :meth:`Matching.correction` says where it is asked for once, with one look at the transitions."""
+    begun = np.concatenate([start, np.zeros_like(start)])
+    found = condense(transition, np.concatenate([_unity(units, transition.shape[3]), begun[:, None]], axis=1), gaps)
+    field = found[:, :-1]
+    return Matching(transition, field, _inverse(field, units), units, condense)._closed(found[:, -1], missing)
+
+
+def _unity(units: Array, count: int) -> Array:
+    """Each initial costate in its unit, shape (2n, n, M)."""
+    rows, n = len(units), len(units) // 2
+    found = np.zeros((rows, n, count))
+    found[np.arange(n, rows), np.arange(n)] = units[n:, None]
+    return found
+
+
+def _inverse(field: Array, units: Array) -> Array:
+    n = field.shape[1]
+    reached = (field[:n, :, -1] / units[:n, None, None]).transpose(2, 0, 1)
+    return np.asarray(inverses(reached).transpose(1, 2, 0))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array, distinct
 from satsym.solvers.batch.many import Many
-from satsym.solvers.batch.matching import Matching
+from satsym.solvers.batch.matching import Matching, corrected
 from satsym.solvers.collocation.curve import SMALL
 from satsym.solvers.shooting.runge_kutta import ORDER
 
@@ -86,12 +86,12 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
     z, outcome = start.copy(), np.full(many.count, Outcome.SOLVED, dtype=object)
     on, before = np.arange(many.count), np.full(many.count, np.inf)
     for _ in range(MOST):
-        own = many.only(on)
-        reached, transition = _rough(own, z[:, :, on], 1)
-        step = _step(own, z[:, :, on], reached, Matching.of(transition, many.units, many.condense))
-        z[:, :, on] += step
-        size = _size(many, step, z[:, :, on])
-        positive = _positive(many, z[:, :, on])
+        own, at = many.only(on), _columns(on, many.count)
+        now = z[:, :, at]
+        reached, transition = _rough(own, now, 1)
+        step = corrected(transition, many.units, many.condense, *_missing(own, now, reached))
+        now = z[:, :, at] = now + step
+        size, positive = _size(many, step, now), _positive(many, now)
         outcome[on[~positive]] = Outcome.LEFT_DOMAIN
         outcome[on[positive & ~(size < before[on])]] = Outcome.NO_CONVERGENCE
         before[on] = SHRINK * size
@@ -123,15 +123,16 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
     for _ in range(MOST_ACCURATE):
         for count in distinct(parts[on]).tolist():
             own = on[parts[on] == count]
-            some = many.only(own)
-            reached = some.motion.accurate(*some.segments(z[:, :, own]), count).reshape(len(z) + 1, -1, len(own))
-            step = _step(some, z[:, :, own], reached[:-1], matching.only(own))
-            z[:, :, own] += step
+            some, at = many.only(own), _columns(own, many.count)
+            now = z[:, :, at]
+            reached = some.motion.accurate(*some.segments(now), count).reshape(len(z) + 1, -1, len(own))
+            step = matching.only(own).correction(*_missing(some, now, reached[:-1]))
+            now = z[:, :, at] = now + step
             cost[own] = reached[-1].sum(axis=0)
-            size, fresh = _size(many, step, z[:, :, own]), np.isinf(shown[own]) & (count > FEWEST_PARTS)
+            size, fresh = _size(many, step, now), np.isinf(shown[own]) & (count > FEWEST_PARTS)
             shown[own] = np.where(fresh, size / (2**ORDER - 1), shown[own])
             going_on = (size < SHRINK * before[own]) | fresh | (size < ROUNDING)
-            outcome[own[~(going_on & _positive(many, z[:, :, own]))]] = Outcome.NO_CONVERGENCE
+            outcome[own[~(going_on & _positive(many, now))]] = Outcome.NO_CONVERGENCE
             ahead = size * np.where(np.isfinite(before[own]), np.minimum(size / before[own], 1.0), 1.0)
             error[own] = np.where(fresh, np.inf, np.maximum(shown[own], np.where(size < ROUNDING, 0.0, ahead)))
             error[own] = np.where(fresh & (size < COARSE), np.maximum(shown[own], size * before[own]), error[own])
@@ -153,9 +154,15 @@ def _rough(many: Many, z: Array, parts: int) -> tuple[Array, Array]:
     return ends.reshape(len(z), *shape), transition.reshape(len(z), len(z), *shape)
 
 
-def _step(many: Many, z: Array, reached: Array, matching: Matching) -> Array:
-    """The correction of nodes, given where segments end."""
-    return matching.correction(many.initial - z[: many.states, 0], reached - z[:, 1:], many.end - z[: many.states, -1])
+def _columns(chosen: NDArray[np.intp], count: int) -> NDArray[np.intp] | slice:
+    """The same columns; as a slice, which copies nothing, where they are all."""
+    return slice(None) if len(chosen) == count else chosen
+
+
+def _missing(many: Many, z: Array, reached: Array) -> tuple[Array, Array, Array]:
+    """What a correction of nodes is to make up for, given where segments end: at the start, between, at the end."""
+    n = many.states
+    return many.initial - z[:n, 0], reached - z[:, 1:], many.end - z[:n, -1]
 
 
 def _size(many: Many, step: Array, z: Array) -> Array:

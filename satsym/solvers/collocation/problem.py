@@ -274,13 +274,24 @@ class TwoPoint:
         theta
             Extra unknowns, shape (e,).
         """
-        residual = ended(self.instance, *self._at_the_end(end, theta))
-        return residual[: len(self._row_scale)] / self._row_scale
+        return self._missed(self._at_the_end(end, theta))
+
+    def _missed(self, at: tuple[Any, ...]) -> Array:
+        residual: Array = ended(self.instance, *at)[: len(self._row_scale)] / self._row_scale
+        return residual
+
+    def ending(self, end: Array, theta: Array) -> tuple[Array, Array, Array]:
+        """Residuals at the right end, and their derivatives by ``end`` and ``theta``."""
+        at = self._at_the_end(end, theta)
+        return self._missed(at), *self._sloping(at)
 
     def boundary_slopes(self, end: Array, theta: Array) -> tuple[Array, Array]:
         """Derivatives of the former by ``end`` and ``theta``, shapes (n + e, 2n) and (n + e, e)."""
+        return self._sloping(self._at_the_end(end, theta))
+
+    def _sloping(self, at: tuple[Any, ...]) -> tuple[Array, Array]:
         n, e = self.states, self.unknowns
-        slopes = ended(self.instance, *self._at_the_end(end, theta), by="jacobian")
+        slopes = ended(self.instance, *at, by="jacobian")
         # The kernel has a row and a column for the duration, free or not.
         shown = slopes.reshape(n + e + 1 - self.free_time, -1)[: n + e, : 2 * n + e]
         scaled = shown * self._slope_scale[:, : 2 * n + e]

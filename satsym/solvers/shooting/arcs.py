@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -47,17 +47,16 @@ class Arcs:
 
     def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
         """The same after a share of a correction; its first argument in shape (N+1, 2n)."""
-        return replace(self, nodes=self.nodes + length * nodes.T, theta=self.theta + length * theta)
+        return Arcs(self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps)
 
     def with_steps(self, steps: int) -> Arcs:
         """The same with another number of steps."""
-        return replace(self, steps=steps)
+        return Arcs(self.problem, self.mesh, self.nodes, self.theta, steps)
 
     def size(self, nodes: Array, theta: Array) -> float:
         """Largest change: of states, relative to their size (at least one), of costates and a free duration."""
-        n = self.problem.states
-        x, lam = max(1.0, np.abs(self.nodes[:n]).max()), max(FAINT, np.abs(self.nodes[n:]).max())
-        changes = [np.abs(nodes[:, :n]).max() / x, np.abs(nodes[:, n:]).max() / lam]
+        n, here, change = self.problem.states, np.abs(self.nodes).max(axis=1), np.abs(nodes).max(axis=0)
+        changes = [change[:n].max() / max(1.0, here[:n].max()), change[n:].max() / max(FAINT, here[n:].max())]
         if self.problem.free_time:
             changes.append(abs(theta[-1] / self.theta[-1]))
         return float(max(changes))

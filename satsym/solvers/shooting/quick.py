@@ -13,6 +13,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.kernels import Kernels
+from satsym.lapack import lapack
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs
 from satsym.solvers.shooting.compiled import Compiled, Numbers, integrator, njit, packed
 from satsym.solvers.shooting.newton import within_domain
@@ -83,12 +84,13 @@ def _correction(arcs: Arcs) -> tuple[Array, Array]:
         problem.control_set.arguments,
         problem.scale.both[:, 0],
     )
-    end = arcs.nodes[:, -1], arcs.theta
-    residual, (by_end, by_theta) = problem.boundary(*end), problem.boundary_slopes(*end)
+    residual, by_end, by_theta = problem.ending(arcs.nodes[:, -1], arcs.theta)
     slopes = by_end @ field[-1]
     matrix = np.concatenate([slopes[:, :n], by_theta], axis=1)
     matrix[:, len(matrix) - problem.free_time :] += slopes[:, n:-1]
-    found = np.linalg.solve(matrix, -residual - slopes[:, -1])
+    *_, found, singular = lapack().dgesv(matrix, -residual - slopes[:, -1])
+    if singular:
+        raise np.linalg.LinAlgError("singular")
     start = np.concatenate([found[:n], found[len(found) - problem.free_time :], [1.0]])
     return field @ start, found[n:]
 

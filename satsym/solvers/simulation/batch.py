@@ -24,7 +24,7 @@ from satsym.wording import shown, suggestion
 
 METHODS = ("RK4", "symplectic")
 
-BLOCK = 4096
+BLOCK = 8192
 """Columns at a time: few enough that their buffers stay in the cache, many enough that calls do not count."""
 COMPILED_BLOCK = 512
 """The same for compiled code, to which calls cost nothing."""
