@@ -100,7 +100,7 @@ TRANSLATIONS = {
         "A shuttle glides to the largest latitude without being heated too much": (
             "Pesawat ulang-alik meluncur ke lintang terbesar tanpa terlalu panas"
         ),
-        "Gliding entry over a round Earth at rest": "Peluncuran masuk atmosfer di atas Bumi bulat yang diam",
+        "Gliding entry over a round Earth at rest": "Masuk atmosfer secara meluncur di atas Bumi bulat yang diam",
         "altitude": "ketinggian",
         "longitude": "bujur",
         "latitude": "lintang",
@@ -111,7 +111,7 @@ TRANSLATIONS = {
         "bank": "sudut miring",
         "gravitational parameter": "parameter gravitasi",
         "radius of the Earth": "jari-jari Bumi",
-        "density at the ground": "kerapatan di permukaan tanah",
+        "density at the ground": "massa jenis udara di permukaan tanah",
         "scale height": "tinggi skala",
         "reference area": "luas acuan",
         "mass": "massa",
