@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Source: ../derivations/examples/fuller.py c4dc6caca7a707b0cb0c62f20fd308b0
-Digest: 3f3d6944a439a9b629f07c750badf63d8671bee31d839f077d487832a2803a7b
+Source: ../derivations/examples/fuller.py 892f877c73c232e8bee850c5bbbaa5e3
+Digest: 0a5947a0e0f5ad7ac6ec1d0640050e7386a1d831e84b2def068992d5d6714119
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py 798e74f8007b45abdd5c4c8c2d53a388
-Digest: 7e1c89616b19de02600b7baba7d40225a24671309ede5eed121a1e7cf4119881
+Source: ../derivations/examples/goddard_pressure.py 0e43ebacce119da123bfb296be9d49b7
+Digest: 9f03b52d637bd267c6bd36e29270c9bbf4d6616dd258d3e170cc625d8d9e838a
 """
 
 import math

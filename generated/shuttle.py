@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 3573ef6d7890a052c116b99a02148533
-Digest: 66344c65eed332e2421dce8df2d167d43367c9b0d01828d15d60d94b0ffa2901
+Source: ../derivations/examples/shuttle.py db57e97f9df96084b0175eb46640aaa4
+Digest: 562e9f1366193d829048e1442b7f3d443ced23445104db0eb87172707841031a
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 3573ef6d7890a052c116b99a02148533
-Digest: 6f634b76955ce56cedf0cddea4accfacbb136df5ade699f9c62720183ae70813
+Source: ../derivations/examples/shuttle.py db57e97f9df96084b0175eb46640aaa4
+Digest: 2c59f7fb302d1ad980714fe85c767ddfd024735c82be9f6069d8a59bef498793
 """
 
 import math

@@ -30,7 +30,7 @@ fuller = Problem(
 TRANSLATIONS = {
     "id": {
         "Minimum squared distance of a body on a line that is brought to rest": (
-            "Kuadrat jarak minimum benda pada garis lurus yang dibawa diam"
+            "Kuadrat jarak minimum benda pada garis lurus yang dibawa ke keadaan diam"
         ),
         "A body on a line": "Benda pada garis lurus",
         "position": "posisi",

@@ -253,6 +253,8 @@ def test_works_are_listed_in_the_order_in_which_they_are_cited() -> None:
     text = render(shared.shipped("polar_orbit"))
     cited = [key for keys in re.findall(r"\\cite\{([^}]*)\}", text) for key in keys.split(",")]
     assert re.findall(r"\\bibitem\{([^}]*)\}", text) == list(dict.fromkeys(cited)) != sorted(cited)
+    assert "Bryson and Y" in text
+    assert "Bryson dan Y" in render(shared.shipped("polar_orbit"), "id")
 
 
 def test_what_bounds_of_controls_leave_as_it_is_is_shown_once() -> None:

@@ -174,6 +174,21 @@ def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> 
         assert arcs == "struktur bebas, wall, bebas (wall selama 0.3), dari rangkaian masalah teregularisasi"
 
 
+@pytest.mark.parametrize(
+    ("english", "indonesian"),
+    [
+        ("structure free, [top], free, from guess", "struktur bebas, [top], bebas, dari tebakan"),
+        (
+            "structure free, top, top + end, free (top 0.2 long), from guess",
+            "struktur bebas, top, top + end, bebas (top selama 0.2), dari tebakan",
+        ),
+    ],
+)
+def test_free_arcs_are_named_and_constraints_keep_their_names(english: str, indonesian: str) -> None:
+    with spoken("id"):
+        assert message(english) == indonesian
+
+
 def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     for arguments, variable in ((("models", "--lang", "xx"), ""), (("models",), "yy"), (("--help",), "zz")):
         monkeypatch.setenv(said.VARIABLE, variable)

@@ -63,7 +63,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     composer, name = _Composer(derivation, texts), tex.label(derivation.name)
     body = "\n\n".join(composer.paragraphs())
     body = _NAME.sub(lambda found: texts.phrase(found[0]), body)
-    body, works = cited(body, name)
+    body, works = cited(body, name, texts.get("words", "and"))
     source = f"% Written by satsym from the derivation of {name}. Do not edit.\n"
     macros, end = preamble.macros(name, texts), composer.checks()
     if not standalone:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 
 WORKS = {
-    "pontryagin": r"L.~S. Pontryagin, V.~G. Boltyanskii, R.~V. Gamkrelidze and E.~F. Mishchenko, "
+    "pontryagin": r"L.~S. Pontryagin, V.~G. Boltyanskii, R.~V. Gamkrelidze <and> E.~F. Mishchenko, "
     r"\emph{The Mathematical Theory of Optimal Processes}, Interscience, New York, 1962.",
-    "bryson": r"A.~E. Bryson and Y.-C. Ho, \emph{Applied Optimal Control}, Hemisphere, Washington, 1975.",
-    "hartl": r"R.~F. Hartl, S.~P. Sethi and R.~G. Vickson, ``A survey of the maximum principles for optimal control "
+    "bryson": r"A.~E. Bryson <and> Y.-C. Ho, \emph{Applied Optimal Control}, Hemisphere, Washington, 1975.",
+    "hartl": r"R.~F. Hartl, S.~P. Sethi <and> R.~G. Vickson, ``A survey of the maximum principles for optimal control "
     r"problems with state constraints'', \emph{SIAM Review} \textbf{37} (1995), 181--218.",
-    "kelley": r"H.~J. Kelley, R.~E. Kopp and H.~G. Moyer, ``Singular extremals'', in G.~Leitmann (ed.), "
+    "kelley": r"H.~J. Kelley, R.~E. Kopp <and> H.~G. Moyer, ``Singular extremals'', in G.~Leitmann (ed.), "
     r"\emph{Topics in Optimization}, Academic Press, New York, 1967, 63--101.",
     "lawden": r"D.~F. Lawden, \emph{Optimal Trajectories for Space Navigation}, Butterworths, London, 1963.",
     "kalman": r"R.~E. Kalman, ``Contributions to the theory of optimal control'', "
@@ -20,17 +20,20 @@ WORKS = {
     "battin": r"R.~H. Battin, \emph{An Introduction to the Mathematics and Methods of Astrodynamics}, "
     r"AIAA, Reston, 1999.",
     "hughes": r"P.~C. Hughes, \emph{Spacecraft Attitude Dynamics}, Wiley, New York, 1986.",
-    "kane": r"T.~R. Kane and D.~A. Levinson, \emph{Dynamics: Theory and Applications}, McGraw-Hill, New York, 1985.",
+    "kane": r"T.~R. Kane <and> D.~A. Levinson, \emph{Dynamics: Theory and Applications}, McGraw-Hill, New York, 1985.",
 }
-"""Key -> what is printed."""
+"""Key -> what is printed, with a place for the word before the last author."""
 
 _CITED = re.compile(r"\\cite\{([^}]*)\}")
 
 
-def cited(body: str, name: str) -> tuple[str, str]:
-    """The body with keys that are those of its document alone, and the list of what it cites, in that order."""
+def cited(body: str, name: str, last: str = "and") -> tuple[str, str]:
+    """The body with keys that are those of its document alone, and the list of what it cites, in that order.
+
+    ``last`` stands before the last of several authors.
+    """
     keys = list(dict.fromkeys(key for keys in _CITED.findall(body) for key in keys.split(",")))
-    items = [rf"\bibitem{{{name}:{key}}} {WORKS[key]}" for key in keys]
+    items = [rf"\bibitem{{{name}:{key}}} {WORKS[key].replace('<and>', last)}" for key in keys]
 
     def here(found: re.Match[str]) -> str:
         return rf"\cite{{{','.join(f'{name}:{key}' for key in sorted(found[1].split(','), key=keys.index))}}}"
