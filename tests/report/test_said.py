@@ -89,8 +89,7 @@ COMPOSED = (
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
-    *("structure <arcs>, from <said_origin>", "structure <arcs> (<lengths>), from <said_origin>"),
-    *("free", "<name> <length> long", "a table, [<name>]"),
+    *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),
     *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
     "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",
@@ -172,21 +171,6 @@ def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> 
         assert message("converged; certified") == "konvergen; tersertifikasi"
         arcs = message("structure free, wall, free (wall 0.3 long), from a regularised path")
         assert arcs == "struktur bebas, wall, bebas (wall selama 0.3), dari rangkaian masalah teregularisasi"
-
-
-@pytest.mark.parametrize(
-    ("english", "indonesian"),
-    [
-        ("structure free, [top], free, from guess", "struktur bebas, [top], bebas, dari tebakan"),
-        (
-            "structure free, top, top + end, free (top 0.2 long), from guess",
-            "struktur bebas, top, top + end, bebas (top selama 0.2), dari tebakan",
-        ),
-    ],
-)
-def test_free_arcs_are_named_and_constraints_keep_their_names(english: str, indonesian: str) -> None:
-    with spoken("id"):
-        assert message(english) == indonesian
 
 
 def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
