@@ -21,7 +21,7 @@ from satsym.report.results.set_list import ASKED, LIST, STUDY
 from satsym.report.results.studies import TRAJECTORIES, Merged
 from satsym.report.results.study_table import path_of
 from satsym.status import BadInput
-from satsym.studies import parts
+from satsym.studies import branches, parts
 from satsym.studies.asked import Study, differences
 from satsym.studies.parts import Parts
 from satsym.studies.rows import PASSING
@@ -120,10 +120,12 @@ def _carried_out(
 ) -> dict[str, Any]:
     if not (folder / ASKED).exists():
         write_text(folder / ASKED, to_json(studies.asked_object(study)))
-    if len(kept.done) < study.chunks:
+    merged = Merged(study, kept)
+    if len(kept.done) < study.chunks or branches.looked_for(study):
         with _log(folder) as log, executor() as workers:
             run(study, kept, workers, at_once, watch, log=log)
-    merged = Merged(study, kept)
+            if branches.looked_for(study):
+                merged = replace(merged, branches=branches.followed(study, merged.rows(), workers))
     result = studies.study_object(merged)
     sets.write(folder, result, {**studies.files(merged), **more})
     return result

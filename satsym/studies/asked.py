@@ -156,7 +156,7 @@ class Task:
     row_digest: str
 
 
-CODE = ("satsym.studies.chunks", "satsym.studies.asked")
+CODE = ("satsym.studies.chunks", "satsym.studies.asked", "satsym.studies.branches")
 """Modules whose code, with all that it imports, decides the results."""
 
 

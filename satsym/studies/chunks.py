@@ -24,7 +24,7 @@ def computed(packed: bytes, chunk: Chunk) -> list[Row]:
     packed
         The study, see :func:`packed`; a worker unpacks it once.
     """
-    task = _unpacked(packed)
+    task = unpacked(packed)
     given = [_instance(task, values) for values in chunk.values.tolist()]
     cases = {k: one for k in chunk.order if isinstance(one := given[k], Instance)}
     found = begun(task)(list(zip(keys_of(task, cases.values()), cases.values(), strict=True)))
@@ -38,7 +38,8 @@ def pack(study: Study) -> bytes:
 
 
 @lru_cache(maxsize=4)
-def _unpacked(packed: bytes) -> Task:
+def unpacked(packed: bytes) -> Task:
+    """A study from the bytes that :func:`pack` makes of it."""
     found: Task = pickle.loads(packed)
     return found
 

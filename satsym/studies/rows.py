@@ -36,6 +36,7 @@ class Column(str, Enum):
     VERDICT = "verdict"
     METHOD = "method"
     ORIGIN = "origin"
+    BRANCH = "branch"
     COST_LOWER = "cost_interval.lower"
     COST_UPPER = "cost_interval.upper"
     COST_FROM_INITIAL = "cost_from_initial"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,7 +53,7 @@ def _overview(numbers: Numbers) -> Figure:
     axes = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)[:1]
     for place, (name, values) in zip(rows, named.items(), strict=False):
         if numbers.shape is not None and len(axes) == 1:
-            place.plot(numbers.varied[axes[0]], values, ".-", color=style.BLUE, markersize=4.0)
+            _curve(place, numbers.varied[axes[0]], values, numbers.branch)
             place.set_xlabel(_label(axes[0]))
             place.set_ylabel(_label(name))
         elif numbers.shape is not None:
@@ -76,6 +77,8 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
         if _logarithmic(low):
             getattr(place, f"set_{axis}scale")("log")
         getattr(place, f"set_{axis}label")(_label(labels[k]))
+    if numbers.branch is not None:
+        _borders(place, x, y, numbers.branch.reshape(numbers.shape)[fixed])
     page.colorbar(drawn, ax=place, label=_label(name))
     values_of = [values.reshape(numbers.shape)[fixed].flat[0] for values in numbers.varied.values()]
     others = [
@@ -84,6 +87,23 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
         if k not in varying and count > 1
     ]
     place.set_title(", ".join(others))
+
+
+def _curve(place: Axes, x: Array, values: Array, branch: Array | None) -> None:
+    """Joined within a branch, in the order of the rows."""
+    parts = np.zeros(len(x)) if branch is None else np.nan_to_num(branch)
+    for first, last in pairwise([0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), len(x)]):
+        place.plot(x[first:last], values[first:last], ".-", color=style.BLUE, markersize=4.0)
+
+
+def _borders(place: Axes, x: Array, y: Array, branch: Array) -> None:
+    """White crosses between neighbours of different branches."""
+    for axis in (0, 1):
+        before, after = (np.delete(np.arange(branch.shape[axis]), k) for k in (-1, 0))
+        one, other = (np.take(branch, places, axis) for places in (before, after))
+        apart = (one != other) & np.isfinite(one) & np.isfinite(other)
+        between = [(np.take(each, before, axis) + np.take(each, after, axis))[apart] / 2.0 for each in (x, y)]
+        place.plot(*between, "x", color="white", markersize=4.0, markeredgewidth=1.2)
 
 
 def _label(column: str) -> str:

@@ -7,7 +7,7 @@ import shlex
 import zipfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -22,6 +22,7 @@ from satsym.report.results.set_list import ASKED
 from satsym.report.results.study_table import BEFORE, table
 from satsym.status import Status
 from satsym.studies.asked import Study
+from satsym.studies.branches import Branches
 from satsym.studies.parts import Parts
 from satsym.studies.rows import TEXTS, Column, Row
 from satsym.wording import counted
@@ -53,6 +54,8 @@ class Numbers:
         Of each row.
     shape
         Of the grid, in the order of `varied`; ``None`` for a sample.
+    branch
+        Of each row, NaN where it has none; nothing where neighbours were not compared.
     """
 
     title: str
@@ -60,6 +63,7 @@ class Numbers:
     quantities: Mapping[str, Array]
     status: Sequence[str]
     shape: tuple[int, ...] | None
+    branch: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +72,8 @@ class Merged:
 
     study: Study
     parts: Parts
+    branches: Branches | None = None
+    """What comparing neighbouring rows came to, where they were compared."""
 
     def rows(self) -> Iterator[tuple[int, list[float], Row]]:
         """Number from 0, values of what varies, and what came of it."""
@@ -75,7 +81,21 @@ class Merged:
             values = self.study.chunk(number).values.tolist()
             part = self.parts.read(number)
             for place, (own, row) in enumerate(zip(values, part.rows, strict=True)):
-                yield part.start + place, own, row
+                yield part.start + place, own, self._now(part.start + place, row)
+
+    def _now(self, number: int, row: Row) -> Row:
+        """A row with its branch, and with its neighbour's answer where that costs less."""
+        if self.branches is None:
+            return row
+        row = self.branches.changed.get(number, row)
+        label = self.branches.labels.get(number)
+        return row if label is None else replace(row, numbers={**row.numbers, Column.BRANCH: float(label)})
+
+    def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
+        """Of a chunk, by the place of the row in it."""
+        found, (start, count) = self.parts.trajectories(number), self.study.place(number)
+        changed = {} if self.branches is None else self.branches.changed
+        return found | {k: dict(changed[start + k].trajectory) for k in range(count) if start + k in changed}
 
 
 TRAJECTORIES = "trajectories-{:03d}.npz"
@@ -112,7 +132,7 @@ def _trajectories(merged: Merged, group: Sequence[int]) -> Content:
         with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
             for number in group:
                 start = number * merged.study.size
-                for place, arrays in merged.parts.trajectories(number).items():
+                for place, arrays in merged.trajectories(number).items():
                     for name, array in arrays.items():
                         content = io.BytesIO()
                         np.lib.format.write_array(content, np.ascontiguousarray(array), allow_pickle=False)
@@ -160,7 +180,17 @@ def study_object(merged: Merged) -> dict[str, Any]:
         "verdicts": dict(sorted(verdicts.items())),
         "worst": [_case(study, number, values) | {"objective": sense * cost} for cost, number, values in worst],
         "failures": failures,
+        "branches": _branches(merged),
     }
+
+
+def _branches(merged: Merged) -> dict[str, int] | None:
+    """How many branches there are, neighbours of different ones, and rows that have a neighbour's answer."""
+    found = merged.branches
+    if found is None:
+        return None
+    count = len(set(found.labels.values()))
+    return {"count": count, "borders": found.borders, "changed": len(found.changed)}
 
 
 def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
@@ -175,11 +205,11 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
 
     def chosen(names: list[str]) -> list[str]:
         drawn: list[str] = [name for name in DRAWN_FIRST if name in names]
-        drawn += [name for name in names if name not in (*drawn, *BEFORE, *varied, *TEXTS)]
-        return [*varied, *drawn[:MOST_READ], Column.STATUS]
+        drawn += [name for name in names if name not in (*drawn, *BEFORE, *varied, *TEXTS, Column.BRANCH)]
+        return [*varied, *drawn[:MOST_READ], Column.STATUS, *(name for name in names if name == Column.BRANCH)]
 
     found = study_table.columns(path, chosen)
-    status = found.pop(Column.STATUS)
+    status, branch = found.pop(Column.STATUS), found.pop(Column.BRANCH, None)
     columns = {labels[name]: values for name, values in found.items()}
     title = f"{said['instance']}: {said['each']} for {counted(said['rows'], 'row')}"
     return Numbers(
@@ -188,6 +218,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
         quantities=distinguishing(columns),
         status=status.tolist(),
         shape=tuple(said["grid"]) if said["grid"] else None,
+        branch=branch,
     )
 
 

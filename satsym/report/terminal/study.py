@@ -46,6 +46,8 @@ def study_text(found: Mapping[str, Any]) -> str:
                 [each("verdict", "rows"), *((message(k), str(v)) for k, v in found["verdicts"].items())], right=(1,)
             ),
         ]
+    if found.get("branches") and found["branches"]["borders"] + found["branches"]["changed"]:
+        lines += ["", _branches(found["branches"])]
     if found["worst"]:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
         lines += ["", say("worst:"), *table([each("row", "objective", "command"), *rows], right=(0, 1))]
@@ -55,6 +57,16 @@ def study_text(found: Mapping[str, Any]) -> str:
         lines += ["", say(heading, rows=counted(failed, "row"))]
         lines += table([each("row", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
+
+
+def _branches(found: Mapping[str, int]) -> str:
+    """What comparing neighbouring rows came to."""
+    return say(
+        "minima of <branches> (column branch), between <pairs> of rows; <rows> changed to one that costs less",
+        branches=counted(found["count"], "branch", "branches"),
+        pairs=counted(found["borders"], "pair"),
+        rows=counted(found["changed"], "row"),
+    )
 
 
 def _time(seconds: float) -> str:

@@ -1,0 +1,376 @@
+"""Branches: neighbouring rows of a grid whose answers belong together, and rows that have a cheaper answer beside them.
+
+A problem with several minima has several families of extremals. Rows are solved in chunks that know nothing of each
+other, so one may have the answer of a family that is not the cheapest there, and its neighbour that of another. Where
+costs or costates jump from one row to the next, each of the two is solved once more from the other's answer: it comes
+to its own answer, then nothing jumps, or to another, which is taken where it is a minimum and costs less. A row that
+has changed may jump against its other neighbours, so this is done in rounds. What a round does depends on what the one
+before came to alone, and on no order of its comparisons.
+
+Rows that all follow one family jump nowhere. So three of them are solved before, from cold starts and with competitors,
+and what is cheaper there goes on to its neighbours in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from itertools import pairwise
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym import solvers
+from satsym.arrays import Array
+from satsym.choices import Checked, Command
+from satsym.instance import Guess, Instance
+from satsym.instance import numbers as keys
+from satsym.solution import Solution
+from satsym.solvers.failures import FAILURES, tried
+from satsym.solvers.simulation.extrapolation import integrate
+from satsym.status import Verdict
+from satsym.studies import chunks, rows
+from satsym.studies.asked import Study, Task
+from satsym.studies.design import Grid
+from satsym.studies.rows import Column, Row
+from satsym.studies.solving import ALONE, certified, drawn_for_competitors
+from satsym.studies.together import CLOSED, plain
+
+FEWEST, MOST = 4, 100_000
+"""Rows on a line in which one may jump against the trend, and rows of a study that is looked through."""
+
+JUMP, ROUNDING = 4.0, 1e-6
+"""How many times what rows nearby change by is a jump, and the share of the largest value that is none."""
+
+SAME = 1e-6
+"""Relative difference of costs and of costates of one extremal."""
+
+SAMPLES, ACCURACY = 61, 1e-8
+"""Of a neighbour's motion, and its error: it is only where one starts."""
+
+ORIGIN = "neighbour's branch"
+"""The origin of answers that were found from a neighbour's, because they cost less."""
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What is known of an answered row: enough to start from it."""
+
+    number: int
+    values: tuple[float, ...]
+    """Of what varies."""
+    key: str
+    cost: float
+    """As it is minimised."""
+    costates: tuple[float, ...]
+    """At the start."""
+    t_final: float
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Two neighbours between which something jumps."""
+
+    first: Known
+    second: Known
+
+
+@dataclass(frozen=True, eq=False)
+class Scout:
+    """A row that is solved from a cold start."""
+
+    own: Known
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What a comparison of two neighbours came to."""
+
+    one: bool
+    """Whether both are of one branch."""
+    first: Row | None
+    second: Row | None
+    """The cheaper answers that they have from each other."""
+
+
+def looked_for(study: Study) -> bool:
+    """Whether rows have neighbours, and can be solved from these: smooth problems on a grid with enough rows."""
+    grid = isinstance(study.design, Grid) and max(study.design.shape) >= FEWEST and study.design.count <= MOST
+    return grid and study.command is Command.SOLVE and plain(study.task)
+
+
+@dataclass(eq=False)
+class Branches:
+    """The rows of a study as they are known so far, and which of their neighbours are of other branches.
+
+    Attributes
+    ----------
+    closed
+        Numbers of rows with an answer in closed form.
+    changed
+        Rows that have a neighbour's answer instead of their own, by their numbers.
+    """
+
+    study: Study
+    known: dict[int, Known]
+    closed: set[int]
+    changed: dict[int, Row] = field(default_factory=dict)
+    _compared: dict[tuple[int, int], tuple[Known, Known, bool]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, study: Study, found: Iterator[tuple[int, list[float], Row]]) -> Branches:
+        """Of rows as they were computed: number, values, and what came of it."""
+        known, closed = dict[int, Known](), set[int]()
+        for number, values, row in found:
+            if one := _known(study, number, values, row):
+                known[number] = one
+                closed |= {number} if row.numbers.get(Column.ORIGIN) == CLOSED else set()
+        return cls(study, known, closed)
+
+    def pairs(self) -> list[Pair]:
+        """Neighbours between which something jumps, and which were not compared as they are now; in order."""
+        found = []
+        for before, after in self._jumps():
+            pair = Pair(self.known[before], self.known[after])
+            done = self._compared.get((before, after))
+            if done is None or done[0] is not pair.first or done[1] is not pair.second:
+                found.append(pair)
+        return found
+
+    def scouts(self) -> list[Scout]:
+        """The first, the middle and the last answered row, but for those of closed forms, which have one minimum."""
+        numbers = [number for number in self.known if number not in self.closed]
+        places = sorted({0, len(numbers) // 2, len(numbers) - 1}) if numbers else []
+        return [Scout(self.known[numbers[place]]) for place in places]
+
+    def enter(self, pairs: Sequence[Pair], results: Sequence[Compared]) -> None:
+        """What comparisons came to."""
+        for pair, result in zip(pairs, results, strict=True):
+            self._compared[pair.first.number, pair.second.number] = pair.first, pair.second, result.one
+        both = [
+            ((pair.first, result.first), (pair.second, result.second))
+            for pair, result in zip(pairs, results, strict=True)
+        ]
+        self.take([each for two in both for each in two])
+
+    def take(self, answers: Sequence[tuple[Known, Row | None]]) -> None:
+        """Of several other answers of a row the cheapest, of equal ones the first."""
+        better: dict[int, tuple[Known, Row]] = {}
+        for own, row in answers:
+            new = None if row is None else _known(self.study, own.number, list(own.values), row)
+            if new is not None and row is not None and new.cost < better.get(own.number, (own,))[0].cost:
+                better[own.number] = new, row
+        for number, (new, row) in sorted(better.items()):
+            self.known[number], self.changed[number] = new, row
+
+    @property
+    def borders(self) -> int:
+        """How many neighbours are of different branches."""
+        return len(list(self._jumps()))
+
+    @cached_property
+    def labels(self) -> dict[int, int]:
+        """The branch of each answered row, from 1 in the order of their first rows. To be asked for at the end."""
+        above = {number: number for number in self.known}
+
+        def top(number: int) -> int:
+            while above[number] != number:
+                above[number] = above[above[number]]
+                number = above[number]
+            return number
+
+        apart = set(self._jumps())
+        for before, after in self._neighbours():
+            if (before, after) not in apart:
+                one, other = sorted((top(before), top(after)))
+                above[other] = one
+        tops = {place: number for number, place in enumerate(sorted({top(number) for number in above}), 1)}
+        return {number: tops[top(number)] for number in sorted(above)}
+
+    def _jumps(self) -> Iterator[tuple[int, int]]:
+        """Numbers of neighbours between which something jumps, but for those that were found to be of one branch."""
+        for line in self._lines():
+            seen = np.array([(self.known[k].cost, *self.known[k].costates) for k in line])
+            for place in np.flatnonzero(jumping(np.array(self._places(line)), seen)).tolist():
+                before, after = line[place : place + 2]
+                done = self._compared.get((before, after))
+                as_now = done is not None and done[0] is self.known[before] and done[1] is self.known[after]
+                if not (done is not None and as_now and done[2]):
+                    yield before, after
+
+    def _neighbours(self) -> Iterator[tuple[int, int]]:
+        for line in self._lines():
+            yield from pairwise(line)
+
+    def _lines(self) -> Iterator[list[int]]:
+        """Numbers of the answered rows of each line of the grid, axis by axis."""
+        assert isinstance(self.study.design, Grid)
+        numbers = np.arange(self.study.design.count).reshape(self.study.design.shape)
+        for axis in range(numbers.ndim):
+            for line in np.moveaxis(numbers, axis, -1).reshape(-1, numbers.shape[axis]).tolist():
+                yield [number for number in line if number in self.known]
+
+    def _places(self, line: Sequence[int]) -> list[float]:
+        """Where rows are on their line, in steps."""
+        assert isinstance(self.study.design, Grid)
+        places = np.array(np.unravel_index(np.array(line, dtype=int), self.study.design.shape))
+        return [float(step) for step in np.abs(places - places[:, :1]).sum(axis=0)] if line else []
+
+
+def jumping(places: Array, values: Array) -> NDArray[np.bool_]:
+    """Between which rows of a line something changes far more than nearby, shape (rows - 1,).
+
+    Parameters
+    ----------
+    places
+        Of the rows on the line, shape (rows,).
+    values
+        Shape (rows, quantities).
+    """
+    if len(places) < FEWEST:
+        return np.zeros(max(len(places) - 1, 0), dtype=bool)
+    slopes = np.abs(np.diff(values, axis=0)) / np.diff(places)[:, None]
+    apart = np.full((2, slopes.shape[1]), np.nan)
+    around = np.concatenate([apart, slopes, apart])
+    count = len(slopes)
+    beside = np.stack([around[k : k + count] for k in (0, 1, 3, 4)])
+    usual = np.nanmedian(beside, axis=0)
+    return np.asarray((slopes > JUMP * usual + ROUNDING * np.abs(values).max(axis=0)).any(axis=1))
+
+
+What = TypeVar("What")
+Result = TypeVar("Result")
+NOTHING = Compared(False, None, None)
+
+
+@dataclass(frozen=True, eq=False)
+class Some(Generic[What]):
+    """Some comparisons for one worker, in the shape of a chunk."""
+
+    number: int
+    of: tuple[What, ...]
+
+
+AT_A_TIME = 4
+"""Comparisons that a worker is given."""
+
+
+def followed(study: Study, found: Iterator[tuple[int, list[float], Row]], executor: Executor) -> Branches:
+    """All rows compared with their neighbours as often as anything jumps between them, at most once a row on average.
+
+    A comparison whose worker dies comes to nothing, like one from which nothing follows.
+
+    Parameters
+    ----------
+    found
+        Rows as they were computed: number, values, and what came of each.
+    executor
+        Runs comparisons somewhere.
+    """
+    known, packed = Branches.of(study, found), chunks.pack(study)
+    scouts = known.scouts()
+    ahead = [executor.submit(scouted, packed, Some(k, (one,))) for k, one in enumerate(scouts)]
+    known.take([(one.own, _result(future) or None) for one, future in zip(scouts, ahead, strict=True)])
+    left = study.design.count
+    while pairs := known.pairs()[:left]:
+        left -= len(pairs)
+        groups = [Some(k, tuple(pairs[k : k + AT_A_TIME])) for k in range(0, len(pairs), AT_A_TIME)]
+        futures = [executor.submit(all_compared, packed, group) for group in groups]
+        results = [_result(f) or [NOTHING] * len(g.of) for f, g in zip(futures, groups, strict=True)]
+        known.enter(pairs, [one for group in results for one in group])
+    return known
+
+
+def all_compared(packed: bytes, group: Some[Pair]) -> list[Compared]:
+    """What a worker does with some pairs."""
+    task = chunks.unpacked(packed)
+    return [compared(task, pair) for pair in group.of]
+
+
+def scouted(packed: bytes, group: Some[Scout]) -> Row | None:
+    """What a worker does with a scout: the answer from a cold start, if that is a minimum and costs less."""
+    task, own = chunks.unpacked(packed), group.of[0].own
+    found = tried(partial(solvers.solve, keys.at(task.instance, task.keys, own.values)))
+    if found is None or not found.status.answered or not own.cost - found.objective > SAME * abs(own.cost):
+        return None
+    return _row(task, own, found.instance, found, ALONE)
+
+
+def _result(future: Future[Result]) -> Result | None:
+    try:
+        return future.result()
+    except BrokenExecutor:
+        return None
+
+
+def compared(task: Task, pair: Pair) -> Compared:
+    """Both rows of a pair from each other's answers, the second only if the first does not come to its own."""
+    first, second = (keys.at(task.instance, task.keys, one.values) for one in (pair.first, pair.second))
+    found = _again(task, pair.first, first, pair.second, second)
+    if isinstance(found, bool) and found:
+        return Compared(True, None, None)
+    other = _again(task, pair.second, second, pair.first, first)
+    one = isinstance(other, bool) and other
+    return Compared(one, *(row if isinstance(row, Row) else None for row in (found, other)))
+
+
+def _again(task: Task, own: Known, instance: Instance, other: Known, theirs: Instance) -> Row | bool:
+    """A row from its neighbour's answer: a cheaper minimum; or else whether it is its own answer."""
+    try:
+        start = _guess(theirs, other)
+    except FAILURES:
+        return False
+    given = replace(instance, guess=start, tf_guess=other.t_final - instance.t0 if instance.tf is None else None)
+    full = drawn_for_competitors(task.checked, own.key)
+    found = tried(partial(_solved, given, full))
+    if found is None or not found.status.answered:
+        return False
+    apart = found.objective - own.cost
+    if abs(apart) <= SAME * abs(own.cost):
+        return bool(np.allclose(found.lam[:, 0], own.costates, rtol=SAME, atol=SAME * np.abs(found.lam[:, 0]).max()))
+    return False if apart > 0.0 else _row(task, own, instance, found, ORIGIN) or False
+
+
+def _row(task: Task, own: Known, instance: Instance, found: Solution, origin: str) -> Row | None:
+    """A row with a solution that is a minimum; ``None`` for another."""
+    if found.certificate is None or found.certificate.verdict not in (Verdict.LOCAL_MINIMUM, Verdict.CERTIFIED):
+        return None
+    certificate = None if task.checked is Checked.NONE else found.certificate
+    solution = replace(found, instance=instance, certificate=certificate)
+    return rows.of_solution(own.key, solution, origin, task.trajectories)
+
+
+def _solved(instance: Instance, full: bool) -> Solution:
+    return solvers.solve(instance) if full else certified(solvers.solve(instance, examined=False))
+
+
+def _guess(instance: Instance, known: Known) -> Guess:
+    """The motion of an answer, from its costates at the start."""
+    model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
+    n, names = len(instance.initial), model.spec.state_names
+
+    def rates(t: float, z: Array) -> Array:
+        values = z.tolist()
+        return np.array(model.canonical(t, tuple(values[:n]), tuple(values[n:]), p, bounds))
+
+    times = np.linspace(instance.t0, known.t_final, SAMPLES)
+    start = np.array([*instance.initial, *known.costates])
+    with np.errstate(all="ignore"):
+        pieces = integrate(rates, times, start, ACCURACY, np.maximum(np.abs(start), 1e-3 * np.abs(start).max()))
+    z = np.array([start, *(piece.end for piece in pieces)]).T.tolist()
+    states, costates = (dict(zip(names, map(tuple, part), strict=True)) for part in (z[:n], z[n:]))
+    return Guess(states, costates)
+
+
+def _known(study: Study, number: int, values: list[float], row: Row) -> Known | None:
+    """What is known of a row; ``None`` where it has no answer."""
+    spec = study.instance.model.spec
+    costates = [row.numbers.get(f"costate_initial.{name}") for name in spec.state_names]
+    found = [row.numbers.get(Column.OBJECTIVE), row.numbers.get(Column.T_FINAL), *costates]
+    if not row.answered or not all(isinstance(one, float) for one in found):
+        return None
+    objective, t_final, *known = (float(one) for one in found if isinstance(one, float))
+    return Known(number, tuple(values), row.key, spec.objective(objective), tuple(known), t_final)
