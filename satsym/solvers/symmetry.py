@@ -7,7 +7,7 @@ at random show all of them, in whatever Cartesian coordinates the model is state
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -36,6 +36,9 @@ TURN = 2.0 * np.pi
 CORRECTIONS, CLOSE = 20, 1e-6
 """Of a state until it rotates steadily, and how nearly it does then."""
 
+ALIKE = 0.88
+"""Cosine of half a radian: rotations whose axes lie nearer to each other are one."""
+
 ANGLES = 720
 """Angles by which the end is turned to see which fits best."""
 
@@ -49,6 +52,8 @@ class Rotation:
     """Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more."""
     inverse: NDArray[np.complexfloating[Any, Any]]
     """Of the former."""
+    vectors: NDArray[np.bool_]
+    """Which states such rotations mix, about whatever axis, shape (n, n): components of one vector."""
 
     def turned(self, states: Array, angle: Array | float) -> Array:
         """States (n, M), each by its angle (M,)."""
@@ -66,20 +71,57 @@ class Rotation:
 
 
 def rotation(instance: Instance) -> Rotation | None:
-    """The rotation that follows the motion at the initial state best; ``None`` where there is none."""
+    """The first of :func:`rotations`; ``None`` where there is none."""
+    return next(rotations(instance), None)
+
+
+def rotations(instance: Instance) -> Iterator[Rotation]:
+    """Rotations that follow the motion: at all ends that are given, and at either of them where they differ from that.
+
+    In space the first is about an axis between those of the momenta at start and end, whatever the coordinates.
+    """
     model, start = instance.model, np.array(instance.initial)
     found = _generators(model, instance.t0, _about(model, start), instance.parameters)
     if found is None:
-        return None
-    here, _ = _motion(model, instance.t0, instance.parameters, start[:, None])
-    weights = np.linalg.lstsq((found @ start).T, here[:, 0], rcond=1e-9)[0]
-    matrix = np.tensordot(weights, found, 1)
+        return
+    ends = np.array([start, *_given_end(instance)]).T
+    here, _ = _motion(model, instance.t0, instance.parameters, ends)
+    known: list[Array] = []
+    for at in ([*range(ends.shape[1])], [0], [ends.shape[1] - 1]):
+        rates, by = here[:, at], found @ ends[:, at]
+        weights = np.linalg.lstsq(by.reshape(len(found), -1).T, rates.ravel(), rcond=1e-9)[0]
+        matrix = np.tensordot(weights, found, 1)
+        unit = matrix / max(float(np.linalg.norm(matrix)), 1e-300)
+        if all(float((unit * other).sum()) < ALIKE for other in known):
+            known.append(unit)
+            around = _about_its_axis(matrix, _vectors(found))
+            yield from () if around is None else (around,)
+
+
+def _about_its_axis(matrix: Array, vectors: NDArray[np.bool_]) -> Rotation | None:
+    """The rotation that a matrix generates, if it is one that comes back."""
     angular, axes = np.linalg.eig(matrix)
     fastest = float(np.abs(angular).max())
     if fastest == 0.0 or (np.abs(angular.real) > 1e-6 * fastest).any() or np.linalg.cond(axes) > 1e6:
         return None
     multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > 1e-6 * fastest]).min())
-    return Rotation(axes, 1j * multiples, np.linalg.inv(axes))
+    return Rotation(axes, 1j * multiples, np.linalg.inv(axes), vectors)
+
+
+def _vectors(found: Array) -> NDArray[np.bool_]:
+    """Which states maps (k, n, n) mix, directly or by others, shape (n, n)."""
+    mixed = np.abs(found).max(axis=0) > NONE * np.abs(found).max()
+    steps = (mixed | mixed.T | np.eye(len(mixed), dtype=bool)).astype(float)
+    return np.asarray(np.linalg.matrix_power(steps, len(steps)) > 0.0)
+
+
+def _given_end(instance: Instance) -> list[Array]:
+    """The final state, where all of it is given and the final time is, if it moves with the reference."""
+    final, names = instance.final, instance.model.spec.state_names
+    if final.keys() != set(names) or (instance.tf is None and "reference" in final.values()):
+        return []
+    curve = instance.model.reference(instance.tf, instance.parameters) if "reference" in final.values() else ()
+    return [np.array([curve[i] if (value := final[s]) == "reference" else value for i, s in enumerate(names)])]
 
 
 def _about(model: Kernels, start: Array) -> Row:
@@ -144,10 +186,10 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
     around = around or rotation(problem.instance)
     if around is None:
         return []
-    unit = problem.scale.state[:, None]
-    start, end = (column[:, None] * unit for column in straight(problem).T)
+    start, end = (column[:, None] * problem.scale.state[:, None] for column in straight(problem).T)
     back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, TURN, ANGLES, endpoint=False))
-    best = TURN / ANGLES * int(np.argmin((((back - start) / unit) ** 2).sum(axis=0)))
+    size = np.sqrt(around.vectors @ (start**2 + end**2)) + 1e-300  # of vectors, not of their components
+    best = TURN / ANGLES * int(np.argmin((((back - start) / size) ** 2).sum(axis=0)))
     first, last = _rate(problem.instance, around, start), _rate(problem.instance, around, end)
     mean = (first + last) / 2.0
     if not (mean > 0.0 and np.isfinite(mean)):

@@ -11,7 +11,7 @@ import mpmath as mp
 import pytest
 import sympy as sp
 
-from satsym.symbolic import Derivation, DerivationError, Problem, Step, derive, pipeline
+from satsym.symbolic import Box, Derivation, DerivationError, FirstOrder, Problem, Step, Variable, derive, pipeline, symbols_of
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.lookup.formulas import plain, to_tree
 from satsym.symbolic.minimisers import Shrink, Side, Switch
@@ -285,3 +285,20 @@ def test_laws_can_be_written_as_people_print_them() -> None:
             point |= {low: -abs(point[low]), high: abs(point[high])}
             point |= {s: abs(v) for s, v in point.items() if "weight" in s.name or "share" in s.name}
             assert deviation(numeric([printed])(point), numeric([expression])(point)) < 1e-14
+
+
+@pytest.mark.parametrize("sets", [{}, {"push": Box("a"), "torque": Box("b")}], ids=["one box", "a box for each"])
+def test_controls_of_several_units_switch_beside_each_other(sets: dict[str, Box]):
+    """One number smooths them all, so that it has no dimension that would suit them all."""
+    states = (Variable("x", "x", "m"), Variable("q", "q", "rad"))
+    controls = (Variable("a", "a", "m/s"), Variable("b", "b", "rad*kg/s"))
+    weight = Variable("m", "m", "kg", default=1.0, positive=True)
+    (x, q), (push, torque), (m,) = symbols_of(states), symbols_of(controls), symbols_of((weight,))
+    moving = FirstOrder(
+        name="arm", title="A", states=states, controls=controls, parameters=(weight,), rates={x: push, q: torque / m}
+    )
+    kind = {"control_sets": sets} if sets else {"control_set": "box"}
+    found = derive(Problem(name="armed", title="A", model=moving, running_cost=1, **kind))
+    effort = found.equation("smoothed_law.H").rhs
+    smoothing = sp.Symbol("smoothing", positive=True)
+    assert sp.expand(effort - effort.subs(smoothing, 0)) == sp.expand(smoothing * (push**2 + torque**2) / 2)

@@ -167,7 +167,7 @@ def _tried(
 def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
     """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
     from satsym.solvers.collocation.scaling import two_point
-    from satsym.solvers.symmetry import rotation
+    from satsym.solvers.symmetry import rotation, rotations
 
     instance, cost = solution.instance, solution.objective
     problem, lasting = _at_its_duration(solution), float(solution.times[-1]) - instance.t0
@@ -186,8 +186,8 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
     around: list[Search] = [_cold(one, cost) for one in turned]
-    if problem.fixed.all() and not angles and (rotating := rotation(fixed)):
-        around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotating)]
+    if problem.fixed.all() and not angles:
+        around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotations(fixed))]
     elif not angles and not problem.fixed.all() and rotation(fixed):
         yield Kind.REVOLUTIONS, []
     if around:
@@ -359,12 +359,12 @@ def _bent(problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS) -> It
         yield paths.bent(problem, rng, BENT[k % len(BENT)])
 
 
-def _spirals(solution: Solution, problem: TwoPoint, around: Rotation) -> list[Spiral]:
-    """Paths of other numbers of revolutions than the solution's, the likeliest first."""
+def _spirals(solution: Solution, problem: TwoPoint, rotations: Iterator[Rotation]) -> list[Spiral]:
+    """Paths of other numbers of revolutions than the solution's, the likeliest first; about other axes of any number."""
     from satsym.solvers.symmetry import spirals, turns
 
-    own = turns(around, solution.x)
-    return [one for one in spirals(problem, TURNS + 1, around) if abs(one.turns - own) > 0.5]
+    found = [(k, turns(one, solution.x), spirals(problem, TURNS + 1, one)) for k, one in enumerate(rotations)]
+    return [one for k, own, each in found for one in each if k or abs(one.turns - own) > 0.5]
 
 
 def none_conceivable(solution: Solution) -> bool:

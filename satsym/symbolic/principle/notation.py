@@ -109,7 +109,7 @@ def declare_product(known: dict[str, Dimension | None], problem: Problem, runnin
             known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN
         switched = part.kind == "box" and sp.diff(problem.running_cost, part.symbols[0], 2) == 0
         if switched or part.kind in ("ball", "annulus", "angle"):
-            unit = PLAIN if part.kind == "angle" else known[part.controls[0].symbol]
-            efforts.append(over(over(running, unit), unit))
+            units = (PLAIN if part.kind == "angle" else known[v.symbol] for v in part.controls)
+            efforts += [over(over(running, unit), unit) for unit in units]
     # one number smooths all directions: where their units differ it has none that would suit them all
     known[parts.SMOOTHING.symbol] = efforts[0] if efforts and all(e == efforts[0] for e in efforts) else None

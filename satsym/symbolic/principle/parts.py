@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -125,3 +126,18 @@ def _example(kind: PartKind) -> str:
     return {"angle": 'Angle("beta")', "free": 'Free("u")', "box": 'Box("u1", "u2")'}.get(
         kind, f'{kind.capitalize()}("ux", "uy")'
     )
+
+
+def weighed(weight: sp.Symbol, symbols: Sequence[sp.Symbol], controls: Sequence[Variable]) -> sp.Expr:
+    """Half the squares of controls times a weight; one by one where their units differ, so that no sum is of several.
+
+    Parameters
+    ----------
+    symbols
+        What stands for the controls.
+    controls
+        Whose units they have.
+    """
+    if len({v.unit for v in controls}) == 1:
+        return weight / 2 * sp.Add(*(u**2 for u in symbols))
+    return sp.Add(*(weight * u**2 / 2 for u in symbols))

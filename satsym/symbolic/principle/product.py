@@ -23,7 +23,7 @@ from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
-from satsym.symbolic.principle.parts import limits_of, parts_of
+from satsym.symbolic.principle.parts import limits_of, parts_of, weighed
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
 from satsym.symbolic.principle.set_laws import (
@@ -175,14 +175,14 @@ def smoothed_law(so_far: Derivation) -> Step | None:
     if not directions:
         return None
     short = [component for one in directions for component in pn.components_of(one.part)]
-    equations = [
-        Equation("H", pn.REGULARISED_H, n.HAMILTONIAN + sign(problem) * EPSILON / 2 * sum(c**2 for c in short))
-    ]
+    limited = [v for one in directions for v in one.part.controls]
+    effort = weighed(EPSILON, short, limited)
+    equations = [Equation("H", pn.REGULARISED_H, n.HAMILTONIAN + sign(problem) * effort)]
     for one in directions:
         laws = shortened(problem, one)
         equations += [Equation(c.name, c, law) for c, law in zip(pn.components_of(one.part), laws, strict=True)]
     h = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])[0]
-    h += sign(problem) * EPSILON / 2 * sum(c**2 for c in short)
+    h += sign(problem) * effort
     norms = {norm_of(one.part): FACTOR * _norm(one) for one in directions}
     h = h.xreplace(norms)
     stationary = [one for one in found(so_far) if one.branch == "stationary"]

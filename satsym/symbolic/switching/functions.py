@@ -25,6 +25,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, Equation, St
 from satsym.symbolic.minimisers import Clip, Shrink, Switch
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle.parts import weighed
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.switching import notation as s
 
@@ -121,7 +122,7 @@ def smoothed_law(so_far: Derivation) -> Step:
     problem, found = _problem(so_far), parts(so_far)
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
-    effort = s.SMOOTHING / 2 * sum((u**2 for u in controls), sp.Integer(0))
+    effort = weighed(s.SMOOTHING, controls, so_far.model.controls)
     saved = sum(
         ((1 - s.MAGNITUDE_FACTOR) * w * sp.Abs(u) for u, w in zip(controls, weights, strict=True)), sp.Integer(0)
     )

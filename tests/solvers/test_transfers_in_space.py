@@ -1,0 +1,97 @@
+"""Transfers between orbits of different planes, in Cartesian coordinates: symmetry about any axis, and revolutions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+from scipy.spatial.transform import Rotation
+
+import satsym
+from satsym.arrays import Array
+from satsym.solvers.symmetry import rotations
+from satsym.status import Verdict
+from satsym.symbolic import Model, Problem, symbols_of
+from tests.support.derived import stated
+
+MOTION = stated("two_body")
+assert isinstance(MOTION, Model)
+EFFORT = sum(u**2 for u in symbols_of(MOTION.controls)) / 2
+TRANSFER = Problem(name="space_transfer", title="From plane to plane", model=MOTION, running_cost=EFFORT)
+NAMES = tuple(v.symbol for v in MOTION.states)
+LASTING, PHASE, RADIUS = 9.0, 2.0, 1.2
+
+
+def asked(tilt: float, turned: Rotation) -> satsym.Instance:
+    """From a circular orbit to a wider one that is tilted against it, all of it turned in space."""
+    plane, along = Rotation.from_euler("x", tilt), np.array([-np.sin(PHASE), np.cos(PHASE), 0.0])
+    start = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    end = RADIUS * plane.apply([np.cos(PHASE), np.sin(PHASE), 0.0]), plane.apply(along) / np.sqrt(RADIUS)
+    first, last = (
+        dict(zip(NAMES, np.concatenate([turned.apply(v) for v in pair]).tolist(), strict=True)) for pair in (start, end)
+    )
+    return satsym.Instance.of(TRANSFER, initial=first, final=last, tf=LASTING)
+
+
+def axis(generator: Array) -> Array:
+    """That about which positions are turned."""
+    return np.array([generator[2, 1], generator[0, 2], generator[1, 0]])
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_the_axis_lies_between_the_momenta_of_both_ends_however_they_are_turned(seed: int) -> None:
+    turned = Rotation.random(random_state=seed)
+    momenta = [turned.apply(v) for v in ([0.0, 0.0, 1.0], Rotation.from_euler("x", 0.3).apply([0.0, 0.0, 1.0]))]
+    (found,) = (one.matrix for one in rotations(asked(0.3, turned).case))
+    assert np.linalg.norm(axis(found)) == pytest.approx(1.0, abs=1e-9)
+    assert axis(found) @ np.cross(*momenta) == pytest.approx(0.0, abs=0.02)
+    assert min(axis(found) @ h for h in momenta) > np.cos(0.3)
+    (plain,) = (one.matrix for one in rotations(asked(0.3, Rotation.identity()).case))
+    assert axis(found) == pytest.approx(turned.apply(axis(plain)), abs=1e-9)
+    assert len(list(rotations(asked(2.0, turned).case))) == 3
+
+
+# CasADi and Ipopt, Radau points of degree 4 on 30 intervals, from spirals about the axes of both ends and between them:
+# by turns about the last, the least cost that any of them leads to, and those beside it
+DIRECT = {0.3: (0.0107003, 0.0481, 0.516), 2.0: (0.186845, 0.2443, 0.288)}
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize("tilt", DIRECT)
+def test_a_transfer_costs_the_same_however_it_is_turned_in_space(tilt: float) -> None:
+    """The least of several numbers of revolutions, for each of which a direct method has another cost."""
+    plain = satsym.solve(asked(tilt, Rotation.identity()))
+    assert plain.certificate is not None
+    assert plain.certificate.verdict is Verdict.CERTIFIED
+    assert ("revolutions", True) in {(one.kind.value, one.tried > 0) for one in plain.certificate.competitors}
+    assert plain.objective == pytest.approx(DIRECT[tilt][0], rel=1e-3)
+    assert plain.objective < min(DIRECT[tilt][1:])
+    for seed in (1, 2):
+        turned = Rotation.random(random_state=seed)
+        found = satsym.solve(asked(tilt, turned))
+        assert found.objective == pytest.approx(plain.objective, rel=1e-9)
+        for t in (2.0, 5.5):
+            place, ours = (np.array(one.x(t))[:3] for one in (plain, found))
+            assert ours == pytest.approx(turned.apply(place), abs=1e-7)
+
+
+@pytest.mark.slow(in_turn=True)
+def test_a_transfer_in_space_is_that_of_shooting() -> None:
+    case = asked(0.3, Rotation.identity())
+    found = satsym.solve(case)
+
+    def rates(_: float, z: Array) -> Array:
+        r, v, p, q, _ = np.split(z, [3, 6, 9, 12])
+        cube = np.linalg.norm(r) ** 3
+        pulled = q / cube - 3.0 * r * (r @ q) / (cube * (r @ r))
+        return np.concatenate([v, -r / cube - q, pulled, -p, [q @ q / 2.0]])
+
+    def end(costates: Array) -> Array:
+        z = np.array([*case.case.initial, *costates, 0.0])
+        return solve_ivp(rates, (0.0, LASTING), z, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+
+    goal = np.array([float(case.case.final[name]) for name in NAMES])
+    costates = fsolve(lambda lam: end(lam)[:6] - goal, np.round(found.lam(0.0), 4), xtol=1e-13)
+    assert end(costates)[:6] == pytest.approx(goal, abs=1e-9)
+    assert found.objective == pytest.approx(end(costates)[12], rel=1e-9)
