@@ -117,10 +117,13 @@ def _vectors(found: Array) -> NDArray[np.bool_]:
 
 def _given_end(instance: Instance) -> list[Array]:
     """The final state, where all of it is given and the final time is, if it moves with the reference."""
-    final, names = instance.final, instance.model.spec.state_names
-    if final.keys() != set(names) or (instance.tf is None and "reference" in final.values()):
+    final, names, curve = instance.final, instance.model.spec.state_names, np.zeros(0)
+    if final.keys() != set(names):
         return []
-    curve = instance.model.reference(instance.tf, instance.parameters) if "reference" in final.values() else ()
+    if "reference" in final.values():
+        if instance.tf is None:
+            return []
+        curve = np.array(instance.model.reference(instance.tf, instance.parameters))
     return [np.array([curve[i] if (value := final[s]) == "reference" else value for i, s in enumerate(names)])]
 
 

@@ -11,7 +11,18 @@ import mpmath as mp
 import pytest
 import sympy as sp
 
-from satsym.symbolic import Box, Derivation, DerivationError, FirstOrder, Problem, Step, Variable, derive, pipeline, symbols_of
+from satsym.symbolic import (
+    Box,
+    Derivation,
+    DerivationError,
+    FirstOrder,
+    Problem,
+    Step,
+    Variable,
+    derive,
+    pipeline,
+    symbols_of,
+)
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.lookup.formulas import plain, to_tree
 from satsym.symbolic.minimisers import Shrink, Side, Switch

@@ -360,7 +360,7 @@ def _bent(problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS) -> It
 
 
 def _spirals(solution: Solution, problem: TwoPoint, rotations: Iterator[Rotation]) -> list[Spiral]:
-    """Paths of other numbers of revolutions than the solution's, the likeliest first; about other axes of any number."""
+    """Paths of other numbers of revolutions than the solution's, the likeliest first; of any about other axes."""
     from satsym.solvers.symmetry import spirals, turns
 
     found = [(k, turns(one, solution.x), spirals(problem, TURNS + 1, one)) for k, one in enumerate(rotations)]

@@ -166,7 +166,7 @@ def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
     node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
     largest = 0.0
     for at in (node, np.clip(2.0 * met - node, 0.0, 1.0)):
-        followed, free = (one.rates(at, curve(at), curve.theta) for one in (problem, problem.relaxed(float("inf"))))
+        followed, free = (rates(at, curve(at), curve.theta) for rates in (problem.rates, problem.rates_beyond))
         largest = max(largest, apart(problem, curve, followed - free, met - node))
     return largest
 

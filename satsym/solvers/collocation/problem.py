@@ -150,6 +150,16 @@ class TwoPoint:
             found[: self.states] += self.forcing(tau)
         return found
 
+    def rates_beyond(self, tau: Array, z: Array, theta: Array) -> Array:
+        """The rates if no bound held the control; where H may have no minimum then, by a step of Newton's method."""
+        model = self.instance.model
+        if not model.spec.stationary:
+            return self.relaxed(float("inf")).rates(tau, z, theta)
+        t, x, lam, p = self._arguments(tau, z, theta)
+        u = self._beyond(t, x, lam, p)
+        rates = [model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)]
+        return np.asarray(np.concatenate(rates) / self.scale.both)
+
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
         shape = (len(z), *z.shape)

@@ -213,5 +213,6 @@ def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
             if len({v > 0 for v in real if v}) > 1:
                 raise DerivationError(
                     f"{name}: H is convex in {u} in some places and not in others, so that it may have several local "
-                    "minima, which are not compared; state bounds and a model in which it is convex"
+                    "minima, which are not compared; state as the control what H is a polynomial of, such as a rate of "
+                    "reaction in place of a temperature, with both bounds, or a model in which it is convex"
                 )

@@ -40,9 +40,6 @@ BEYOND = 1e16
 SWEEPS, STEADY = 12, 1e-2
 """Through all units, at most; and the relative change of units in one below which there is no other."""
 
-SAME = 1e-9
-"""Share of the duration by which a node and a switching time may differ that are one."""
-
 
 @dataclass(frozen=True, eq=False)
 class Segments:
@@ -173,11 +170,10 @@ def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
 def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
     """Indices of the nodes where segments begin: evenly in time, dense enough, switching times among them."""
     times, last = solution.times, len(solution.times) - 1
-    lasting = float(times[-1] - times[0])
     even = np.searchsorted(times, np.linspace(times[0], times[-1], FEWEST + 1)[1:-1])
     dense = np.searchsorted(turned, np.arange(FRACTION * TURN, turned[-1], FRACTION * TURN)) - 1
     switches = np.array([t for own in solution.switching_times for t in own])
-    met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
+    met = [int(np.abs(times - t).argmin()) for t in switches]  # a corner within a step is seen by none of its stages
     beside = [node for one in passages(solution) if one.located for node in (one.node, one.node + 1)]
     return distinct(np.clip(np.concatenate([[0, last], even, dense, met, beside]), 0, last).astype(np.intp))
 
