@@ -158,7 +158,7 @@ def _positive(variables: tuple[Variable, ...]) -> dict[int, float]:
 def _both_forms(of: Evaluation) -> Iterator[Relation]:
     """The form on floats and that on arrays, of every function; also where costates vanish and no law is decided."""
     none = np.zeros_like(of.at["lam"])
-    columns = [column(of.at, k) for k in range(len(of.at["t"]) // (1 + COPIES))]
+    columns = _columns_of(of.at, len(of.at["t"]) // (1 + COPIES))
     columns.append(column({**of.at, "lam": none}, 0))
     for name, signature in of.signatures.items():
         everywhere = of(name).reshape(-1, len(of.at["t"]))
@@ -167,10 +167,10 @@ def _both_forms(of: Evaluation) -> Iterator[Relation]:
         )
         rows = np.concatenate([everywhere[:, : len(columns) - 1], first], axis=1)
         found = [_single(of, name, signature.arguments, each) for each in columns]
-        pairs = [(one, rows[:, k]) for k, one in enumerate(found) if one is not None]
-        if pairs:
-            single, batch = (np.array(side).T for side in zip(*pairs, strict=True))
-            yield Relation(name, "the same on floats and on arrays", single, batch, _largest(rows))
+        known = [k for k, one in enumerate(found) if one is not None]
+        if known:
+            single = np.array([found[k] for k in known]).T
+            yield Relation(name, "the same on floats and on arrays", single, rows[:, known], _largest(rows))
 
 
 def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[str, Any]) -> list[float] | None:
@@ -184,10 +184,14 @@ def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[s
 
 def column(at: Mapping[str, Any], k: int) -> dict[str, Any]:
     """One place of many, as floats."""
-    return {
-        name: float(values[k]) if name == "t" else tuple([float(row[k]) for row in values])
-        for name, values in at.items()
-    }
+    return _columns_of({name: np.asarray(values)[..., k : k + 1] for name, values in at.items()}, 1)[0]
+
+
+def _columns_of(at: Mapping[str, Any], count: int) -> list[dict[str, Any]]:
+    """The first places, each as floats."""
+    tables = {name: np.asarray(values, dtype=float).reshape(-1, len(at["t"])) for name, values in at.items()}
+    rows = {name: table[:, :count].T.tolist() for name, table in tables.items()}
+    return [{name: own[k][0] if name == "t" else tuple(own[k]) for name, own in rows.items()} for k in range(count)]
 
 
 def _loops(kernels: Kernels, at: Mapping[str, Any]) -> Iterator[Relation]:

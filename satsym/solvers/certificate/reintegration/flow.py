@@ -9,7 +9,6 @@ from functools import lru_cache, partial
 import numpy as np
 
 from satsym.arrays import Array, distinct
-from satsym.grid import Grid
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.collocation.scaling import two_point
@@ -109,9 +108,8 @@ def undriven(solution: Solution) -> Array | None:
     none, p = (0.0,) * len(model.spec.controls), instance.parameters
     size, ends = typical(solution)[0], list[Array]()
     for steps in IDLE_STEPS:
-        grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), steps)
-        idle = np.zeros((len(none), steps + 1))
-        ends.append(model.forward(grid.nodes, instance.initial, idle, idle[:, 1:], p)[0][:, -1])
+        nodes, idle = np.linspace(solution.times[0], solution.times[-1], steps + 1), np.zeros((len(none), steps + 1))
+        ends.append(model.forward(nodes, instance.initial, idle, idle[:, 1:], p)[0][:, -1])
     coarse, fine = (np.abs(end - solution.x[:, -1]) / size for end in ends)
     if (np.abs(fine - coarse) <= IDLE_ERROR * fine.max()).all():
         return ends[-1]
