@@ -16,13 +16,18 @@ import pytest
 from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
+READMES = [DOCS.parent / "README.md", DOCS.parent / "README.id.md"]
 PAGES = [DOCS / "start.md", DOCS / "howto.md", *sorted((DOCS / "tutorials").glob("*.md"))]
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
+TIMED = re.compile(r"(?<=, )[\d.]+ m?s(?=\))")
+"""What differs from run to run: how long solving took."""
+
+
 def sessions(text: str) -> Iterator[tuple[str, str]]:
     """Each command of the shell, with what it is said to print."""
-    for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
+    for block in re.findall(r"```(?:console)?\n(\$ .*?)```", text, re.DOTALL):
         yield from re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE)
 
 
@@ -46,6 +51,46 @@ def test_commands_print_what_the_page_says(
         assert cli.main(arguments) == 0, command
         told = capsys.readouterr().out
         assert doctest.OutputChecker().check_output(printed, told, ELLIPSIS), f"{command}\n{told}"
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
+def test_commands_print_what_the_readme_says_but_for_times(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "130")  # as wide as the longest line that is shown
+    shown = list(sessions(page.read_text(encoding="utf-8")))
+    assert shown
+    for command, printed in shown:
+        assert "\n  ...\n" in printed, "what is left out is marked"
+        assert cli.main(shlex.split(command)[1:]) == 0
+        told = TIMED.sub("T", capsys.readouterr().out)
+        wanted = f"{TIMED.sub('T', printed)}...\n"
+        assert doctest.OutputChecker().check_output(wanted, told, ELLIPSIS), f"{command}\n{told}"
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
+def test_what_the_readme_shows_of_python_runs_and_answers_what_its_comments_say(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    known: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        for one in ast.parse(block).body:
+            said = re.search(r"# (.*)$", block.splitlines()[one.lineno - 1])
+            if not isinstance(one, ast.Expr):
+                exec(compile(ast.Module([one], []), "README.md", "exec"), known)  # noqa: S102
+                continue
+            value = eval(compile(ast.Expression(one.value), "README.md", "eval"), known)  # noqa: S307
+            if said and ";" in said[1]:
+                verdict, times = value
+                text = f"{verdict.value}; ({', '.join(f'{t:.4f}' for t in times)})"
+                assert text == said[1]
+            elif said and "=" in said[1]:
+                assert f"{value.lhs} = {value.rhs}" == said[1]
+    assert (known["solution"].certificate.verdict.value, known["answer"].status.value) == ("certified", "converged")
 
 
 @pytest.mark.slow
