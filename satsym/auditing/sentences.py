@@ -41,7 +41,7 @@ def tables() -> dict[str, dict[str, dict[str, str]]]:
     return tomllib.loads(files("satsym.auditing").joinpath("sentences.toml").read_text(encoding="utf-8"))
 
 
-_WORD = re.compile(r"(?:a|[a-z]{2,})(?=[,:;]? (?![=<>+*/]))")
+_WORD = re.compile(r"(?:a|[a-z]{2,}(?:-[a-z]{2,})*)(?=[,:;]? (?![=<>+*/]))")
 """A word that begins a clause; single letters, names with digits and what is called or compared are symbols."""
 
 

@@ -57,7 +57,8 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
     if (study := study_folder(subject, source)) is not None:
         said, drawn = draw(study, look, out)
         shown = said | {"command": "plot", "pictures": [str(path) for path in drawn]}
-        answer(as_json, shown, lambda: with_files(f"{said['instance']}: study of {said['rows']} rows", drawn))
+        about = say("<name>: study of <number> rows", name=said["instance"], number=said["rows"])
+        answer(as_json, shown, lambda: with_files(about, drawn))
         return ExitCode.DONE
     name, command = split(subject)
     home = source or newest(Path(name).stem, command)

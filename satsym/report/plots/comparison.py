@@ -199,7 +199,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: int) -> None:
 
 def _range(panels: Sequence[Axes], case: Case) -> None:
     """Largest torque and largest limited signal over damping, a line for each command."""
-    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     from satsym.analysis.comparison import ranged
 
@@ -246,7 +246,7 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
         axes.plot([options.damping], [value], color=style.INK, **style.START)
         axes.set_title(say(title, name=display.formula(variable.latex, variable.symbol)))
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: decimal(f"{value:g}")))
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlabel(display.labelled(say("damping"), "1/s"))
         axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit))

@@ -16,6 +16,7 @@ from satsym.report.results.studies import Numbers
 from satsym.report.said import decimal, message, say
 from satsym.report.said import numbers as numbers_said
 from satsym.status import Status
+from satsym.studies.rows import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -109,6 +110,7 @@ def _borders(place: Axes, x: Array, y: Array, branch: Array) -> None:
 def _label(column: str) -> str:
     """A column of the table as an axis has it: its unit as people write it."""
     name, bracket, unit = column.partition(" [")
+    name = say("objective") if name == Column.OBJECTIVE else name
     return display.plain(display.labelled(name, unit.removesuffix("]")) if bracket else name)
 
 

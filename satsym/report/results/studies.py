@@ -20,12 +20,12 @@ from satsym.report.results.files import Content, text, to_json
 from satsym.report.results.objects import head, with_settings
 from satsym.report.results.set_list import ASKED
 from satsym.report.results.study_table import BEFORE, table
+from satsym.report.said import counted, say
 from satsym.status import Status
 from satsym.studies.asked import Study
 from satsym.studies.branches import Branches
 from satsym.studies.parts import Parts
 from satsym.studies.rows import TEXTS, Column, Row
-from satsym.wording import counted
 
 SHOWN = 5
 """Worst rows, and rows without an answer, for which a command is given."""
@@ -211,7 +211,8 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     found = study_table.columns(path, chosen)
     status, branch = found.pop(Column.STATUS), found.pop(Column.BRANCH, None)
     columns = {labels[name]: values for name, values in found.items()}
-    title = f"{said['instance']}: {said['each']} for {counted(said['rows'], 'row')}"
+    rows = counted(said["rows"], "row")
+    title = say("<name>: <each> for <rows>", name=said["instance"], each=said["each"], rows=rows)
     return Numbers(
         title=title,
         varied={labels[name]: columns.pop(labels[name]) for name in varied},
