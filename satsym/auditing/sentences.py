@@ -51,9 +51,15 @@ def joined(parts: Iterable[str], by: str = " ") -> Said:
     return Said(by.join(given), by.join(in_indonesian(part) for part in given))
 
 
+_DIMENSION = re.compile(r"(?<=\[)\w+(?=\])")
+
+
 def in_indonesian(text: str) -> str:
-    """The same in Indonesian, if it is known."""
-    return text.indonesian if isinstance(text, Said) else text
+    """The same in Indonesian, if it is known; of a formula names of dimensions."""
+    if isinstance(text, Said):
+        return text.indonesian
+    known = tables()["dimension_names"]
+    return _DIMENSION.sub(lambda name: known[name[0]]["id"] if name[0] in known else name[0], text)
 
 
 def stated(said: Said, what: str = "") -> Said:
