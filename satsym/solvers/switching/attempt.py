@@ -54,6 +54,7 @@ class Origin(Enum):
     SATURATED = "controls saturated at a bound"
     EFFORT = "the signs of minimum effort"
     DRAWN = "switching times that were drawn"
+    COSTATES = "costates that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
     GIVEN = "exact arcs in a given time"

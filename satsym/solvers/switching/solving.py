@@ -20,7 +20,7 @@ from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.by_smoothing import smoothed
 from satsym.solvers.switching.chattering import at_rest, chattered
-from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
+from satsym.solvers.switching.cold_start import by_costates, by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
@@ -227,7 +227,7 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
 
 
 def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
-    """What motions of least effort lead to, the final time being free, or else less and less smoothing."""
+    """What motions of least effort lead to, the final time being free, else less smoothing, or costates drawn."""
     if instance.tf is None:
         near = chain(minimum_effort.quick(instance, limits), minimum_effort.shortening(instance, limits))
         for start in unbroken(_signs(instance, one) for one in near):
@@ -238,6 +238,8 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
                 return replace(best, origin=Origin.EFFORT)
     found = smoothed(instance, limits)
     stuck = isinstance(found, homotopy.Stopped) and found.status is Status.NOT_CONVERGED and instance.tf is None
+    if stuck and (exact := by_costates.soonest(instance, limits)):
+        return replace(exact, origin=Origin.COSTATES)
     return (_in_given_durations(instance, limits) if stuck else None) or found
 
 

@@ -1,0 +1,186 @@
+"""Extremals from costates that are drawn: motions that obey the minimum principle and come near to the end in time.
+
+Where weak controls move something by many swings, no motion of least effort and no smoothed one shows when to switch,
+and switching times that are drawn seldom arrive. Costates push at the right times by themselves; many are followed at
+once, and further ones are drawn about those that come nearest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.attempt import Exact, attempt, given
+from satsym.solvers.switching.cold_start.minimum_effort import first_duration
+from satsym.solvers.switching.cold_start.recognition import Sample, guess
+from satsym.solvers.switching.cold_start.scouts import Target
+from satsym.solvers.switching.throttled import signs
+
+SEED = 11
+"""Of what is drawn."""
+
+DRAWN, CHILDREN, ROUNDS = 1024, 1024, (0.1, 0.02, 4e-3)
+"""Costates that are drawn at first, how many about the nearest later, and relative changes by which these differ."""
+
+LONGEST, STEPS = 60.0, 1200
+"""Times the motion's own scale for which they are followed, and Runge-Kutta steps."""
+
+PARENTS, LOOKED, LAYERS, LONGER = 6, 100, 24, 1.25
+"""Nearest ones of each layer of durations, of how many, layers, and the ratio of durations of one to the one before."""
+
+CLOSE, TRIED = 0.1, 12
+"""Largest miss, relative to the sizes of states, of what is made exact, and how many are at most: the soonest first."""
+
+ROUGHLY, SAME = 50, 0.02
+"""Parts of the longest duration within which the closest is first; difference of directions, and relative one of
+arrivals, of extremals that are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Costates at the start, how near to the end each comes in each layer of durations, and when."""
+
+    costates: Array
+    """Shape (n, S)."""
+    miss: Array
+    arrival: NDArray[np.int64]
+    """Shapes (LAYERS, S): the least miss, and the step after which it is."""
+
+    def joined(self, other: _Drawn) -> _Drawn:
+        """With others."""
+        pairs = ((getattr(self, name), getattr(other, name)) for name in ("costates", "miss", "arrival"))
+        return _Drawn(*(np.concatenate(pair, axis=1) for pair in pairs))
+
+    def nearest(self, sizes: Array, apart: float) -> Array:
+        """Costates of the nearest of each layer whose directions are that far from each other's, shape (n, P)."""
+        scaled = self.costates * sizes[:, None]
+        scaled = scaled / np.linalg.norm(scaled, axis=0)
+        kept = []
+        for layer in self.miss:
+            own: list[int] = []
+            for k in np.argsort(layer)[:LOOKED].tolist():
+                if all(np.linalg.norm(scaled[:, k] - scaled[:, one]) > apart for one in own):
+                    own.append(k)
+                if len(own) == PARENTS:
+                    break
+            kept += own
+        return np.asarray(self.costates[:, np.unique(np.array(kept, dtype=int))])
+
+
+def soonest(instance: Instance, limits: Limits) -> Exact | None:
+    """The cheapest extremal of a free duration that is found so; ``None`` where none is.
+
+    Only where no magnitude of a control costs anything, and something else does from the start: costates are then known
+    but for their direction.
+    """
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    if instance.tf is not None or instance.model.spec.multipliers or any(weights):
+        return None
+    rng, h = np.random.default_rng(SEED), LONGEST * first_duration(instance) / STEPS
+    sizes = given(instance)
+    sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
+    target = Target(instance, sizes, np.full(1, np.nan))
+    found = _followed(target, rng.standard_normal((len(sizes), DRAWN)) / sizes[:, None], h, limits)
+    for change in ROUNDS:
+        parents = found.nearest(sizes, change / 2.0)
+        if limits.expired or not parents.size:
+            return None
+        own = parents[:, rng.integers(parents.shape[1], size=CHILDREN)]
+        length = np.linalg.norm(own * sizes[:, None], axis=0)
+        found = found.joined(
+            _followed(target, own + change * length * rng.standard_normal(own.shape) / sizes[:, None], h, limits)
+        )
+    return _exact(target, found, h, limits)
+
+
+def _exact(target: Target, found: _Drawn, h: float, limits: Limits) -> Exact | None:
+    """The cheapest of what the closest lead to, those that arrive soonest first, roughly."""
+    instance, best, count = target.instance, None, 0
+    layers, columns = np.nonzero(found.miss <= CLOSE)
+    units = found.costates * target.sizes[:, None]
+    units = units / np.linalg.norm(units, axis=0)
+    seen: list[tuple[Array, float]] = []
+    keys = found.miss[layers, columns], found.arrival[layers, columns] // max(1, STEPS // ROUGHLY)
+    for k in np.lexsort(keys).tolist():
+        column, steps = int(columns[k]), int(found.arrival[layers[k], columns[k]])
+        if limits.expired or count == TRIED:
+            break
+        known = any(np.linalg.norm(units[:, column] - u) < SAME and abs(steps - n) < SAME * n for u, n in seen)
+        if known or (best is not None and instance.t0 + steps * h > best.refined.at.end):
+            continue
+        seen.append((units[:, column], steps))
+        count += 1
+        first = guess(instance, _sample(instance, found.costates[:, column], steps, h))
+        exact = attempt(instance, first, limits)
+        if exact is not None and (best is None or exact.trajectory.cost(instance) < best.trajectory.cost(instance)):
+            best = exact
+    return best
+
+
+def _followed(target: Target, directions: Array, h: float, limits: Limits) -> _Drawn:
+    """Where costates of these directions lead, in layers of durations; those with which H cannot vanish are no part."""
+    instance = target.instance
+    costates = _vanishing(instance, directions)
+    n, many = costates.shape
+    z = np.concatenate([np.repeat(np.array(instance.initial)[:, None], many, axis=1), costates])
+    miss, arrival = np.full((LAYERS, many), np.inf), np.zeros((LAYERS, many), dtype=np.int64)
+    for step in range(1, STEPS + 1):
+        z = _stepped(instance, instance.t0 + (step - 1) * h, z, h)
+        layer = max(0, LAYERS - 1 - int(np.log(STEPS / step) / np.log(LONGER)))
+        found = np.abs(target.gap(np.full(many, instance.t0 + step * h), z[:n])).max(axis=0)
+        nearer = found < miss[layer]
+        miss[layer, nearer], arrival[layer, nearer] = found[nearer], step
+        if step % 50 == 0:
+            limits.spend(50 * many)
+    return _Drawn(costates, miss, arrival)
+
+
+def _vanishing(instance: Instance, directions: Array) -> Array:
+    """Costates of these directions with which H vanishes at the start, shape (n, S)."""
+    model, p, n = instance.model, instance.parameters, len(directions)
+    x, t = np.repeat(np.array(instance.initial)[:, None], directions.shape[1], axis=1), np.full(1, instance.t0)
+    t = np.full(directions.shape[1], instance.t0)
+    rates = _rates(instance, t, np.concatenate([x, directions]))
+    u = _control(instance, t, x, directions)
+    factor = -np.broadcast_to(model.running_cost_batch(t, x, u, p), t.shape) / (directions * rates[:n]).sum(axis=0)
+    fit = np.isfinite(factor) & (factor > 0.0)
+    return np.asarray(directions[:, fit] * factor[fit])
+
+
+def _control(instance: Instance, t: Array, x: Array, lam: Array) -> Array:
+    """The one of least H, at bounds."""
+    low, high = instance.control_set.box
+    return np.asarray(np.where(signs(instance, t, x, lam)[0] > 0.0, low, high))
+
+
+def _rates(instance: Instance, t: Array, z: Array) -> Array:
+    model, p, n = instance.model, instance.parameters, len(z) // 2
+    x, lam = z[:n], z[n:]
+    u = _control(instance, t, x, lam)
+    pair = model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)
+    return np.concatenate([np.broadcast_to(one, x.shape) for one in pair])
+
+
+def _stepped(instance: Instance, time: float, z: Array, h: float) -> Array:
+    """After one step of the classical Runge-Kutta method."""
+    t = np.full(z.shape[1], time)
+    f1 = _rates(instance, t, z)
+    f2 = _rates(instance, t + h / 2.0, z + h / 2.0 * f1)
+    f3 = _rates(instance, t + h / 2.0, z + h / 2.0 * f2)
+    return np.asarray(z + h / 6.0 * (f1 + 2.0 * (f2 + f3) + _rates(instance, t + h, z + h * f3)))
+
+
+def _sample(instance: Instance, costates: Array, steps: int, h: float) -> Sample:
+    """The extremal up to where it arrives."""
+    n, column = len(costates), np.append(instance.initial, costates)[:, None]
+    columns = [column]
+    for step in range(steps):
+        columns.append(_stepped(instance, instance.t0 + step * h, columns[-1], h))
+    times, z = instance.t0 + h * np.arange(steps + 1), np.concatenate(columns, axis=1)
+    sigma, weight = signs(instance, times, z[:n], z[n:])
+    return Sample(times, z, _control(instance, times, z[:n], z[n:]), sigma, weight)
