@@ -214,8 +214,9 @@ class _Field:
                 continue
             tree = cKDTree((self.backwards.z[node][:n, second] / self.unit).T)
             gaps, places = tree.query((self.onwards.z[node][:n, first] / self.unit).T, k=np.arange(1, near + 1))
-            one, other = np.repeat(first, near), second[places.ravel()]
-            found.append(np.column_stack([np.full(len(one), node), one, other, gaps.ravel(), here[one] + there[other]]))
+            met = np.isfinite(gaps)  # else so far apart that their distance overflows
+            one, other = np.broadcast_to(first[:, None], met.shape)[met], second[places[met]]
+            found.append(np.column_stack([np.full(len(one), node), one, other, gaps[met], here[one] + there[other]]))
         return np.concatenate(found)
 
     @property

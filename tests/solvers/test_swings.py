@@ -128,3 +128,11 @@ def test_motions_that_meet_obey_their_controls_and_arrive_once_gaps_are_closed(t
         x, _, _ = case.model.forward(np.linspace(0.0, 40.0, 201), case.initial, control, middle, ())
         arrived += bool(np.abs(x[:, -1] - [np.pi, 0.0]).max() < 1e-4)
     assert arrived >= 2
+
+
+def test_motions_that_run_away_have_no_gaps(tmp_path: Path) -> None:
+    """Backwards a spring that softens is left behind faster than exponentially: distances overflow."""
+    steep = replace(_swing("steep", a**3), control_set="free")
+    text = "[initial]\na = 3\nb = 0\n[final]\na = -3\nb = 0\n[time]\ntf = 14\n"
+    found = motions(two_point(build(tmp_path, steep, text), 14.0), np.random.default_rng(0))
+    assert all(np.isfinite(one.gap) for one in found)
