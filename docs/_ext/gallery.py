@@ -30,14 +30,14 @@ OTHERS = frozenset(
 
 def shown(name: str, folder: Path) -> dict[str, str]:
     """What the page says of an instance; its picture is written into the folder."""
-    from satsym import instance, sources
+    from satsym import instance, source_files
     from satsym.report.display import number, unit_text
     from satsym.solution import Solution
     from satsym.solvers import simulate, solve
 
     case = instance.load(name)
-    code = sources.digest(["satsym.solvers", "satsym.report.plots", "satsym.report.page"])
-    key, said, picture = f"{code} {sources.digest_of(case.path)}", folder / f"{name}.json", folder / f"{name}.svg"
+    code = source_files.digest(["satsym.solvers", "satsym.report.plots", "satsym.report.page"])
+    key, said, picture = f"{code} {source_files.digest_of(case.path)}", folder / f"{name}.json", folder / f"{name}.svg"
     if said.is_file() and picture.is_file() and (known := json.loads(said.read_text("utf-8")))["key"] == key:
         return known
     found = solve(case) if case.model.spec.has_cost else simulate(case)

@@ -22,7 +22,7 @@ from typing import Any
 
 import msgspec
 
-from satsym import kept, sources
+from satsym import source_files, user_cache
 from satsym.auditing.judged import Judged
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
@@ -49,7 +49,7 @@ def audit(
     if before is not None:
         return before
     found = judge(ledger, items, announce)
-    kept.write(_place(ledger), msgspec.json.encode(found))
+    user_cache.write(_place(ledger), msgspec.json.encode(found))
     return found
 
 
@@ -110,12 +110,12 @@ def _judged(ledger: Ledger) -> list[Judged]:
 
 
 def _place(ledger: Ledger) -> Path:
-    return kept.folder("audit") / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
+    return user_cache.folder("audit") / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
 
 
 def _read(path: Path) -> list[Judged] | None:
     try:
-        return msgspec.json.decode(kept.read(path), type=list[Judged])
+        return msgspec.json.decode(user_cache.read(path), type=list[Judged])
     except (ValueError, msgspec.MsgspecError):
         return None
 
@@ -137,7 +137,7 @@ def program(modules: tuple[str, ...] = _JUDGING) -> str:
             digest.update(f"{library} {version(library)}".encode())
         except PackageNotFoundError:
             continue
-    digest.update(sources.digest(modules).encode())
+    digest.update(source_files.digest(modules).encode())
     for package, pattern in _READ:
         for path in sorted(Path(str(files(package))).glob(pattern)):
             digest.update(path.name.encode())

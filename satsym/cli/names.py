@@ -38,20 +38,20 @@ def instances() -> Iterable[str]:
 
 def models() -> Iterable[str]:
     """Of shipped models."""
-    from satsym import sources
+    from satsym import source_files
 
-    return sources.models()
+    return source_files.models()
 
 
 def derivations() -> Iterable[str]:
     """Of derivation files that come with satsym."""
-    from satsym import sources
+    from satsym import source_files
 
-    return (path.stem for path in sources.shipped())
+    return (path.stem for path in source_files.shipped())
 
 
 def documents() -> Iterable[str]:
     """Of the documents that are audited."""
-    from satsym import sources
+    from satsym import source_files
 
-    return (path.name for path in sources.documents())
+    return (path.name for path in source_files.documents())

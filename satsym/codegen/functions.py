@@ -16,16 +16,10 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import (
-    inequalities,
-    interior,
-    mixed_constraints,
-    path_constraints,
-    path_notation,
-    product,
-    set_laws,
-)
+from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
+from satsym.symbolic.principle.path import inequalities, interior, mixed_constraints, path_constraints
+from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())

@@ -21,7 +21,8 @@ from satsym.spec import PRODUCT, Condition, InteriorPoint, PathConstraint, Probl
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
-from satsym.symbolic.principle import inequalities, product, set_laws
+from satsym.symbolic.principle import product, set_laws
+from satsym.symbolic.principle.path import inequalities
 from satsym.symbolic.roots import Argmin, Root, Vertex
 from satsym.symbolic.switching.curve import states_of
 from satsym.symbolic.switching.singular import chattering

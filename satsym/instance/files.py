@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from satsym import sources
+from satsym import source_files
 from satsym.status import BadInput
 from satsym.wording import printable, shown, some, suggestion
 
@@ -56,7 +56,9 @@ def _instead(name: str) -> str:
     """What to write for a name that is none: a file here, instances of a model that is called so, or what is near."""
     if _exists(Path(f"{name}.toml")):
         return f'did you mean "{printable(name)}.toml"?'
-    if sources.is_model(name) and (own := [one for one in shipped() if read(SHIPPED / f"{one}.toml")["model"] == name]):
+    if source_files.is_model(name) and (
+        own := [one for one in shipped() if read(SHIPPED / f"{one}.toml")["model"] == name]
+    ):
         return f"instances of this model: {some(own)}"
     return suggestion(name, shipped())
 

@@ -93,9 +93,9 @@ PATH_CONSTRAINTS = {
     "path_multiplier": _signature("t x u lam p bounds", "h"),
 }
 """What a problem has besides that must keep to inequalities along the way, see
-:mod:`satsym.symbolic.principle.path_constraints` and :mod:`satsym.symbolic.principle.mixed_constraints`; second rates
-of constraints of order one are 0, and of those of order zero, which hold a control, all are. The controls of the last
-two are those of the law; see :data:`BOUNDARY_CONTROLS` for where they say nothing of them."""
+:mod:`satsym.symbolic.principle.path`; second rates of constraints of order one are 0, and of those of order zero, which
+hold a control, all are. The controls of the last two are those of the law; see :data:`BOUNDARY_CONTROLS` for where they
+say nothing of them."""
 
 BOUNDARY_CONTROLS = {"boundary_control": _signature("t x lam p bounds", "hm")}
 """Where H is known to be quadratic in the controls. Elsewhere controls are where H_u vanishes, or that of H with a
@@ -106,7 +106,7 @@ INTERIOR = {
     "interior_gradient": _signature("t x p", "jn"),
     "interior_drift": _signature("t x p", "j"),
 }
-"""What a problem has besides that must pass points on the way, see :mod:`satsym.symbolic.principle.interior`."""
+"""What a problem has besides that must pass points on the way, see :mod:`satsym.symbolic.principle.path.interior`."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
 
-from satsym.sources import digest_of
+from satsym.source_files import digest_of
 
 _LINE = re.compile(r"^Digest: ([0-9a-f]{64})\n", re.MULTILINE)
 _SOURCE = re.compile(r"^Source: ([^\n\0]{1,400}\.py) ([0-9a-f]{32})\n", re.MULTILINE)

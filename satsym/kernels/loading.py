@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym import sources
+from satsym import source_files
 from satsym.kernels.core import Backend, Function, Kernels
 from satsym.kernels.digest import changed, intact
 from satsym.spec import NAMES, ProblemSpec, is_name
@@ -38,7 +38,7 @@ _EDITED = "edited by hand or damaged since it was written; run `satsym derive` a
 
 def shipped() -> list[str]:
     """Names of the shipped models, without importing them."""
-    return sources.models()
+    return source_files.models()
 
 
 def load(model: str, folder: Path | None = None) -> Kernels:
@@ -59,7 +59,7 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     """
     folder = folder or Path()
     if "/" not in model:
-        if sources.is_model(model):
+        if source_files.is_model(model):
             found = _load_shipped(model)
             _refuse_older(model, *_lying(model))
             return found
@@ -110,7 +110,7 @@ def _unknown(model: str) -> str:
 
 def _lying(name: str) -> tuple[str, Path]:
     """The text of a shipped module, empty where nothing tells it, and the folder in which it lies."""
-    module = importlib.import_module(f"{sources.GENERATED}.{name}")
+    module = importlib.import_module(f"{source_files.GENERATED}.{name}")
     loader = module.__loader__
     text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
     return text or "", Path(module.__file__ or "").parent
@@ -126,14 +126,14 @@ def _refuse_older(model: str, text: str, folder: Path) -> None:
     if (found := changed(text, folder)) is None:
         return
     edited, stating, out = (printable(os.path.relpath(path.resolve()), 150) for path in (*found, folder))
-    ours = sources.is_model(model)
+    ours = source_files.is_model(model)
     command = "satsym derive" if ours else shlex.join(["satsym", "derive", stating, "--out", out])
     raise BadInput(f"{shown(model)}: {edited} has changed since this was derived from it; run `{command}`")
 
 
 @cache
 def _load_shipped(name: str) -> Kernels:
-    module = importlib.import_module(f"{sources.GENERATED}.{name}")
+    module = importlib.import_module(f"{source_files.GENERATED}.{name}")
     text, _ = _lying(name)
     if text and not intact(text):
         raise BadInput(f"{shown(name)}: {_EDITED}")

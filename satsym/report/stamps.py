@@ -14,7 +14,7 @@ from pathlib import Path
 
 import msgspec
 
-from satsym import kept, sources
+from satsym import source_files, user_cache
 
 _ENGINE = ("satsym.report.artefacts",)
 _LIBRARIES = ("mpmath", "numpy", "sympy")
@@ -43,13 +43,13 @@ class Stamp(msgspec.Struct, frozen=True):
 def engine() -> str:
     """A digest of all code that files are written by."""
     libraries = " ".join(f"{name} {version(name)}" for name in _LIBRARIES)
-    return _digest(f"{sys.version} {libraries} {sources.digest(_ENGINE)}")
+    return _digest(f"{sys.version} {libraries} {source_files.digest(_ENGINE)}")
 
 
 def read(path: Path, known: str) -> Stamp | None:
     """The stamp of a derivation file, if it is one of that engine."""
     try:
-        found = msgspec.json.decode(kept.read(_place(path)), type=Stamp)
+        found = msgspec.json.decode(user_cache.read(_place(path)), type=Stamp)
     except (msgspec.MsgspecError, UnicodeDecodeError):
         return None
     return found if found.engine == known else None
@@ -62,7 +62,7 @@ def problems(stamp: Stamp | None) -> list[str]:
 
 def holds(stamp: Stamp, folder: Path) -> bool:
     """Whether all that a derivation file consisted of is what it was, and so is all in the folder that came of it."""
-    read_alike = all(sources.digest_of(Path(path)) == digest for path, digest in stamp.reached.items())
+    read_alike = all(source_files.digest_of(Path(path)) == digest for path, digest in stamp.reached.items())
     return read_alike and all(_in_place(made, folder) for made in stamp.problems.values())
 
 
@@ -83,11 +83,11 @@ def keep(path: Path, before: Stamp | None, known: str, identities: Mapping[str, 
         files = {file: _digest(text) for file, text in texts.items() if Path(file).stem == name}
         problems[name] = Made(identity, files) if files or before is None else before.problems[name]
     reached = {str(each): digest for each, digest in loader.reached(path).items()}
-    kept.write(_place(path), msgspec.json.encode(Stamp(known, reached, problems)))
+    user_cache.write(_place(path), msgspec.json.encode(Stamp(known, reached, problems)))
 
 
 def _in_place(made: Made, folder: Path) -> bool:
-    return all(sources.digest_of(folder / name) == digest for name, digest in made.files.items())
+    return all(source_files.digest_of(folder / name) == digest for name, digest in made.files.items())
 
 
 def _digest(text: str) -> str:
@@ -95,4 +95,4 @@ def _digest(text: str) -> str:
 
 
 def _place(path: Path) -> Path:
-    return kept.folder("derive") / f"{path.stem[:40]}-{_digest(str(path.resolve()))}.json"
+    return user_cache.folder("derive") / f"{path.stem[:40]}-{_digest(str(path.resolve()))}.json"

@@ -12,10 +12,10 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.solution import Event, Iteration, Progress, Solution
 from satsym.solvers import revolutions
+from satsym.solvers.collocation.accuracy.jumping import found
 from satsym.solvers.collocation.continuation import by_bound
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
-from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.control.slopes import continued
 from satsym.solvers.failures import FAILURES

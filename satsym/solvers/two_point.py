@@ -18,13 +18,13 @@ from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.soft_bounds import TRIED, within_bounds, within_found
 from satsym.solvers.cold_start.swept import from_control, loose, swept
+from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import settled, tighten
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.drawn_motions import motions

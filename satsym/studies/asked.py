@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym import sources
+from satsym import source_files
 from satsym.arrays import Array
 from satsym.choices import Checked, Command, TableFormat
 from satsym.instance import Instance
@@ -106,7 +106,7 @@ class Study:
             "chunk": str(self.size),
             **self.design.stated(),
             "model": model_digest(self.instance.model),
-            "code": sources.digest(CODE),
+            "code": source_files.digest(CODE),
             "backend": "numba" if self.compiled else "python",
             "satsym": __version__,
             "python": platform.python_version(),
@@ -209,7 +209,7 @@ def model_digest(kernels: Kernels) -> str:
     if kernels.text is not None:
         return hashlib.sha256(kernels.text.encode()).hexdigest()[:32]
     module = next(iter(kernels.functions.values())).__code__.co_filename
-    return sources.digest_of(Path(module))
+    return source_files.digest_of(Path(module))
 
 
 def _parts(instance: Instance) -> dict[str, str]:

@@ -28,9 +28,10 @@ from satsym.symbolic.dimension_algebra import (
 )
 from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
-from satsym.symbolic.principle import interior, path_notation
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.parts import limits_of
+from satsym.symbolic.principle.path import interior
+from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import notation as switching_dimensions
 
 AGREEMENT = "dimensions agree"

@@ -19,17 +19,8 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import (
-    effort,
-    interior,
-    minimised,
-    mixed_constraints,
-    path_constraints,
-    pontryagin,
-    product,
-    stationary_controls,
-    transversality,
-)
+from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
+from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls
 from satsym.symbolic.switching import boundary, singular
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching

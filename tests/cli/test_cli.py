@@ -477,7 +477,7 @@ def test_checkout_is_derived_whole_and_leftovers_go(
         (tmp_path / folder).mkdir()
     moved = derivation.rename(tmp_path / "derivations" / derivation.name)
     monkeypatch.setattr("satsym.cli.commands.derive.checkout", lambda: tmp_path)
-    monkeypatch.setattr("satsym.sources.shipped", lambda: [moved])
+    monkeypatch.setattr("satsym.source_files.shipped", lambda: [moved])
     generated = tmp_path / "generated"
     (generated / "__init__.py").touch()
     for name in ("old.py", "old.tex"):

@@ -128,7 +128,7 @@ def test_an_engine_that_changed_derives_everything(
 ) -> None:
     monkeypatch.setattr(stamps, "version", lambda name: "0")
     assert derived() == ["strolling", "hiking"]
-    monkeypatch.setattr(stamps.sources, "digest", lambda modules: "edited")
+    monkeypatch.setattr(stamps.source_files, "digest", lambda modules: "edited")
     assert derived() == ["strolling", "hiking"]
     assert derived() == []
 

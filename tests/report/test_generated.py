@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from satsym import sources
+from satsym import source_files
 from satsym.report import artefacts
 from satsym.symbolic import loader
 from tests.support import derived as shared
 
-STATED = {problem.name: (path, problem) for path in sources.shipped() for problem in loader.load(path)}
+STATED = {problem.name: (path, problem) for path in source_files.shipped() for problem in loader.load(path)}
 
 
 @pytest.mark.parametrize("name", shared.each())
@@ -24,7 +24,7 @@ def test_the_generated_files_of_a_model_are_what_its_derivation_leads_to(name: s
 @pytest.mark.parametrize("name", STATED)
 def test_a_generated_file_names_the_content_of_the_file_it_is_derived_from(name: str, repository: Path) -> None:
     path, _ = STATED[name]
-    assert f"{path.name} {sources.digest_of(path)}\n" in (repository / "generated" / f"{name}.py").read_text()
+    assert f"{path.name} {source_files.digest_of(path)}\n" in (repository / "generated" / f"{name}.py").read_text()
 
 
 def test_no_generated_file_is_left_over(repository: Path) -> None:

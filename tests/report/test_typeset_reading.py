@@ -13,7 +13,7 @@ from satsym.report.texts import languages
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.products import united
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
-from satsym.symbolic.principle import path_notation
+from satsym.symbolic.principle.path import notation as path_notation
 from tests.support.derived import each, shipped
 
 

@@ -11,9 +11,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import satsym
-from satsym.solvers.constrained.slopes import ByDuration, Slopes
-from satsym.solvers.constrained.stagewise import Factors
-from satsym.solvers.constrained.transcription import Step
+from satsym.solvers.constrained.regularised.slopes import ByDuration, Slopes
+from satsym.solvers.constrained.regularised.stagewise import Factors
+from satsym.solvers.constrained.regularised.transcription import Step
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES, CONTROLS = (Variable("x", "x"),), (Variable("u", "u"),)

@@ -17,8 +17,8 @@ from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
-from satsym.solvers.constrained.feasibility import impossible, refuse
-from satsym.solvers.constrained.transcription import Program
+from satsym.solvers.constrained.regularised.feasibility import impossible, refuse
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t

@@ -14,10 +14,10 @@ from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.path_of_ends import along_ends, ending
+from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.arclength import extremals
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point as to_scaled
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.iteration import Limits, computed

@@ -18,7 +18,7 @@ import pytest
 import sympy as sp
 from _pytest.mark import ParameterSet
 
-from satsym import kept, sources
+from satsym import source_files, user_cache
 from satsym.report import stamps
 from satsym.symbolic import Derivation, Model, Problem, derive, loader
 from satsym.symbolic.identity import identity
@@ -52,7 +52,7 @@ def names() -> tuple[str, ...]:
 @cache
 def drawn() -> tuple[str, ...]:
     """Those that runs of a sample derive: the same in all processes and on all machines, for this code."""
-    engine = sources.digest(["satsym.report.artefacts"])
+    engine = source_files.digest(["satsym.report.artefacts"])
     draw = sorted(names(), key=lambda name: hashlib.blake2b(f"{engine} {name}".encode()).digest())
     return tuple(name for name in names() if name in draw[: len(draw) // SHARE])
 
@@ -93,7 +93,7 @@ def _folder() -> Path:
 
 
 def _kept(key: str) -> Derivation | None:
-    content = kept.read(_folder() / key)
+    content = user_cache.read(_folder() / key)
     return pickle.loads(content) if content else None
 
 
@@ -101,7 +101,7 @@ def _keep(key: str, found: Derivation) -> Derivation:
     stream = io.BytesIO()
     _Exact(stream).dump(found)
     if pickle.loads(stream.getvalue()) == found:
-        kept.write(_folder() / key, stream.getvalue())
+        user_cache.write(_folder() / key, stream.getvalue())
     return found
 
 

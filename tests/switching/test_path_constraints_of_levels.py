@@ -19,7 +19,7 @@ from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import t
-from satsym.symbolic.principle import path_constraints as steps
+from satsym.symbolic.principle.path import path_constraints as steps
 from tests.support.derived import derived
 
 STATES, CONTROLS = tuple(Variable(name, name) for name in ("x", "v", "a")), (Variable("u", "u"),)

@@ -12,8 +12,8 @@ from satsym.report.latex.document import render
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError, Step
 from satsym.symbolic.model import Convention, t
-from satsym.symbolic.principle import inequalities
-from satsym.symbolic.principle import path_constraints as steps
+from satsym.symbolic.principle.path import inequalities
+from satsym.symbolic.principle.path import path_constraints as steps
 from tests.support.derived import derived, shipped, stated
 
 STATES = tuple(Variable(name, name) for name in ("a", "b", "d", "e"))

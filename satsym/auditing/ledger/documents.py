@@ -6,20 +6,20 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from satsym import sources
+from satsym import source_files
 from satsym.status import BadInput
 from satsym.wording import printable, refuse_unknown, suggestion
 
 if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
 
-HEAD, CHAPTERS = sources.LEDGER, "ledger_*.toml"
+HEAD, CHAPTERS = source_files.LEDGER, "ledger_*.toml"
 """The files of a folder: a head, with rows or without, and chapters of rows alone, by name."""
 
 
 def shipped() -> list[Path]:
     """The ledgers that come with satsym, by name."""
-    return sources.documents()
+    return source_files.documents()
 
 
 def files_of(path: Path) -> list[Path]:

@@ -52,11 +52,11 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
     problem. Every step is checked by machine, and so is every generated function, before anything is written. What
     neither changed itself nor was derived by code that changed is left alone; --check derives all of it.
     """
-    from satsym import sources
+    from satsym import source_files
     from satsym.report import artefacts
     from satsym.report.results.files import check_writable
 
-    paths = [sources.find(file) for file in files] if files else sources.shipped()
+    paths = [source_files.find(file) for file in files] if files else source_files.shipped()
     folder = out or _checked_in(paths)
     whole = not files and out is None
     if not check:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym import activity, kept
+from satsym import activity, user_cache
 from satsym.kernels.core import Kernels
 from satsym.status import BadInput
 
@@ -68,12 +68,12 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     import numba
 
     digest = hashlib.sha256(text.encode()).hexdigest()[:24]
-    path = kept.folder("kernels") / f"{name}-{digest}" / "columns.py"
-    if kept.read(path) != text.encode():
-        kept.write(path, text.encode())
-        kept.prune(kept.folder("kernels"), MOST_KEPT, path.parent)
-    kept.used(path.parent)
-    keeps = kept.read(path) == text.encode() and _writable(path.parent)
+    path = user_cache.folder("kernels") / f"{name}-{digest}" / "columns.py"
+    if user_cache.read(path) != text.encode():
+        user_cache.write(path, text.encode())
+        user_cache.prune(user_cache.folder("kernels"), MOST_KEPT, path.parent)
+    user_cache.used(path.parent)
+    keeps = user_cache.read(path) == text.encode() and _writable(path.parent)
     if not any(path.parent.glob("__pycache__/*.nbi")):  # numba keeps machine code there
         activity.tell(f"compiling {name}, which happens once ...")
     module = ModuleType(f"satsym_kept_{name}_{digest}")
@@ -96,7 +96,7 @@ ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many")
 @contextmanager
 def alone(name: str) -> Iterator[None]:
     """While no other process makes machine code for a model: who had to wait finds it made."""
-    path = kept.folder("kernels") / f"{name}.lock"
+    path = user_cache.folder("kernels") / f"{name}.lock"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         stream = path.open("a")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from satsym import kept
+from satsym import user_cache
 from satsym.auditing import cache
 from satsym.auditing.ledger.contents import Row, calls_in
 from satsym.formula.tree import Text
@@ -34,14 +34,14 @@ def addresses(row: Row) -> list[str]:
 
 def typeset(wanted: Iterable[str], announce: Callable[[str], None] = lambda _: None) -> dict[str, Derived]:
     """What addresses name, in their order."""
-    path = kept.folder("audit") / f"derived-{cache.program((__name__,))}.json"
+    path = user_cache.folder("audit") / f"derived-{cache.program((__name__,))}.json"
     try:
-        known = msgspec.json.decode(kept.read(path), type=dict[str, Derived])
+        known = msgspec.json.decode(user_cache.read(path), type=dict[str, Derived])
     except (ValueError, msgspec.MsgspecError):
         known = {}
     found = {address: known.get(address) or _typeset(address, announce) for address in sorted(set(wanted))}
     if found.keys() - known.keys():
-        kept.write(path, msgspec.json.encode(dict(sorted({**known, **found}.items()))))
+        user_cache.write(path, msgspec.json.encode(dict(sorted({**known, **found}.items()))))
     return found
 
 

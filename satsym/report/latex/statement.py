@@ -17,10 +17,10 @@ from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line, variables_of, with_origins
-from satsym.symbolic.principle.interior import condition, named
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
-from satsym.symbolic.principle.path_notation import rate
+from satsym.symbolic.principle.path.interior import condition, named
+from satsym.symbolic.principle.path.notation import rate
 
 
 @dataclass(frozen=True)

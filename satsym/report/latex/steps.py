@@ -13,7 +13,7 @@ from satsym.symbolic import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.latex.typeset import Typesetter
-from satsym.symbolic.principle.path_notation import of_states, rate
+from satsym.symbolic.principle.path.notation import of_states, rate
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from satsym.control_set import stated_constraints
 from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
-from satsym.sources import digest_of
+from satsym.source_files import digest_of
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
 from satsym.version import __version__

@@ -192,9 +192,9 @@ def _of_models(asked: str) -> Iterator[tuple[str, str]]:
     """Titles and meanings of shipped derivation files, as they have them in that language; no file is executed."""
     import ast
 
-    from satsym import sources
+    from satsym import source_files
 
-    for file in sources.shipped():
+    for file in source_files.shipped():
         for statement in ast.parse(file.read_text(encoding="utf-8")).body:
             match statement:
                 case ast.Assign(targets=[ast.Name(id="TRANSLATIONS")], value=table):

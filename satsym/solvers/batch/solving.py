@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
-from satsym.solvers.collocation.refinement import AIM, FINEST
+from satsym.solvers.collocation.accuracy.refinement import AIM, FINEST
 
 APART = 8
 """Every so many problems one starts from the straight line, the others from the nearest that is solved."""

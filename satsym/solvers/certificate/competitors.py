@@ -338,8 +338,8 @@ def _bounded(problem: TwoPoint, found: Attempt, cost: float, limits: Limits) -> 
 
 def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
     """A minimum with its cost, as rough as its mesh where it clearly exceeds another cost."""
+    from satsym.solvers.collocation.accuracy.refinement import refine
     from satsym.solvers.collocation.continuation import kept
-    from satsym.solvers.collocation.refinement import refine
     from satsym.solvers.collocation.system import System
 
     rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost

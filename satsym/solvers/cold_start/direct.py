@@ -20,9 +20,9 @@ from satsym.grid import interleave
 from satsym.instance import Instance
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import on_mesh
+from satsym.solvers.collocation.accuracy.jumping import found, located
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.jumping import found, located
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.collocation.scaling import final_argument

@@ -13,9 +13,9 @@ from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.constrained.active import control
 from satsym.solvers.constrained.arcs import Arcs, gradient
 from satsym.solvers.constrained.equations import System
-from satsym.solvers.constrained.interior_point import Path
+from satsym.solvers.constrained.regularised.interior_point import Path
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.structure import Structure
-from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solvers.constrained.arcs import values
-from satsym.solvers.constrained.interior_point import Path
-from satsym.solvers.constrained.slopes import constraint_slopes, rooms
+from satsym.solvers.constrained.regularised.interior_point import Path
+from satsym.solvers.constrained.regularised.slopes import constraint_slopes, rooms
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
-from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.switching.trajectory import runs
 
 CLOSE = 1e-3

@@ -21,16 +21,16 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.convexity import convex
-from satsym.solvers.constrained.feasibility import impossible, refuse
-from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.newton import cost, from_arcs, from_path, solved
 from satsym.solvers.constrained.recognition import recognised
+from satsym.solvers.constrained.regularised.feasibility import impossible, refuse
+from satsym.solvers.constrained.regularised.interior_point import Path
+from satsym.solvers.constrained.regularised.search import searched
+from satsym.solvers.constrained.regularised.starts import drawn, first, straight
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, wrong
-from satsym.solvers.constrained.search import searched
-from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.structure import Event as Happening
-from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits, computed, deadline_of, history_of, watched

@@ -12,9 +12,9 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.constrained.arcs import Arcs, conditions, gradient, missed
 from satsym.solvers.constrained.newton import begun
-from satsym.solvers.constrained.starts import AMPLITUDE, straight
+from satsym.solvers.constrained.regularised.starts import AMPLITUDE, straight
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.structure import Passage, Structure
-from satsym.solvers.constrained.transcription import Program
 
 SAMPLES = 61
 """Of a path."""

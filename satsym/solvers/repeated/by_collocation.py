@@ -12,13 +12,13 @@ from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.accuracy.refinement import NEAR
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import NEAR
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits

@@ -18,11 +18,11 @@ import numpy as np
 from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import CostInterval, Solution
+from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.continuation import settled
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.control.corners import enclosed
 from satsym.solvers.control.regularised import smoothed_law
 from satsym.solvers.failures import tried

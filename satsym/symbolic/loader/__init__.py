@@ -13,8 +13,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from satsym import sources
-from satsym.sources import digest_of, shipped
+from satsym import source_files
+from satsym.source_files import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.loader.mistakes import said
@@ -53,8 +53,8 @@ def stating(path: Path) -> dict[Path, str]:
     first, digests = path.resolve(), reached(path)
     known = [first, *sorted(each for each in _REACHED.get(first, {}) if each in _REACHED and each != first)]
     for each in known:  # which grows
-        imported = sources.imports(each.read_text(encoding="utf-8"))
-        beside = (each.parent / f"{name.replace('.', '/')}{sources.SUFFIX}" for name in sorted(imported))
+        imported = source_files.imports(each.read_text(encoding="utf-8"))
+        beside = (each.parent / f"{name.replace('.', '/')}{source_files.SUFFIX}" for name in sorted(imported))
         known += [found for found in beside if found not in known and found.is_file()]
     return {each: digests.get(each) or digest_of(each) for each in known}
 
@@ -67,7 +67,7 @@ def _watch(event: str, arguments: tuple[Any, ...]) -> None:
         opened = _source(Path(arguments[0]).absolute())
         digest = digest_of(opened)
         _EXECUTING.extend(asking)
-        if opened.suffix == sources.SUFFIX:
+        if opened.suffix == source_files.SUFFIX:
             _IMPORTED.setdefault(opened, digest)
         for each in asking:
             _REACHED[each][opened] = digest
@@ -82,10 +82,10 @@ sys.addaudithook(_watch)
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:
-    """As :func:`satsym.sources.find`; what a file that is being executed looked for in vain is noted, too."""
-    found = sources.find(name_or_path, folder)
-    if folder is not None and not name_or_path.endswith(sources.SUFFIX):
-        first = folder / f"{name_or_path}{sources.SUFFIX}"
+    """As :func:`satsym.source_files.find`; what a file that is being executed looked for in vain is noted, too."""
+    found = source_files.find(name_or_path, folder)
+    if folder is not None and not name_or_path.endswith(source_files.SUFFIX):
+        first = folder / f"{name_or_path}{source_files.SUFFIX}"
         for asking in _EXECUTING:
             _REACHED[asking].setdefault(first.resolve(), digest_of(first))
     return found
@@ -119,7 +119,7 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
         If there is none, or more than one.
     """
     file, _, wanted = (
-        name.rpartition(":") if ".py:" in name else (name if name.endswith(sources.SUFFIX) else "", "", name)
+        name.rpartition(":") if ".py:" in name else (name if name.endswith(source_files.SUFFIX) else "", "", name)
     )
     paths = [find(file)] if file else shipped()
     found = {one.name: (one, path) for path in paths for one in load(path)}

@@ -12,7 +12,7 @@ from satsym.spec import names
 from satsym.status import BadInput
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.principle import interior
+from satsym.symbolic.principle.path import interior
 from satsym.wording import shown, suggestion
 
 DECLARED = "declared"

@@ -24,6 +24,7 @@ from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
 from satsym.symbolic.principle.parts import limits_of, parts_of, weighed
+from satsym.symbolic.principle.path.stationary_controls import refuse_jumping
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
 from satsym.symbolic.principle.set_laws import (
@@ -37,7 +38,6 @@ from satsym.symbolic.principle.set_laws import (
     shortened,
     written_out,
 )
-from satsym.symbolic.principle.stationary_controls import refuse_jumping
 from satsym.symbolic.roots import Argmin, Choice, Vertex
 
 STEP = "control_parts"

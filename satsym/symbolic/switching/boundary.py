@@ -3,7 +3,7 @@
 On the boundary a control is where the constraint keeps it, as a rule between its bounds; as it minimises H there, its
 switching function vanishes all along, and the multiplier of the constraint is what keeps it zero (Maurer, On optimal
 control problems with bounded state variables and control appearing linearly, SIAM Journal on Control and Optimization
-15, 1977). Order, multiplier, costates and junctions are those of :mod:`satsym.symbolic.principle.path_constraints`.
+15, 1977). Order, multiplier, costates and junctions are as in :mod:`satsym.symbolic.principle.path.path_constraints`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from satsym.symbolic.algebra import simplified, tidy
 from satsym.symbolic.checks import identity
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of
-from satsym.symbolic.principle import path_notation as pn
-from satsym.symbolic.principle.path_constraints import STEP, acting, affine, constraints
+from satsym.symbolic.principle.path import notation as pn
+from satsym.symbolic.principle.path.path_constraints import STEP, acting, affine, constraints
 from satsym.symbolic.switching import notation as s
 
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import bound_names
-from satsym.solvers.constrained.interior_point import Path
-from satsym.solvers.constrained.slopes import rooms
-from satsym.solvers.constrained.transcription import Program, middles
+from satsym.solvers.constrained.regularised.interior_point import Path
+from satsym.solvers.constrained.regularised.slopes import rooms
+from satsym.solvers.constrained.regularised.transcription import Program, middles
 from satsym.solvers.switching.boundaries import acting, effects, values
 from satsym.solvers.switching.structure import (
     BOUNDARY,

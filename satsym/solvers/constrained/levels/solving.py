@@ -11,11 +11,11 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
-from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.levels.recognition import BRIEF, recognised
-from satsym.solvers.constrained.search import searched
-from satsym.solvers.constrained.starts import drawn, first, straight
-from satsym.solvers.constrained.transcription import Program
+from satsym.solvers.constrained.regularised.interior_point import Path
+from satsym.solvers.constrained.regularised.search import searched
+from satsym.solvers.constrained.regularised.starts import drawn, first, straight
+from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.violation import VIOLATED, violation
 from satsym.solvers.iteration import Limits, deadline_of, history_of, watched
 from satsym.solvers.switching import solving

@@ -15,13 +15,13 @@ from satsym.instance import Instance
 from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
+from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.following import follow
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised

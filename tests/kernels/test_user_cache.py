@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from satsym import kept
+from satsym import user_cache
 
 
 def folders(parent: Path, count: int) -> list[Path]:
@@ -21,13 +21,13 @@ def folders(parent: Path, count: int) -> list[Path]:
 
 def test_what_was_used_longest_ago_is_removed(tmp_path: Path) -> None:
     made = folders(tmp_path, 5)
-    kept.used(made[0])
-    kept.prune(tmp_path, 3500, made[4])
+    user_cache.used(made[0])
+    user_cache.prune(tmp_path, 3500, made[4])
     assert [one.exists() for one in made] == [True, False, False, True, True]
 
 
 def test_what_is_made_stays_however_large(tmp_path: Path) -> None:
     made = folders(tmp_path, 3)
-    kept.prune(tmp_path, 10, made[0])
+    user_cache.prune(tmp_path, 10, made[0])
     assert [one.exists() for one in made] == [True, False, False]
-    kept.prune(tmp_path / "nowhere", 10, made[0])
+    user_cache.prune(tmp_path / "nowhere", 10, made[0])

@@ -19,9 +19,9 @@ from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import rate_of
-from satsym.symbolic.principle import path_notation as pn
-from satsym.symbolic.principle import stationary_controls
-from satsym.symbolic.principle.path_constraints import (
+from satsym.symbolic.principle.path import notation as pn
+from satsym.symbolic.principle.path import stationary_controls
+from satsym.symbolic.principle.path.path_constraints import (
     COMPETITORS,
     Constraint,
     adjoined,

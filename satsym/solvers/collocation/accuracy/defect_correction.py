@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation.accuracy.jumping import found
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.gauss import interpolation, scheme
-from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
-from satsym.solvers.constrained.easing import tightened
-from satsym.solvers.constrained.interior_point import Path, regularised
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.regularised.easing import tightened
+from satsym.solvers.constrained.regularised.interior_point import Path, regularised
+from satsym.solvers.constrained.regularised.transcription import Point, Program
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 

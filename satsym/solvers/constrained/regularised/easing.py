@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from satsym.solvers.constrained.interior_point import Path, regularised
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.regularised.interior_point import Path, regularised
+from satsym.solvers.constrained.regularised.transcription import Point, Program
 from satsym.solvers.iteration import Limits
 
 TRIES, SMALLEST = 12, 1e-2

@@ -8,7 +8,7 @@ import sympy as sp
 
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
-from satsym.symbolic.principle import mixed_constraints, path_constraints
+from satsym.symbolic.principle.path import mixed_constraints, path_constraints
 
 
 def every(so_far: Derivation) -> list[path_constraints.Constraint]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.constrained.slopes import Slopes, rooms
-from satsym.solvers.constrained.transcription import Point, Program, Step, middles
+from satsym.solvers.constrained.regularised.slopes import Slopes, rooms
+from satsym.solvers.constrained.regularised.transcription import Point, Program, Step, middles
 
 
 @dataclass(frozen=True, eq=False)

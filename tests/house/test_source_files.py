@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from satsym import sources
+from satsym import source_files
 
 JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
 WRITING = ("satsym.report.artefacts",)
@@ -32,15 +32,15 @@ def test_no_import_of_satsym_is_overlooked(repository: Path) -> None:
     assert len(files) > 200
     for path in files:
         text = path.read_text(encoding="utf-8")
-        assert by_the_parser(text) <= sources.imports(text), path
+        assert by_the_parser(text) <= source_files.imports(text), path
 
 
 def test_imports_are_read_however_they_are_written() -> None:
     text = (
         "from a.b import (  # one (1)\n    c,  # two\n    d as e,\n)\nif x:\n    import f.g as h, i\nfrom . import j\n"
     )
-    assert {"a.b.c", "a.b.d", "f.g", "i", "satsym.k.j"} <= sources.imports(text, "satsym.k.l")
-    assert sources.imports("from ..m import n", "satsym.k.l") == {"satsym.m", "satsym.m.n"}
+    assert {"a.b.c", "a.b.d", "f.g", "i", "satsym.k.j"} <= source_files.imports(text, "satsym.k.l")
+    assert source_files.imports("from ..m import n", "satsym.k.l") == {"satsym.m", "satsym.m.n"}
 
 
 @pytest.mark.parametrize(
@@ -67,33 +67,33 @@ def test_what_really_runs_is_among_what_is_read(modules: tuple[str, ...], code: 
         [sys.executable, "-c", f"{code}\n{show}"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    home = Path(sources.__file__).parent
+    home = Path(source_files.__file__).parent
     loaded = {Path(name) for name in done.stdout.split() if Path(name).is_relative_to(home)}
     assert len(loaded) > 50
-    assert loaded <= {*sources.reached(modules), home / "__init__.py", home / "version.py"}
+    assert loaded <= {*source_files.reached(modules), home / "__init__.py", home / "version.py"}
 
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("copy") / "satsym"
-    shutil.copytree(Path(sources.__file__).parent, home, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(Path(source_files.__file__).parent, home, ignore=shutil.ignore_patterns("__pycache__"))
     return home
 
 
 @pytest.fixture
 def edited(copy: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str, tuple[str, ...]], bool]]:
     """Whether an edit of some file in a folder of satsym changes the digest of some modules."""
-    monkeypatch.setattr(sources, "_HOME", copy)
+    monkeypatch.setattr(source_files, "_HOME", copy)
     forget()
 
     def differs(place: str, modules: tuple[str, ...]) -> bool:
         path = copy / place
         if path.is_dir():
             path = next(each for each in sorted(path.rglob("*.py")) if each.stem != "__init__")
-        before, text = sources.digest(modules), path.read_text(encoding="utf-8")
+        before, text = source_files.digest(modules), path.read_text(encoding="utf-8")
         path.write_text(f"{text}\n# edited\n", encoding="utf-8")
         forget()
-        after = sources.digest(modules)
+        after = source_files.digest(modules)
         path.write_text(text, encoding="utf-8")
         return before != after
 
@@ -102,7 +102,7 @@ def edited(copy: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[st
 
 
 def forget() -> None:
-    for each in (sources.reached, sources._modules, sources._data):
+    for each in (source_files.reached, source_files._modules, source_files._data):
         each.cache_clear()
 
 

@@ -22,7 +22,7 @@ from satsym.symbolic.checks import Point, compare, identity, never_below, numeri
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
-from satsym.symbolic.principle import path_notation as pn
+from satsym.symbolic.principle.path import notation as pn
 from satsym.symbolic.principle.pontryagin import costates
 
 COMPETITORS = 20

@@ -8,8 +8,8 @@ import numpy as np
 
 from satsym.solution import Solution
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.constrained.transcription import Point, Program
-from satsym.solvers.constrained.units import control_unit
+from satsym.solvers.constrained.regularised.transcription import Point, Program
+from satsym.solvers.constrained.regularised.units import control_unit
 
 AMPLITUDE = 0.3
 """How far paths leave the one in their middle, relative to the sizes of states."""

@@ -12,10 +12,10 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.arcs import terms, values
-from satsym.solvers.constrained.slopes import Slopes, rooms
-from satsym.solvers.constrained.stagewise import Factors
-from satsym.solvers.constrained.starts import straight
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.regularised.slopes import Slopes, rooms
+from satsym.solvers.constrained.regularised.stagewise import Factors
+from satsym.solvers.constrained.regularised.starts import straight
+from satsym.solvers.constrained.regularised.transcription import Point, Program
 from satsym.status import BadInput
 
 ROUNDING = 1e-12

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.slopes import Slopes
-from satsym.solvers.constrained.transcription import Step
+from satsym.solvers.constrained.regularised.slopes import Slopes
+from satsym.solvers.constrained.regularised.transcription import Step
 
 FAINT = 1e-8
 """Share of the largest curvature that any direction is measured by at least."""
@@ -86,7 +86,7 @@ class Factors:
         Parameters
         ----------
         slopes
-            Derivatives, as :meth:`~satsym.solvers.constrained.slopes.Slopes.stiffened` leaves them.
+            Derivatives, as :meth:`~satsym.solvers.constrained.regularised.slopes.Slopes.stiffened` leaves them.
         own
             The second derivative of the Lagrangian by the duration.
         curved

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.arcs import effects, gradients
-from satsym.solvers.constrained.transcription import Point, Program, Step, middles
+from satsym.solvers.constrained.regularised.transcription import Point, Program, Step, middles
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.slopes import Slopes
-from satsym.solvers.constrained.stagewise import Factors
-from satsym.solvers.constrained.transcription import Point, Program, Step
-from satsym.solvers.constrained.units import Units
+from satsym.solvers.constrained.regularised.slopes import Slopes
+from satsym.solvers.constrained.regularised.stagewise import Factors
+from satsym.solvers.constrained.regularised.transcription import Point, Program, Step
+from satsym.solvers.constrained.regularised.units import Units
 from satsym.solvers.iteration import Limits
 
 TO_BOUNDARY = 0.995

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from satsym.arrays import Array, distinct
+from satsym.solvers.collocation.accuracy.defect_correction import Corrected, correct_defects, left_out, resolved
+from satsym.solvers.collocation.accuracy.jumping import found
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import apart, corners, misplaced
 from satsym.solvers.collocation.curve import Curve
-from satsym.solvers.collocation.defect_correction import Corrected, correct_defects, left_out, resolved
 from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.jumping import found
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
