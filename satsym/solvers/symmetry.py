@@ -2,7 +2,8 @@
 
 A linear map G generates such a rotation if G f(x) = f_x(x) G x for all states: then exp(phi G) maps motions into
 motions, and the angular momentum about its axis is conserved. These equations are linear in G, so a few states drawn
-at random show all of them, in whatever Cartesian coordinates the model is stated.
+at random show all of them, in whatever Cartesian coordinates the model is stated. Maps that a small perturbation, such
+as the oblateness of a planet, just keeps from being symmetries still tell how the motion goes round.
 """
 
 from __future__ import annotations
@@ -29,7 +30,10 @@ DRAWN = 12
 """States at which the equations are looked at, for each state variable."""
 
 NONE = 1e-9
-"""Relative size of a singular value, or of a real part of an eigenvalue, that is none."""
+"""Relative size of a difference of slopes that is none."""
+
+PERTURBED = 1e-2
+"""Relative size of what a perturbation leaves of equations that a symmetry would meet: that of oblateness is 3e-4."""
 
 TURN = 2.0 * np.pi
 
@@ -80,21 +84,24 @@ def rotations(instance: Instance) -> Iterator[Rotation]:
 
     In space the first is about an axis between those of the momenta at start and end, whatever the coordinates.
     """
-    model, start = instance.model, np.array(instance.initial)
-    found = _generators(model, instance.t0, _about(model, start), instance.parameters)
+    model, ends = instance.model, np.array([instance.initial, *_given_end(instance)]).T
+    sizes = _sizes(model, ends)[:, None]
+    rounded = np.ldexp(1.0, np.rint(np.log2(sizes[:, 0])).astype(int))
+    about = _about(model, ends[:, 0], rounded)
+    found = _generators(model, instance.t0, about, tuple(rounded.tolist()), instance.parameters)
     if found is None:
         return
-    ends = np.array([start, *_given_end(instance)]).T
     here, _ = _motion(model, instance.t0, instance.parameters, ends)
     known: list[Array] = []
     for at in ([*range(ends.shape[1])], [0], [ends.shape[1] - 1]):
-        rates, by = here[:, at], found @ ends[:, at]
+        rates, by = here[:, at] / sizes, found @ ends[:, at] / sizes
         weights = np.linalg.lstsq(by.reshape(len(found), -1).T, rates.ravel(), rcond=1e-9)[0]
         matrix = np.tensordot(weights, found, 1)
-        unit = matrix / max(float(np.linalg.norm(matrix)), 1e-300)
+        unit = matrix / sizes * sizes.T
+        unit /= max(float(np.linalg.norm(unit)), 1e-300)
         if all(float((unit * other).sum()) < ALIKE for other in known):
             known.append(unit)
-            around = _about_its_axis(matrix, _vectors(found))
+            around = _about_its_axis(matrix, _vectors(found / sizes * sizes.T))
             yield from () if around is None else (around,)
 
 
@@ -102,15 +109,15 @@ def _about_its_axis(matrix: Array, vectors: NDArray[np.bool_]) -> Rotation | Non
     """The rotation that a matrix generates, if it is one that comes back."""
     angular, axes = np.linalg.eig(matrix)
     fastest = float(np.abs(angular).max())
-    if fastest == 0.0 or (np.abs(angular.real) > 1e-6 * fastest).any() or np.linalg.cond(axes) > 1e6:
+    if fastest == 0.0 or (np.abs(angular.real) > PERTURBED * fastest).any() or np.linalg.cond(axes) > 1e6:
         return None
-    multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > 1e-6 * fastest]).min())
+    multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > PERTURBED * fastest]).min())
     return Rotation(axes, 1j * multiples, np.linalg.inv(axes), vectors)
 
 
 def _vectors(found: Array) -> NDArray[np.bool_]:
-    """Which states maps (k, n, n) mix, directly or by others, shape (n, n)."""
-    mixed = np.abs(found).max(axis=0) > NONE * np.abs(found).max()
+    """Which states maps (k, n, n) of states over their sizes mix, directly or by others, shape (n, n)."""
+    mixed = np.abs(found).max(axis=0) > PERTURBED * np.abs(found).max()
     steps = (mixed | mixed.T | np.eye(len(mixed), dtype=bool)).astype(float)
     return np.asarray(np.linalg.matrix_power(steps, len(steps)) > 0.0)
 
@@ -127,29 +134,42 @@ def _given_end(instance: Instance) -> list[Array]:
     return [np.array([curve[i] if (value := final[s]) == "reference" else value for i, s in enumerate(names)])]
 
 
-def _about(model: Kernels, start: Array) -> Row:
+def _sizes(model: Kernels, ends: Array) -> Array:
+    """How large states are at these ends (n, k), alike for those of one unit, which may be components of a vector."""
+    units = np.array([state.unit for state in model.spec.states])
+    sizes = np.array([np.linalg.norm(ends[units == unit], axis=0).max() for unit in units])
+    moving = sizes > 0.0  # what is zero at all ends is taken for as large as the rest
+    return np.where(moving, sizes, sizes[moving].mean() if moving.any() else 1.0)
+
+
+def _about(model: Kernels, start: Array, size: Array) -> Row:
     """A place near a state that it shares with others: these maps are the same everywhere."""
-    grid = np.ldexp(0.25, np.frexp(np.abs(start).max())[1])
     near = np.where(start > 0.0, np.ldexp(1.0, np.rint(np.log2(np.abs(start) + 1e-300)).astype(int)), start)
     positive = np.array([state.positive for state in model.spec.states])
-    return tuple(np.where(positive, near, grid * np.rint(start / max(grid, 1e-300))).tolist())
+    return tuple(np.where(positive, near, size / 4.0 * np.rint(4.0 * start / size)).tolist())
 
 
 @lru_cache(maxsize=32)
-def _generators(model: Kernels, t0: float, about: Row, parameters: Row) -> Array | None:
-    """All maps G of a motion that is not linear, shape (k, n, n); ``None`` where there are none."""
-    n, start = len(about), np.array(about)
-    size = np.maximum(np.abs(start), np.abs(start).max() * 1e-3 + 1e-300)
-    x = start[:, None] + size.mean() * np.random.default_rng(0).uniform(-0.5, 0.5, (n, DRAWN * n))
+def _generators(model: Kernels, t0: float, about: Row, sizes: Row, parameters: Row) -> Array | None:
+    """All maps G of a motion that is not linear, shape (k, n, n), found near a state; ``None`` for none."""
+    n, size = len(about), np.array(sizes)
+    x = np.array(about)[:, None] + size[:, None] * np.random.default_rng(0).uniform(-0.5, 0.5, (n, DRAWN * n))
     rates, slopes = _motion(model, t0, parameters, x)
-    if not np.isfinite(rates).all() or not np.isfinite(slopes).all() or _linear(slopes):
+    if not np.isfinite(rates).all() or not np.isfinite(slopes).all():
         return None
-    # One row a component of G f - f_x G x, one column an entry of G.
+    speed = np.sqrt(((np.abs(rates) + np.abs(slopes * x).sum(axis=1)) ** 2).mean(axis=1))
+    speed[speed == 0.0] = speed.max() or 1.0
+    if (np.ptp(slopes * size[:, None], axis=2) <= NONE * speed[:, None]).all():
+        return None  # linear, or no motion at all
+    # One row a component of G f - f_x G x, one column an entry of G; both as large as each other, whatever the units.
     eye = np.eye(n)
     rows = np.einsum("ia,bk->kiab", eye, rates) - np.einsum("iak,bk->kiab", slopes, x)
+    rows = (rows / speed[:, None, None]).reshape(-1, n * n)
+    entries = np.linalg.norm(rows, axis=0)
+    entries[entries == 0.0] = 1.0
     # There are many more equations than entries: their triangular factor has the same null space.
-    _, values, basis = np.linalg.svd(np.linalg.qr(rows.reshape(-1, n * n), mode="r"))
-    found = basis[values <= NONE * values[0]].reshape(-1, n, n)
+    _, values, basis = np.linalg.svd(np.linalg.qr(rows / entries, mode="r"))
+    found = (basis[values <= PERTURBED * values[0]] / entries).reshape(-1, n, n)
     return found if len(found) else None
 
 
@@ -264,8 +284,3 @@ def _motion(model: Kernels, t0: float, parameters: Row, x: Array) -> tuple[Array
         rates = model.dynamics_batch(t, x, none, parameters)
         slopes = model.jacobian_x_batch(t, x, none, parameters)
     return rates, slopes
-
-
-def _linear(slopes: Array) -> bool:
-    """Whether they are the same everywhere."""
-    return bool(np.ptp(slopes, axis=2).max() <= NONE * np.abs(slopes).max())

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 from scipy.spatial.transform import Rotation
@@ -12,11 +15,11 @@ import satsym
 from satsym.arrays import Array
 from satsym.solvers.symmetry import rotations
 from satsym.status import Verdict
-from satsym.symbolic import Model, Problem, symbols_of
+from satsym.symbolic import Newton, Problem, Variable, symbols_of
 from tests.support.derived import stated
 
 MOTION = stated("two_body")
-assert isinstance(MOTION, Model)
+assert isinstance(MOTION, Newton)
 EFFORT = sum(u**2 for u in symbols_of(MOTION.controls)) / 2
 TRANSFER = Problem(name="space_transfer", title="From plane to plane", model=MOTION, running_cost=EFFORT)
 NAMES = tuple(v.symbol for v in MOTION.states)
@@ -95,3 +98,42 @@ def test_a_transfer_in_space_is_that_of_shooting() -> None:
     costates = fsolve(lambda lam: end(lam)[:6] - goal, np.round(found.lam(0.0), 4), xtol=1e-13)
     assert end(costates)[:6] == pytest.approx(goal, abs=1e-9)
     assert found.objective == pytest.approx(end(costates)[12], rel=1e-9)
+
+
+MU, EARTH, J2 = 398600.4418, 6378.137, 1.0826e-3
+BULGE = Variable("bulge", "b", "km**2", "oblateness", 1.5 * J2 * EARTH**2, positive=True)
+
+
+def in_kilometres(problem: Problem, tilt: float, radius: float, **parameters: float) -> satsym.Instance:
+    """A satellite of the Earth goes round 1.75 times, to an orbit that is two per cent wider."""
+    speed, plane = np.sqrt(MU / radius), Rotation.from_euler("xz", [tilt, 0.3])
+    start = radius * plane.apply([1.0, 0.0, 0.0]), speed * plane.apply([0.0, 1.0, 0.0])
+    end = 1.02 * radius * plane.apply([0.0, -1.0, 0.05]), speed / np.sqrt(1.02) * plane.apply([1.0, 0.0, 0.0])
+    first, last = (dict(zip(NAMES, np.concatenate(pair).tolist(), strict=True)) for pair in (start, end))
+    lasting = 1.75 * 2.0 * np.pi * radius / speed * 1.015
+    return satsym.Instance.of(problem, initial=first, final=last, tf=lasting, parameters={"mu": MU, **parameters})
+
+
+@pytest.mark.parametrize("radius", [7000.0, 42164.0, 400000.0])
+def test_rotations_do_not_depend_on_units(radius: float) -> None:
+    """In kilometres and seconds velocities are a thousandth of positions or less, and accelerations of velocities."""
+    (found,) = (one.matrix for one in rotations(in_kilometres(TRANSFER, 1.0, radius).case))
+    assert axis(found) @ Rotation.from_euler("xz", [1.0, 0.3]).apply([0.0, 0.0, 1.0]) > np.cos(0.05)
+    assert found @ found @ found == pytest.approx(-found, abs=1e-9 * radius)
+
+
+@pytest.mark.slow(in_turn=True)
+def test_revolutions_are_tried_round_an_oblate_centre_though_only_one_axis_is_left() -> None:
+    """Its least cost is that round a sphere but for some per cent, as its bulge is a perturbation of some permille."""
+    (bulge,), (mu,) = symbols_of((BULGE,)), symbols_of(MOTION.parameters)
+    place = sp.Matrix(symbols_of(MOTION.states)[:3])
+    sine = place[2] ** 2 / place.norm() ** 2
+    pull = sp.Matrix([*(q * (1 - 5 * sine) for q in place[:2]), place[2] * (3 - 5 * sine)])
+    forces = {**MOTION.forces, "bulge": -mu * bulge * pull / place.norm() ** 5}
+    oblate = replace(MOTION, name="oblate", parameters=(*MOTION.parameters, BULGE), forces=forces)
+    problem = replace(TRANSFER, name="oblate_transfer", model=oblate)
+    round_sphere, found = (satsym.solve(in_kilometres(one, 1.0, 7000.0)) for one in (TRANSFER, problem))
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    assert "revolutions" in {one.kind.value for one in found.certificate.competitors if one.solved}
+    assert found.objective == pytest.approx(round_sphere.objective, rel=0.2)
