@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from satsym.arrays import Array
-from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap, leap_varied, leaps
+from satsym.instance import load
+from satsym.solvers import solve
+from satsym.solvers.certificate.reintegration import segments as module
+from satsym.solvers.certificate.reintegration.segments import segments
+from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap, leap_and_error, leap_varied, leaps
 
 RNG = np.random.default_rng(7)
 STARTS, TIMES, WIDTHS = RNG.uniform(-1.0, 1.0, (2, 5)), RNG.uniform(0.0, 1.0, 5), RNG.uniform(0.05, 0.3, 5)
@@ -37,16 +41,35 @@ def test_a_linear_motion_has_its_exponential() -> None:
         return np.array([2.0 * y[1], -2.0 * y[0]])
 
     table = np.array([[0.0, 2.0], [-2.0, 0.0]])
-    ends, whole = leap_varied(turning, lambda t, _: np.repeat(table[None], len(t), axis=0), TIMES, STARTS, WIDTHS)
+    def its_slopes(t: Array, _: Array) -> Array:
+        return np.repeat(table[None], len(t), axis=0)
+
+    ends, whole, _ = leap_varied(turning, its_slopes, TIMES, STARTS, WIDTHS)
     cosine, sine = np.cos(2.0 * WIDTHS), np.sin(2.0 * WIDTHS)
     expected = np.array([[cosine, sine], [-sine, cosine]]).transpose(2, 0, 1)
     assert np.abs(whole - expected).max() < 1e-13
     assert np.abs(ends.T - (expected @ STARTS.T[:, :, None])[:, :, 0]).max() < 1e-13
+    for columns in (2, 3, 4):
+        error = leap_varied(turning, its_slopes, TIMES, STARTS, WIDTHS, columns)[2]
+        for i, unit in enumerate(np.eye(2)):
+            start = np.repeat(unit[:, None], len(TIMES), axis=1)
+            assert np.abs(error[:, :, i].T - leap_and_error(turning, TIMES, start, WIDTHS, columns)[1]).max() < 1e-14
+
+
+def test_transitions_are_accurate_where_few_columns_are_not_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    solution, found = solve(load("return-to-orbit"), examined=False), []
+    for columns in (module.COLUMNS, (2, 5), (len(SUBSTEPS), len(SUBSTEPS))):
+        monkeypatch.setattr(module, "COLUMNS", columns)
+        one = segments(solution)
+        assert one is not None
+        found.append(one.transition)
+    for one in found[:2]:
+        assert np.abs(one - found[2]).max() < 1e-9
 
 
 @pytest.mark.parametrize("columns", [4, 6])
 def test_variations_are_the_derivatives_of_the_step_itself(columns: int) -> None:
-    ends, whole = leap_varied(swing, slopes, TIMES, STARTS, WIDTHS, columns)
+    ends, whole, _ = leap_varied(swing, slopes, TIMES, STARTS, WIDTHS, columns)
     assert (ends == leap(swing, TIMES, STARTS, WIDTHS, columns)).all()
     for i in range(2):
         moved = STARTS.astype(complex)

@@ -67,8 +67,8 @@ class Accessory:
 
     def along(self, directions: Array) -> Along:
         """What some directions do, shape (P, k)."""
-        own = directions[: self.course.states.shape[2]]
-        followed = self.linear.feedback @ (self.course.states @ own)
+        own = directions[: len(self.course.cost)]
+        followed = self.linear.feedback @ self.course.states(own)
         controls = (followed + self.linear.direct @ self.course.weights(own)).transpose(1, 0, 2)
         return Along(self.ties @ directions, controls, self.duration @ directions)
 
@@ -106,12 +106,10 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
     if linear is None:
         return None
     course = _Course.of(linear, grid)
-    states = course.states
-    n, pieces, free_time = states.shape[1], states.shape[2], int(solution.instance.tf is None)
-    weighed = linear.restoring * interleave(grid.node_weights, grid.midpoint_weights)[:, None, None] @ states
-    inside = states.reshape(len(times) * n, pieces).T @ weighed.reshape(len(times) * n, pieces)
+    arrived, inside = course.begun[-1], course.cost
+    n, pieces, free_time = *arrived.shape, int(solution.instance.tf is None)
     arriving = np.zeros((n + free_time, pieces + free_time))
-    arriving[:n, :pieces], arriving[n:, pieces:] = states[-1], np.eye(free_time)
+    arriving[:n, :pieces], arriving[n:, pieces:] = arrived, np.eye(free_time)
     end = end_form(solution, linear.scale)
     form = arriving.T @ end.form @ arriving
     form[:pieces, :pieces] += inside + np.eye(pieces)
@@ -189,32 +187,62 @@ def _pseudoinverses(matrices: Array) -> Array:
 class _Course:
     """What P changes do over time; each is constant on its piece and costs half its square."""
 
-    states: Array
-    """Of the states at nodes and midpoints, shape (2N+1, n, P)."""
+    begun: Array
+    """States where each piece begins, and at the end, by the changes, shape (pieces + 1, n, P)."""
+    cost: Array
+    """What states cost by the changes, shape (P, P)."""
     shapes: Array
     """Of the controls on each piece, shape (pieces, m, P)."""
     place: Array
     """Where nodes and midpoints lie among the middles of the pieces, from zero to the last, shape (2N+1,)."""
+    within: Array
+    """States at nodes by those where their piece begins and by its controls, shape (pieces, r, n + m, n + m)."""
+    between: Array
+    """States at midpoints by those at the node before and by the controls, shape (N, n, n + m)."""
 
     @classmethod
     def of(cls, linear: _Linear, grid: Grid) -> _Course:
         """By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation.
 
-        The latter is as linear in states and changes at the beginning of a step as its end is.
+        The latter is as linear in states and changes at the beginning of a step as its end is. All steps of a piece
+        are taken together before anything is said of what the changes do, which are many.
         """
-        n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
-        piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
-        own, steps = shapes[piece], _steps(linear, grid)
-        driven, course = steps[:, :n, n:] @ own, np.zeros((2 * grid.steps + 1, n, shapes.shape[2]))
-        for k in range(grid.steps):
-            np.matmul(steps[k, :n, :n], course[2 * k], out=course[2 * k + 2])
-            course[2 * k + 2] += driven[k]
+        n, pieces = linear.motion.shape[1], np.gcd(grid.steps, PIECES)
+        edges = np.arange(0, grid.steps + 1, grid.steps // pieces)
+        shapes, steps = _shapes(linear, grid, edges), _steps(linear, grid)
         both, h = np.concatenate([linear.motion, linear.push], axis=2), grid.widths[:, None, None]
         between = (np.eye(n, steps.shape[2]) + steps[:, :n]) / 2.0 + h / 8.0 * (both[:-2:2] - both[2::2] @ steps)
-        np.matmul(between[:, :, :n], course[:-1:2], out=course[1::2])
-        course[1::2] += between[:, :, n:] @ own
+        costs = between.transpose(0, 2, 1) @ (linear.restoring[1::2] * grid.midpoint_weights[:, None, None]) @ between
+        at_nodes = linear.restoring[::2] * grid.node_weights[:, None, None]
+        costs[:, :n, :n] += at_nodes[:-1]
+
+        whole, within = np.repeat(np.eye(steps.shape[2])[None], pieces, axis=0), []
+        cost = np.zeros_like(whole)
+        shape = (pieces, -1, *steps.shape[1:])
+        for step, own in zip(*(one.reshape(shape).swapaxes(0, 1) for one in (steps, costs)), strict=True):
+            within.append(whole)
+            cost += whole.transpose(0, 2, 1) @ own @ whole
+            whole = step @ whole
+        driven, begun = whole[:, :n, n:] @ shapes, np.zeros((pieces + 1, n, shapes.shape[2]))
+        for k, carried in enumerate(whole[:, :n, :n]):
+            np.matmul(carried, begun[k], out=begun[k + 1])
+            begun[k + 1] += driven[k]
+        given = np.concatenate([begun[:-1], shapes], axis=1)
+        weighed = (cost @ given).reshape(-1, given.shape[2])
+        inside = given.reshape(weighed.shape).T @ weighed + begun[-1].T @ at_nodes[-1] @ begun[-1]
         times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
-        return cls(course, shapes, np.interp(times, middles, np.arange(len(middles))))
+        place = np.interp(times, middles, np.arange(len(middles)))
+        return cls(begun, inside, shapes, place, np.stack(within, axis=1), between)
+
+    def states(self, changes: Array) -> Array:
+        """What changes, shape (P, k), do to the states at nodes and midpoints, shape (2N+1, n, k)."""
+        n = self.begun.shape[1]
+        begun, own = self.begun @ changes, self.shapes @ changes
+        given = np.concatenate([begun[:-1], own], axis=1)
+        nodes = (self.within @ given[:, None]).reshape(len(self.between), -1, changes.shape[1])
+        found = np.empty((2 * len(nodes) + 1, n, changes.shape[1]))
+        found[:-1:2], found[1::2], found[-1] = nodes[:, :n], self.between @ nodes, begun[-1]
+        return found
 
     def weights(self, changes: Array) -> Array:
         """Changes, shape (P, k), as they are simulated, shape (2N+1, m, k).

@@ -39,6 +39,10 @@ INDEPENDENT = 1e-9
 MIXTURES = (0.4, 1.0, 2.1)
 """Angles at which real and imaginary parts are mixed."""
 
+APART = 1e-10
+"""What is beside the diagonal where the eigenvectors of a mixture are those of both parts: phases are off by its square.
+"""
+
 PARTS, ROUNDS = 16, 6
 """Of a step in which a conjugate time is looked for, and how often it is taken apart."""
 
@@ -81,12 +85,7 @@ def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
     Phases
         ``None`` where numbers fail.
     """
-    n = transition.shape[1] // 2
-    frames = np.empty((len(transition) + 1, 2 * n, n))
-    frames[0] = np.concatenate([np.zeros((n, n)), np.eye(n)])
-    for k, matrix in enumerate(transition):
-        begin = frames[k] if k % AFRESH else np.linalg.qr(frames[k])[0]
-        np.matmul(matrix, begin, out=frames[k + 1])
+    n, frames = transition.shape[1] // 2, _frames(transition)
     if not np.isfinite(frames).all():
         return None
     every = np.linalg.qr(frames)[0]
@@ -96,12 +95,39 @@ def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
     return Phases(_ordered(angles, np.append(0.0, np.cumsum(steps))), every)
 
 
+def _frames(transition: Array) -> Array:
+    """Bases of the plane at all stations, shape (K, 2n, n), not orthonormal, but not bad ones either."""
+    count, size = len(transition), transition.shape[1]
+    padded = np.broadcast_to(np.eye(size), (-(-count // AFRESH), AFRESH, size, size)).copy()
+    padded.reshape(-1, size, size)[:count] = transition
+    for k in range(1, AFRESH):  # from where the basis is made orthonormal to each of the stations after
+        padded[:, k] = padded[:, k] @ padded[:, k - 1]
+    frames = np.empty((padded.shape[0] * AFRESH + 1, size, size // 2))
+    frames[0] = np.eye(size)[:, size // 2 :]
+    for k, whole in enumerate(padded):
+        begin = np.linalg.qr(frames[AFRESH * k])[0]
+        np.matmul(whole, begin, out=frames[AFRESH * k + 1 : AFRESH * (k + 1) + 1])
+    return frames[: count + 1]
+
+
 def _angles(frames: Array) -> Array:
-    """Eigenphases modulo a turn, in ascending order, shape (M, n)."""
+    """Eigenphases modulo a turn, in ascending order, shape (M, n), of orthonormal bases."""
     n = frames.shape[2]
-    upper, lower = (frames[:, rows].transpose(0, 2, 1) for rows in (slice(n), slice(n, None)))
-    plane = -np.linalg.solve(upper - 1j * lower, upper + 1j * lower)  # the transpose, which is the same
-    found: Array = np.sort(np.angle(np.linalg.eigvals(plane)) % TURN, axis=1)
+    upper, lower = frames[:, :n], frames[:, n:]
+    across = upper @ lower.transpose(0, 2, 1)
+    # X - i Lambda is unitary, so that its inverse is its adjoint.
+    real, imaginary = lower @ lower.transpose(0, 2, 1) - upper @ upper.transpose(0, 2, 1), -across
+    imaginary -= across.transpose(0, 2, 1)
+    # The two commute: a mixture has the eigenvectors of both, if it keeps phases apart.
+    axes = np.linalg.eigh(real * np.cos(MIXTURES[0]) + imaginary * np.sin(MIXTURES[0]))[1]
+    turned = real @ axes, imaginary @ axes
+    cosine, sine = ((axes * part).sum(axis=1) for part in turned)
+    angles = np.arctan2(sine, cosine)
+    off = (np.abs(part - axes * own[:, None]) for part, own in zip(turned, (cosine, sine), strict=True))
+    mixed = np.flatnonzero(~(np.maximum(*off).max(axis=(1, 2)) <= APART))
+    if len(mixed):
+        angles[mixed] = np.angle(np.linalg.eigvals(real[mixed] + 1j * imaginary[mixed]))
+    found: Array = np.sort(angles % TURN, axis=1)
     return found
 
 

@@ -16,7 +16,7 @@ from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.accessory import Along, accessory
 from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
-from satsym.solvers.certificate.reintegration.flow import products, typical
+from satsym.solvers.certificate.reintegration.flow import idle_end, products, typical
 from satsym.solvers.collocation.problem import ended
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.regularised import sloping
@@ -123,7 +123,8 @@ def neighbours(solution: Solution) -> Neighbours:
         return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)
     reference = simulations.measured(*simulations.own, grid)
-    moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
+    idle = simulations.measured(idle_end(solution, simulations.steps)[:, None], 0.0, grid)
+    moved = float(np.abs(reference[1] - idle[1]).max(initial=0.0))
     missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
     # Corrections of least size combine what ties the end.
     basis = np.linalg.qr(np.column_stack([direction, second.ties.T]))[0]

@@ -97,10 +97,11 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)
         second: list[Check] = []
+        legendre = conditions.legendre_clebsch(solution)
         close, others = None, Comparison((), ())
         if all(c.passed for c in first):
             close = neighbours(solution)
-            second = _sufficient(solution, field, close)
+            second = _sufficient(solution, legendre, field, close)
             if compared and competitors.none_conceivable(solution):
                 second.append(Check("no cheaper competitor", 0.0, 0.0))
             elif compared:
@@ -114,7 +115,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
     certificate = Certificate(
         verdict=verdict,
         **conditions.headlines(first),
-        legendre_clebsch=conditions.legendre_clebsch(solution),
+        legendre_clebsch=legendre,
         conjugate_time=field.time,
         checks=(*first, *second),
         competitors=(
@@ -166,10 +167,10 @@ def first_order(solution: Solution, recomputed: Flow, defect: str, without: Arra
     return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
 
 
-def _sufficient(solution: Solution, field: Conjugate, close: Neighbours) -> list[Check]:
+def _sufficient(solution: Solution, legendre: float, field: Conjugate, close: Neighbours) -> list[Check]:
     """Each is a deficit that must not be positive."""
     return [
-        Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0),
+        Check("legendre-clebsch", float(not legendre > 0.0), 0.0),
         *jumps.checks(solution),
         *field.checks,
         *close.checks,

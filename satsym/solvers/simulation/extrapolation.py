@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import islice, pairwise
 from typing import Any
 
@@ -123,13 +124,22 @@ def leap_varied(
     y: Array,
     h: Array,
     columns: int = len(SUBSTEPS),
-) -> tuple[Array, Array]:
-    """The same, and how its ends follow their starts by the same rule for the variations, shape (M, d, d).
+) -> tuple[Array, Array, Array]:
+    """The same, and how its ends follow their starts by the same rule for the variations, with the error of those.
 
     Parameters
     ----------
     slopes
         Derivatives of the rates at times (K,) and values (d, K), shape (K, d, d): asked for once, at all places.
+
+    Returns
+    -------
+    Array
+        Values at the ends, shape (d, M).
+    Array
+        Their derivatives by the starts, shape (M, d, d).
+    Array
+        By how much these differ from those of the next lower order, shape (M, d, d).
     """
     places: list[tuple[Array, Array]] = []
 
@@ -144,10 +154,21 @@ def leap_varied(
     width = (h / counts[:, None])[..., None, None]
     unity = np.broadcast_to(np.eye(len(y)), (columns, *first.shape))
     whole = _midpoints(lambda i, now: others[i - 1].reshape(now.shape) @ now, unity, width * first, width)
-    squares = counts.astype(float) ** 2
-    apart = np.where(np.eye(columns) > 0.0, squares, squares[:, None] - squares)
-    weights = (squares[:, None] / apart).prod(axis=1)  # of the columns, in what the table comes to (Aitken, Neville)
-    return ends, np.tensordot(weights, whole, 1)
+    table = np.array(whole)
+    found = _weights(columns) @ table.reshape(columns, -1)
+    last, before = found.reshape(2, *table.shape[1:])
+    return ends, last, np.abs(last - before)
+
+
+@lru_cache
+def _weights(columns: int) -> Array:
+    """Of the columns in the last entry of the table and in that of the next lower order (Aitken, Neville), (2, K)."""
+    squares = np.array(SUBSTEPS[:columns], dtype=float) ** 2
+    found = np.zeros((2, columns))
+    for row, own in enumerate((squares, squares[1:])):
+        apart = np.where(np.eye(len(own)) > 0.0, own, own[:, None] - own)
+        found[row, row:] = (own[:, None] / apart).prod(axis=1)
+    return found
 
 
 def leaps(

@@ -12,13 +12,14 @@ from itertools import islice
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.lapack import lapack
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
 from satsym.solvers.certificate.reintegration.segments import Segments
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leaps
 
-FEWEST = 4
+FEWEST = 5
 """Columns of the extrapolation table, at least."""
 
 SETTLED = 1e-11
@@ -63,8 +64,10 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
 
 def _moved(along: Segments, gaps: Array) -> Array:
     """By how much stations but the first move for the motion from each to end at the next, shape (2n, K-1)."""
-    now, found = np.zeros(len(gaps)), []
-    for transition, gap in zip(along.transition, (gaps / along.scale[:, None]).T, strict=True):
-        now = transition @ now + gap
-        found.append(now)
-    return np.array(found).T * along.scale[:, None]
+    size, count = gaps.shape
+    band = np.zeros((count, size, 2 * size))  # below the diagonal, column by column, as LAPACK has it
+    for k in range(size):
+        np.negative(along.transition[1:, :, k], out=band[:-1, k, size - k : 2 * size - k])
+    right = (gaps / along.scale[:, None]).T.reshape(-1, 1)
+    found, _ = lapack().dtbtrs(band.reshape(-1, 2 * size).T, right, uplo="L", diag="U")
+    return np.asarray(found.reshape(count, size).T * along.scale[:, None])

@@ -105,11 +105,8 @@ def _parts(solution: Solution, stations: Array) -> list[tuple[Array | None, Arra
 def undriven(solution: Solution) -> Array | None:
     """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
     instance, model = solution.instance, solution.instance.model
-    none, p = (0.0,) * len(model.spec.controls), instance.parameters
-    size, ends = typical(solution)[0], list[Array]()
-    for steps in IDLE_STEPS:
-        nodes, idle = np.linspace(solution.times[0], solution.times[-1], steps + 1), np.zeros((len(none), steps + 1))
-        ends.append(model.forward(nodes, instance.initial, idle, idle[:, 1:], p)[0][:, -1])
+    none, p, size = (0.0,) * len(model.spec.controls), instance.parameters, typical(solution)[0]
+    ends = [idle_end(solution, steps) for steps in IDLE_STEPS]
     coarse, fine = (np.abs(end - solution.x[:, -1]) / size for end in ends)
     if (np.abs(fine - coarse) <= IDLE_ERROR * fine.max()).all():
         return ends[-1]
@@ -122,6 +119,17 @@ def undriven(solution: Solution) -> Array | None:
         return integrate(rates, times, np.array(instance.initial), ROUGHLY, size)[0].end
     except FAILURES:
         return None
+
+
+@lru_cache(maxsize=16)
+def idle_end(solution: Solution, steps: int) -> Array:
+    """The same by so many steps of RK4, whether accurate or not."""
+    instance, model = solution.instance, solution.instance.model
+    nodes = np.linspace(solution.times[0], solution.times[-1], steps + 1)
+    idle = np.zeros((len(model.spec.controls), steps + 1))
+    found: Array = model.forward(nodes, instance.initial, idle, idle[:, 1:], instance.parameters)[0][:, -1]
+    found.flags.writeable = False  # what several conditions ask for is computed once
+    return found
 
 
 def costing(solution: Solution) -> Callable[[Array, Array], Array]:

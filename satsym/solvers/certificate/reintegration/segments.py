@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.control.slopes import without_poles
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.simulation.extrapolation import leap_varied
+from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap_varied
 
 FEWEST = 64
 """Segments."""
@@ -28,11 +29,13 @@ that it is known from where it begins and ends."""
 FRACTION = 0.75
 """Of the largest turn, that segments between nodes are to have."""
 
-COLUMNS = 5
-"""Of the extrapolation table, for transitions; errors of phases matter only where they are a full turn."""
+COLUMNS, ACCURATE = (3, 5), 3e-7
+"""Of the extrapolation table, for transitions: the fewer where they differ by no more than that from those of the next
+lower order, whose error is hundreds of times their own; but not where bounds make corners, of which such differences
+say little. Errors of phases matter only where they are a full turn."""
 
-BLOCK = 64
-"""Steps at a time: few enough for their derivatives to stay in memory that is at hand."""
+PLACES = 2048
+"""At which derivatives are known at a time: few enough to stay in memory that is at hand."""
 
 BEYOND = 1e16
 """Growth at which nothing is left of a number's digits."""
@@ -140,19 +143,30 @@ def balanced(scale: Array, sizes: Array, duration: float) -> Array:
     costates = 1.0 / (response * duration)  # so that the response is one over the duration
     unit = np.repeat([1.0, costates], n)
     rates, smallest = (((size * unit / unit[:, None]) ** 2).ravel(), 1.0 / duration**2)
-    moves = np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)])
-    powers = (moves[:, None, :] - moves[:, :, None]).reshape(len(moves), -1)
+    moves, powers, weighing = _moves(n)
+    owns = np.argmax(moves, axis=1).tolist()
     change = np.ones(2 * n)
     for _ in range(SWEEPS):
         before = change
-        for move, power, own in zip(moves, powers, np.argmax(moves, axis=1), strict=True):
-            rising, falling = (float(np.maximum(sign * power, 0.0) @ rates) for sign in (1.0, -1.0))
+        for move, power, weights, own in zip(moves, powers, weighing, owns, strict=True):
+            rising, falling = (weights @ rates).tolist()
             moved = float(change[own] ** 2)
             factor = ((falling + smallest / moved) / (rising + smallest * moved)) ** 0.125
-            change, rates = change * factor**move, rates * factor ** (2.0 * power)
+            change, rates = change * factor**move, rates * factor**power
         if (np.abs(change / before - 1.0) < STEADY).all():
             break
     return scale * unit * change
+
+
+@lru_cache
+def _moves(n: int) -> tuple[Array, Array, Array]:
+    """How units may be changed, shape (n + 1, 2n), by which powers rates change then, and which of them rise and fall.
+
+    A state with its costate, each the other way; all costates together.
+    """
+    moves = np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)])
+    powers = (moves[:, None, :] - moves[:, :, None]).reshape(len(moves), -1)
+    return moves, 2.0 * powers, np.stack([np.maximum(powers, 0.0), np.maximum(-powers, 0.0)], axis=1)
 
 
 def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
@@ -160,9 +174,9 @@ def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
 
     It turns at twice the trace of the Hessian of H on an n-dimensional space.
     """
-    n = len(scale) // 2
-    scaled = slopes * (scale / scale[:, None])
-    rate = 2.0 * np.sqrt(n) * np.linalg.norm(scaled, axis=(1, 2))
+    unit = (scale / scale[:, None]).ravel() ** 2
+    squares = (slopes * slopes).transpose(1, 2, 0).reshape(len(unit), -1)  # as they lie in memory
+    rate = 2.0 * np.sqrt(len(scale) / 2.0 * (unit @ squares))
     found: Array = np.maximum(rate[1:], rate[:-1]) * widths
     return found
 
@@ -207,7 +221,20 @@ def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tu
     def slopes(t: Array, z: Array) -> Array:
         return np.ascontiguousarray(_slopes(solution, t, z))
 
-    blocks = [slice(at, at + BLOCK) for at in range(0, len(t), BLOCK)]
-    found = [leap_varied(rates, slopes, t[own], z[:, own], h[own], COLUMNS) for own in blocks]
-    ends, transition = (np.concatenate(rows, axis=k) for k, rows in zip((1, 0), zip(*found, strict=True), strict=True))
-    return ends, transition * (scale / scale[:, None])
+    def leapt(chosen: NDArray[np.intp], columns: int) -> tuple[Array, Array, Array]:
+        places = len(chosen) * sum(SUBSTEPS[:columns])
+        parts = np.array_split(chosen, -(-places // PLACES))
+        found = [leap_varied(rates, slopes, t[own], z[:, own], h[own], columns) for own in parts]
+        ends, whole, error = zip(*found, strict=True)
+        return np.concatenate(ends, axis=1), np.concatenate(whole), np.concatenate(error)
+
+    (few, more), every, unit = COLUMNS, np.arange(len(t)), scale / scale[:, None]
+    ends, transition, error = leapt(every, more if instance.control_set.bounded else few)
+    if instance.control_set.bounded:
+        return ends, transition * unit
+    transition, rough = transition * unit, (error * unit).max(axis=(1, 2))
+    poor = np.flatnonzero(~(rough <= ACCURATE * np.abs(transition).max(axis=(1, 2))))
+    if len(poor):
+        ends[:, poor], better, _ = leapt(poor, more)
+        transition[poor] = better * unit
+    return ends, transition
