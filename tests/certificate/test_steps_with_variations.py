@@ -41,6 +41,7 @@ def test_a_linear_motion_has_its_exponential() -> None:
         return np.array([2.0 * y[1], -2.0 * y[0]])
 
     table = np.array([[0.0, 2.0], [-2.0, 0.0]])
+
     def its_slopes(t: Array, _: Array) -> Array:
         return np.repeat(table[None], len(t), axis=0)
 

@@ -40,8 +40,7 @@ MIXTURES = (0.4, 1.0, 2.1)
 """Angles at which real and imaginary parts are mixed."""
 
 APART = 1e-10
-"""What is beside the diagonal where the eigenvectors of a mixture are those of both parts: phases are off by its square.
-"""
+"""Beside the diagonal where the eigenvectors of a mixture are those of both parts: phases are off by its square."""
 
 PARTS, ROUNDS = 16, 6
 """Of a step in which a conjugate time is looked for, and how often it is taken apart."""
