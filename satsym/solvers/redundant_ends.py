@@ -101,11 +101,11 @@ def redundant(instance: Instance) -> Redundant | None:
     fixed = np.array([isinstance(instance.final.get(name), float | int) for name in names])
     if instance.guess or instance.model.spec.multipliers or fixed.sum() < 2:
         return None
-    rng = np.random.default_rng(0)
-    end = _end(instance, fixed, rng)
+    end = _end(instance, fixed)
     with np.errstate(all="ignore"):
         if not _spans_less(instance, end):
             return None
+        rng = np.random.default_rng(0)
         one = _still(instance, end, rng)
         other = None if one is None else _still(instance, end, rng)
     if one is None or other is None or min(np.abs(one - other).max(), np.abs(one + other).max()) > SAME:
@@ -117,10 +117,16 @@ def redundant(instance: Instance) -> Redundant | None:
     return Redundant(replace(instance, final=final), state, float(instance.final[state]))
 
 
-def _end(instance: Instance, fixed: Array, rng: np.random.Generator) -> Array:
+@lru_cache
+def _shares(count: int) -> Array:
+    """By which states are off their start."""
+    return np.random.default_rng(1).uniform(*OFF, count)
+
+
+def _end(instance: Instance, fixed: Array) -> Array:
     """A final state as it is asked for, and with what is free somewhere off the start."""
     start = np.array(instance.initial)
-    off = start + np.where(start != 0.0, np.abs(start), 1.0) * rng.uniform(*OFF, len(start))
+    off = start + np.where(start != 0.0, np.abs(start), 1.0) * _shares(len(start))
     names = instance.model.spec.state_names
     return np.array([float(instance.final[name]) if fixed[i] else off[i] for i, name in enumerate(names)])
 

@@ -8,6 +8,7 @@ where that has a negative eigenvalue, so has the second variation itself. It kno
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import gcd
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,7 +108,7 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
         return None
     course = _Course.of(linear, grid)
     arrived, inside = course.begun[-1], course.cost
-    n, pieces, free_time = *arrived.shape, int(solution.instance.tf is None)
+    (n, pieces), free_time = arrived.shape, int(solution.instance.tf is None)
     arriving = np.zeros((n + free_time, pieces + free_time))
     arriving[:n, :pieces], arriving[n:, pieces:] = arrived, np.eye(free_time)
     end = end_form(solution, linear.scale)
@@ -207,7 +208,7 @@ class _Course:
         The latter is as linear in states and changes at the beginning of a step as its end is. All steps of a piece
         are taken together before anything is said of what the changes do, which are many.
         """
-        n, pieces = linear.motion.shape[1], np.gcd(grid.steps, PIECES)
+        n, pieces = linear.motion.shape[1], gcd(grid.steps, PIECES)
         edges = np.arange(0, grid.steps + 1, grid.steps // pieces)
         shapes, steps = _shapes(linear, grid, edges), _steps(linear, grid)
         both, h = np.concatenate([linear.motion, linear.push], axis=2), grid.widths[:, None, None]

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.collocation.gauss import interpolation, lagrange, scheme
+from satsym.solvers.collocation.gauss import barycentric, interpolation, scheme
 
 SMALL = 1e-4
 """Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
@@ -61,11 +61,12 @@ class Curve:
         """Values at ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
-        table = lagrange(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
+        table, total = barycentric(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
         values, begun = np.empty((len(self.nodes), len(tau))), np.flatnonzero(np.diff(interval, prepend=-1)).tolist()
         for first, last in pairwise([*begun, len(tau)]):  # times in one interval after the other
-            values[:, first:last] = known[:, interval[first]] @ table[first:last].T
+            np.matmul(known[:, interval[first]], table[first:last].T, out=values[:, first:last])
+        values /= total
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:

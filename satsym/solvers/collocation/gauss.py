@@ -31,6 +31,8 @@ class Scheme:
     """``weights @ inverse``: from differences at the stages to the difference at the end."""
     coefficients: Array
     """From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1)."""
+    known: Array
+    """Where values are known: 0 and the stages, shape (s + 1,)."""
     barycentric: Array
     """Weights of Lagrange's formula through 0 and the stages, shape (s + 1,)."""
 
@@ -51,15 +53,21 @@ def lagrange(stages: int, places: Array) -> Array:
 
     By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
     """
-    own = scheme(stages)
-    table: Array = places[:, None] - np.concatenate([[0.0], own.nodes])
-    at, node = np.nonzero(table == 0.0)
-    table[at, node] = 1.0
-    np.divide(own.barycentric, table, out=table)
-    table[at] = 0.0
-    table[at, node] = 1.0
-    table /= table @ np.ones((stages + 1, 1))
+    table, total = barycentric(stages, places)
+    table /= total[:, None]
     return table
+
+
+def barycentric(stages: int, places: Array) -> tuple[Array, Array]:
+    """The same before it is divided by what each row comes to, shapes (M, stages + 1) and (M,)."""
+    own = scheme(stages)
+    table: Array = places[:, None] - own.known
+    with np.errstate(divide="ignore", invalid="ignore"):
+        np.divide(own.barycentric, table, out=table)
+        total = table @ np.ones(stages + 1)
+    at = np.flatnonzero(np.isinf(total))  # a place at which the value is known
+    table[at], total[at] = np.isinf(table[at]), 1.0
+    return table, total
 
 
 @lru_cache
@@ -79,5 +87,6 @@ def scheme(stages: int) -> Scheme:
         inverse=inverse,
         end=w / 2 @ inverse,
         coefficients=np.linalg.inv(legendre.legvander(with_start, stages)),
+        known=(with_start + 1) / 2,
         barycentric=1.0 / distances.prod(axis=1),
     )

@@ -123,8 +123,9 @@ class TwoPoint:
         return self.instance.control_set.relaxed(self.relaxation)
 
     def relaxed(self, by: float) -> TwoPoint:
-        """The same problem with bounds relaxed by so much."""
-        return replace(self, relaxation=by)
+        """The same problem with bounds relaxed by so much: this one where there are none to be moved."""
+        moved = self.instance.control_set.relaxed(by)
+        return self if moved == self.control_set else replace(self, relaxation=by)
 
     def softened(self, softness: float) -> TwoPoint:
         """The same problem with bounds of another softness."""

@@ -63,8 +63,8 @@ def straight(problem: TwoPoint) -> Array:
 def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Scale:
     """Sizes of the states along the straight line; the cost that makes the response to costates one."""
     n, model = len(start), instance.model
-    path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
-    times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
+    places = np.linspace(0.0, 1.0, POINTS)
+    path, times = start[:, None] + (end - start)[:, None] * places, instance.t0 + duration * places
     control_set = instance.control_set
     if model.spec.directional and control_set.smoothing <= UNSMOOTHED:  # nothing responds to costates that vanish
         control_set = control_set.regularised(full_length_smoothing(instance), 1.0)
@@ -74,12 +74,14 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
         slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
     slopes[~(slopes >= NO_SLOPE)] = 0.0  # some laws say nothing of costates that vanish
     size = np.abs(path).max(axis=1)
+    table = slopes[:n, :n].tolist()
     for j in range(n):
+        sizes = size.tolist()
         through = [
-            size[i] / (slopes[i, j] * duration) for i in range(n) if i != j and slopes[i, j] > 0.0 and size[i] > 0.0
+            sizes[i] / (table[i][j] * duration) for i in range(n) if i != j and table[i][j] > 0.0 and sizes[i] > 0.0
         ]
         least = min(through, default=1.0)
-        if size[j] < NEGLIGIBLE * least:
+        if sizes[j] < NEGLIGIBLE * least:
             size[j] = least
-    response = (slopes[:n, n:] / np.outer(size, size)).max()
+    response = float((slopes[:n, n:] / (size[:, None] * size)).max())
     return Scale(size, 1.0 / (duration * response) if response > 0.0 else 1.0)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.lapack import lapack
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.problem import TwoPoint
@@ -73,8 +74,10 @@ def _loosened(transition: Array) -> Array:
 
 def _right_divided(a: Array, b: Array) -> Array:
     """The matrix a b^-1."""
-    found: Array = np.linalg.solve(b.T, a.T).T
-    return found
+    _, _, found, singular = lapack().dgesv(b.T, a.T)
+    if singular:
+        raise np.linalg.LinAlgError("singular")
+    return np.asarray(found.T)
 
 
 def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
