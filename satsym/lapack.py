@@ -1,4 +1,4 @@
-"""LAPACK as SciPy wraps it, without the rest of SciPy: loading that takes longer than solving a usual problem."""
+"""LAPACK and BLAS as SciPy wraps them, without the rest of SciPy: to load it takes longer than a usual problem."""
 
 from __future__ import annotations
 
@@ -8,26 +8,33 @@ from importlib.util import find_spec, module_from_spec
 from pathlib import Path
 from typing import Any
 
-WRAPPER = "_flapack"
-"""The module of ``scipy.linalg`` that is compiled against LAPACK, and needs NumPy alone."""
+WRAPPERS = {"lapack": "_flapack", "blas": "_fblas"}
+"""The modules of ``scipy.linalg`` that are compiled against a library, and need NumPy alone."""
+
+
+def lapack() -> Any:
+    """What has the routines of :mod:`scipy.linalg.lapack` in double precision by their names: ``dgbtrf`` and others."""
+    return _wrapper("lapack")
+
+
+def blas() -> Any:
+    """The same of :mod:`scipy.linalg.blas`: ``daxpy`` and others."""
+    return _wrapper("blas")
 
 
 @cache
-def lapack() -> Any:
-    """What has the routines of :mod:`scipy.linalg.lapack` in double precision, by their names: ``dgbtrf`` and others.
-
-    The compiled module is loaded by itself; where SciPy is laid out in another way, as a part of SciPy.
-    """
+def _wrapper(library: str) -> Any:
+    """The module of a library, loaded by itself; where SciPy is laid out in another way, as a part of SciPy."""
     scipy = find_spec("scipy")
     folders = [str(Path(folder, "linalg")) for folder in (scipy and scipy.submodule_search_locations) or ()]
-    found = PathFinder.find_spec(WRAPPER, folders)
+    found = PathFinder.find_spec(WRAPPERS[library], folders)
     if found is not None and found.loader is not None:
         try:
             module = module_from_spec(found)
             found.loader.exec_module(module)
             return module
-        except ImportError:  # as where a library that it needs is found by SciPy only
+        except ImportError:  # as where another library is found by SciPy only
             pass
-    from scipy.linalg import lapack as whole
+    from scipy import linalg
 
-    return whole
+    return getattr(linalg, library)

@@ -10,12 +10,8 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
-from satsym.arrays import Array
 from satsym.kernels.batch import compiling
 from satsym.kernels.batch.inlined import inlined
-from satsym.kernels.batch.tape import Bound, Tape, aligned, bound
 from satsym.kernels.batch.workspace import (
     Workspace,
     element,
@@ -81,76 +77,6 @@ def kicks_and_drifts(kernels: Kernels) -> Any:
             *indented(over_lanes(body)),
         ],
     )
-
-
-class OnTape:
-    """RK4 under constant controls on arrays, with ``advance`` as above.
-
-    Raises
-    ------
-    Unsuited
-        If the dynamics are no straight line of operations.
-    """
-
-    def __init__(self, kernels: Kernels) -> None:
-        self._tape = Tape()
-        tape, n = self._tape, len(kernels.spec.states)
-        rows = {"u": len(kernels.spec.controls), "p": len(kernels.spec.parameters)}
-        names = {f"{name}_{k}": tape.given(f"{name}_{k}", False) for name, count in rows.items() for k in range(count)}
-        loads = {name: _named(name) for name in ("x", "u", "p")} | {"t": lambda _: "t"}
-        body = inlined(compiling.module_text(kernels), "dynamics", loads, "a_")
-        results = [f"result_{i} = {result}" for i, result in enumerate(body.results)]
-        half, h, sixth = (tape.given(name, False) for name in ("half", "h", "sixth"))
-        start = [tape.given(f"x_{i}", True) for i in range(n)]
-
-        def rates(time: str, states: list[int]) -> list[int]:
-            own = names | {"t": tape.given(time, True)} | {f"x_{i}": value for i, value in enumerate(states)}
-            known = tape.lines([*body.lines, *results], own)
-            return [known[f"result_{i}"] for i in range(n)]
-
-        def ahead(slopes: list[int], by: int) -> list[int]:
-            return [tape.apply(np.add, x, tape.apply(np.multiply, by, k)) for x, k in zip(start, slopes, strict=True)]
-
-        one = rates("now", start)
-        two = rates("middle", ahead(one, half))
-        three = rates("middle", ahead(two, half))
-        four = rates("end", ahead(three, h))
-        doubled = tape.constant(2.0)
-        self._results = []
-        for i, (a, b, c, d) in enumerate(zip(one, two, three, four, strict=True)):
-            inner = tape.apply(np.multiply, doubled, tape.apply(np.add, b, c))
-            total = tape.apply(np.add, tape.apply(np.add, a, d), inner)
-            self._results.append((tape.apply(np.multiply, sixth, total), f"x_{i}"))
-        self._kept: dict[int, tuple[dict[str, Array], Bound]] = {}
-
-    def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
-        """So many steps of size h from t, in place."""
-        columns = y.shape[1]
-        # taken away while it is in use: another thread makes its own
-        kept = self._kept.pop(columns, None)
-        given, made = self.arranged(columns, len(y), len(u), len(p)) if kept is None else kept
-        rows = {f"{name}_{k}": row for name, table in (("x", y), ("u", u), ("p", p)) for k, row in enumerate(table)}
-        for name, value in {**rows, "half": 0.5 * h, "h": h, "sixth": h / 6.0}.items():
-            given[name][...] = value
-        made.begin()
-        for i in range(steps):
-            now = t + i * h
-            given["now"][()], given["middle"][()], given["end"][()] = now, now + 0.5 * h, now + h
-            made.run()
-        for k, row in enumerate(y):
-            row[:] = given[f"x_{k}"]
-        self._kept = {columns: (given, made)}
-
-    def arranged(self, columns: int, n: int, m: int, parameters: int) -> tuple[dict[str, Array], Bound]:
-        """Arrays by name, aligned, which are not made anew for the next motions, and the tape with them."""
-        counts = (("x", n), ("u", m), ("p", parameters))
-        given = {f"{name}_{k}": aligned(columns) for name, count in counts for k in range(count)}
-        given |= {name: np.empty(()) for name in ("now", "middle", "end", "half", "h", "sixth")}
-        return given, bound(self._tape, given, self._results, columns)
-
-
-def _named(name: str) -> Callable[[int], str]:
-    return lambda k: f"{name}_{k}"
 
 
 def pairs(spec: ProblemSpec) -> list[tuple[int, int]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+
 import numpy as np
 import pytest
 from sympy import sin
@@ -9,8 +11,10 @@ from sympy import sin
 from satsym.analysis.orbits import kepler
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
-from satsym.kernels.batch.tape import Tape, Unsuited, bound
-from satsym.kernels.blocks import OnTape, block_step
+from satsym.kernels.batch.factored import INVERSE, UNIT, Arithmetic, Factored, Unsuited
+from satsym.kernels.batch.runge_kutta import OnTape, fewest
+from satsym.kernels.batch.tape import Buffers, Tape, bound
+from satsym.kernels.blocks import block_step
 from satsym.solvers.simulation import batch
 from satsym.status import BadInput
 from satsym.symbolic import FirstOrder, Variable, symbols_of
@@ -166,31 +170,86 @@ def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):
         block_step(orbit)
 
 
-def test_operations_on_a_tape_are_the_steps_of_the_batch_form():
-    """Also where time is explicit, and for columns that are not finite."""
-    for name in ("polar_orbit", "explicit_time", "beam"):
-        kernels, rng = load(name), np.random.default_rng(3)
-        n, m, k = (len(rows) for rows in (kernels.spec.states, kernels.spec.controls, kernels.spec.parameters))
-        start, u, p = (rng.uniform(0.5, 1.5, (rows, 7)) for rows in (n, m, k))
-        start[0, 3] = np.nan
+SHIPPED = ("polar_orbit", "explicit_time", "beam", "two_body", "roll_yaw", "goddard", "three_modes", "reorientation")
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("h", [0.02, -0.01])
+def test_operations_on_a_tape_are_the_steps_of_the_batch_form(name: str, h: float):
+    """Also where time is explicit, with an odd number of steps, and beside columns that are not finite."""
+    kernels, rng = load(name), np.random.default_rng(3)
+    n, m, k = (len(rows) for rows in (kernels.spec.states, kernels.spec.controls, kernels.spec.parameters))
+    start, u, p = (rng.uniform(0.5, 1.5, (rows, 7)) for rows in (n, m, k))
+    start[0, 3] = np.nan
+    tape, step = OnTape(kernels), batch._RungeKutta(kernels)
+    for steps in (5, 2):
         found, expected = start.copy(), start.copy()
         with np.errstate(all="ignore"):
-            OnTape(kernels).advance(0.3, 0.02, 5, found, u, p)
-            batch._RungeKutta(kernels).advance(0.3, 0.02, 5, expected, u, p)
-        np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-14)
+            tape.advance(0.3, h, steps, found, u, p)
+            step.advance(0.3, h, steps, expected, u, p)
+        others = [0, 1, 2, 4, 5, 6]
+        np.testing.assert_allclose(found[:, others], expected[:, others], rtol=1e-13, atol=1e-14)
+        assert np.isnan(found[0, 3])
+    unmoved = start.copy()
+    tape.advance(0.3, 0.0, 2, unmoved, u, p)
+    np.testing.assert_array_equal(unmoved, start)
+
+
+def test_steps_are_written_with_few_operations():
+    """As they are generated they are 86 and 112; where rates are sums of states alone, they need none but those."""
+    assert fewest(load("polar_orbit")).operations == 49
+    assert fewest(load("two_body")).operations == 85
+    assert fewest(load("double_integrator_energy")).operations == 0
+
+
+def expressions(text: str, late: bool, scales: tuple[float, ...]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """What a tape makes of assignments of `a` and `b`, which change, and of `p` and `q`, and what they come to."""
+    tape, rng = Tape(), np.random.default_rng(1)
+    arithmetic = Arithmetic(tape, scales, late)
+    given = {name: rng.uniform(0.5, 1.5, 3) for name in "abpq"} | {UNIT: np.array(0.1), INVERSE: np.array(10.0)}
+    names = {name: Factored(tape.given(name, name in "ab")) for name in "abpq"}
+    names["a"] = names["a"].times(1.0, -1)  # what is on the tape is a tenth of it
+    known = arithmetic.lines(ast.parse(text).body, names)
+    outs = {name: np.empty(3) for name in known if name not in names}
+    results = {tape.apply(np.positive, arithmetic.plain(known[name])): out for name, out in outs.items()}
+    made = bound(tape, given, results, Buffers(3))
+    made.begin()
+    made.run()
+    own = {"a": 10.0 * given["a"], **{name: given[name] for name in "bpq"}, "math": np}
+    exec(text, own)  # noqa: S102 - the lines of the test below
+    return {name: (out, own[name]) for name, out in outs.items()}
+
+
+@pytest.mark.parametrize("late", [True, False])
+@pytest.mark.parametrize("scales", [(), (2.0, -0.5)])
+def test_what_numbers_are_multiplied_with_late_is_the_same(late: bool, scales: tuple[float, ...]):
+    text = """c = p - 2.0*a*b
+d = -a*b/p - (q - b)*3.0
+e = p/a + q/(2.0*b*p)
+f = a/b/q - b/a
+g = (a*p)*(b*q) + a*a*p*q
+h = 1.0 - a*p + (2.0 + p*q)
+i = math.sin(2.0*a)*p + math.sqrt(a*p)
+j = -a - b
+k = a**2.0 - 0.0*b
+l = p*q - 2.0/p
+m = -2.0*b*p + b*q"""
+    for name, (value, expected) in expressions(text, late, scales).items():
+        np.testing.assert_allclose(value, np.broadcast_to(expected, 3), rtol=1e-14, err_msg=name)
 
 
 def test_a_tape_makes_equal_operations_once_and_refuses_what_is_no_line_of_them():
     tape = Tape()
-    names = {"a": tape.given("a", True), "b": tape.given("b", False)}
-    known = tape.lines(["c = a*b + 2.0*b", "d = b*a + b*2.0", "e = b*b"], names)
-    assert known["c"] == known["d"]
-    assert known["e"] not in tape.changing
-    a, out = np.arange(3.0), np.zeros(3)
-    made = bound(tape, {"a": a, "b": np.full(3, 2.0), "out": out}, [(known["c"], "out")], 3)
+    a, b = tape.given("a", True), tape.given("b", False)
+    twice = tape.apply(np.multiply, b, tape.constant(2.0))
+    c = tape.apply(np.add, tape.apply(np.multiply, a, b), twice)
+    assert c == tape.apply(np.add, tape.apply(np.multiply, tape.constant(2.0), b), tape.apply(np.multiply, b, a))
+    assert tape.apply(np.multiply, b, b) not in tape.changing
+    out = np.zeros(3)
+    made = bound(tape, {"a": np.arange(3.0), "b": np.full(3, 2.0)}, {c: out}, Buffers(3))
     made.begin()
     made.run()
     assert out.tolist() == [4.0, 6.0, 8.0]
     assert len(made.first) == 1
     with pytest.raises(Unsuited):
-        tape.lines(["for i in range(3):", "    a = b"], names)
+        Arithmetic(tape).lines(ast.parse("for i in range(3):\n    a = b").body, {})

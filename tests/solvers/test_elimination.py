@@ -17,9 +17,9 @@ from satsym.solvers.collocation.elimination import AT_ONCE, Blocks, Nodes
 @pytest.fixture
 def anew() -> Iterator[None]:
     """What was loaded is forgotten before and after."""
-    lapack.lapack.cache_clear()
+    lapack._wrapper.cache_clear()
     yield
-    lapack.lapack.cache_clear()
+    lapack._wrapper.cache_clear()
 
 
 @pytest.mark.parametrize(("half", "count"), [(1, 1), (1, 7), (4, 3), (4, 40)])
@@ -72,6 +72,6 @@ def test_elsewhere_it_is_had_from_scipy(monkeypatch: pytest.MonkeyPatch, name: s
     def refused(_: object) -> None:
         raise ImportError
 
-    monkeypatch.setattr(lapack, "WRAPPER", name)
+    monkeypatch.setitem(lapack.WRAPPERS, "lapack", name)
     monkeypatch.setattr(lapack, "module_from_spec", refused)
     assert lapack.lapack().dgbtrf is dgbtrf

@@ -6,31 +6,30 @@ is free again after its last use, and equal operations of a step are made once.
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.lapack import blas
 
 ALIGNED = 64
 """Bytes at whose multiples buffers begin, so that vectors are loaded whole."""
 
-BINARY: Mapping[type, Callable[..., Any]] = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: np.power,
-}
-NAMED = {"fabs": np.abs, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2}
 COMMUTATIVE = (np.add, np.multiply)
 
 
-class Unsuited(Exception):
-    """Code that is no straight line of operations."""
+@dataclass(frozen=True)
+class Moved:
+    """What adds to an array a multiple of another, in its place: BLAS does so at once, NumPy with two calls."""
+
+    by: float
+
+    def __call__(self, x: Array, slope: Array) -> None:
+        blas().daxpy(slope, x, None, self.by)
 
 
 @dataclass(frozen=True)
@@ -70,40 +69,20 @@ class Tape:
         """A number."""
         return self._number(("constant", value), value)
 
-    def lines(self, lines: Sequence[str], names: Mapping[str, int]) -> dict[str, int]:
-        """Assignments, by the names that they give values.
+    def needed(self, wanted: Collection[int]) -> list[int]:
+        """The values that some are made of, and these, in order."""
+        found, stack = set[int](), list(wanted)
+        while stack:
+            value = stack.pop()
+            if value not in found:
+                found.add(value)
+                made = self.made[value]
+                stack += made.operands if isinstance(made, Operation) else ()
+        return sorted(found)
 
-        Raises
-        ------
-        Unsuited
-            If there is anything else.
-        """
-        known = dict(names)
-        for statement in ast.parse("\n".join(lines)).body:
-            match statement:
-                case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                    known[name] = self.expression(value, known)
-                case _:
-                    raise Unsuited
-        return known
-
-    def expression(self, node: ast.expr, names: Mapping[str, int]) -> int:
-        """The value of an expression."""
-        match node:
-            case ast.Name(id=name):
-                return names[name]
-            case ast.Constant(value=int() | float() as value):
-                return self.constant(float(value))
-            case ast.UnaryOp(op=ast.USub(), operand=inner):
-                return self.apply(np.negative, self.expression(inner, names))
-            case ast.BinOp(left=left, op=operator, right=right) if type(operator) in BINARY:
-                sides = self.expression(left, names), self.expression(right, names)
-                return self.apply(BINARY[type(operator)], *sides)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id="math"), attr=name), args=arguments):
-                function = NAMED.get(name) or getattr(np, name)
-                return self.apply(function, *(self.expression(one, names) for one in arguments))
-            case _:
-                raise Unsuited
+    def operations(self, wanted: Collection[int]) -> int:
+        """How many are made in each run."""
+        return sum(value in self.changing and isinstance(self.made[value], Operation) for value in self.needed(wanted))
 
     def _number(self, key: Any, made: Operation | float | str) -> int:
         if key not in self._known:
@@ -112,12 +91,15 @@ class Tape:
         return self._known[key]
 
 
+Calls = list[tuple[Callable[..., Any], tuple[Any, ...]]]
+
+
 @dataclass(frozen=True, eq=False)
 class Bound:
     """A tape with arrays."""
 
-    first: list[tuple[Callable[..., Any], tuple[Array, ...]]]
-    each: list[tuple[Callable[..., Any], tuple[Array, ...]]]
+    first: Calls
+    each: Calls
     """What is called once, and in each run, with what."""
 
     def begin(self) -> None:
@@ -131,65 +113,75 @@ class Bound:
             function(*arguments)
 
 
-def bound(tape: Tape, given: Mapping[str, Array], results: Sequence[tuple[int, str]], columns: int) -> Bound:
+@dataclass
+class Buffers:
+    """Arrays for values, which several runs of one tape share."""
+
+    columns: int
+    fixed: dict[int, Array] = field(default_factory=dict)
+    """Of values that do not change."""
+    free: list[Array] = field(default_factory=list)
+    """That nobody needs now."""
+
+    def taken(self) -> Array:
+        """One of those that are free, or a new one."""
+        return self.free.pop() if self.free else aligned(self.columns)
+
+
+def bound(tape: Tape, given: Mapping[str, Array], results: Mapping[int, Array], buffers: Buffers) -> Bound:
     """Give every value a place.
 
     Parameters
     ----------
     given
-        Arrays by name; results go into some of them, once everything else is computed.
+        Arrays by name.
     results
-        Values, and the names of what they are added to.
-    columns
-        Of each buffer.
+        Values that are wanted, each an operation, and where they go.
+    buffers
+        For all others.
     """
-    last, needed = _last_uses(tape, results)
-    places: dict[int, Array] = {}
-    free: list[Array] = []
-    first, each = [], []
+    needed = tape.needed(results)
+    last = {operand: value for value in needed for operand in _operands(tape, value)}
+    places: dict[int, Array] = dict(results)
+    lent, first, each = set[int](), Calls(), Calls()
     for value in needed:
         made = tape.made[value]
-        if isinstance(made, str):
-            places[value] = given[made]
-            continue
-        if isinstance(made, float):
-            places[value] = np.array(made)
+        if not isinstance(made, Operation):
+            places[value] = given[made] if isinstance(made, str) else np.array(made)
             continue
         operands = tuple(places[k] for k in made.operands)
         if value not in tape.changing:
-            shape = np.broadcast_shapes(*(one.shape for one in operands))
-            places[value] = aligned(columns) if shape else np.empty(())
+            known = value in buffers.fixed and value not in results
+            if known:
+                places[value] = buffers.fixed[value]
+                continue
+            if value not in results:
+                shape = np.broadcast_shapes(*(one.shape for one in operands))
+                places[value] = buffers.fixed[value] = aligned(buffers.columns) if shape else np.empty(())
             first.append((made.function, (*operands, places[value])))
             continue
-        ending = {k for k in made.operands if last[k] == value and isinstance(tape.made[k], Operation)}
-        free += [places[k] for k in sorted(ending) if k in tape.changing]
-        places[value] = free.pop() if free else aligned(columns)
+        for k in sorted({k for k in made.operands if last[k] == value}):
+            if k in lent:
+                buffers.free.append(places[k])
+        if isinstance(made.function, Moved):
+            places[value] = operands[0]
+            each.append((blas().daxpy, (operands[1], operands[0], None, made.function.by)))
+            continue
+        if value not in results:
+            places[value] = buffers.taken()
+            lent.add(value)
         each.append((made.function, (*operands, places[value])))
-    each += [(np.add, (given[name], places[value], given[name])) for value, name in results]
     return Bound(first, each)
 
 
-def _last_uses(tape: Tape, results: Sequence[tuple[int, str]]) -> tuple[dict[int, int], list[int]]:
-    """By value, the last that is made of it, beyond all for results; and which are needed, in order."""
-    wanted, stack = set[int](), [value for value, _ in results]
-    while stack:
-        value = stack.pop()
-        if value not in wanted:
-            wanted.add(value)
-            made = tape.made[value]
-            stack += made.operands if isinstance(made, Operation) else ()
-    last: dict[int, int] = {}
-    needed = sorted(wanted)
-    for value in needed:
-        made = tape.made[value]
-        for operand in made.operands if isinstance(made, Operation) else ():
-            last[operand] = value
-    return last | {value: len(tape.made) for value, _ in results}, needed
+def _operands(tape: Tape, value: int) -> tuple[int, ...]:
+    made = tape.made[value]
+    return made.operands if isinstance(made, Operation) else ()
 
 
-def aligned(columns: int) -> Array:
+def aligned(*shape: int) -> Array:
     """A buffer."""
-    size = 8 * columns
+    size = 8 * math.prod(shape)
     raw = np.empty(size + ALIGNED, dtype=np.uint8)
     begin = -raw.ctypes.data % ALIGNED
-    return raw[begin : begin + size].view(np.float64)
+    return raw[begin : begin + size].view(np.float64).reshape(shape)

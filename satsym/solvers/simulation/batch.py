@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 
 from satsym.arrays import Array
 from satsym.kernels import Kernels
-from satsym.kernels.batch.tape import Unsuited
-from satsym.kernels.blocks import OnTape, block_step, pairs
+from satsym.kernels.batch.factored import Unsuited
+from satsym.kernels.batch.runge_kutta import OnTape
+from satsym.kernels.blocks import block_step, pairs
 from satsym.kernels.composition import weights
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -173,6 +174,8 @@ class _Kicks:
 
 def _rows(name: str, values: ArrayLike | Sequence[ArrayLike], count: int, columns: int) -> Array:
     """A row for each component, shape (count, columns)."""
+    if isinstance(values, np.ndarray) and values.dtype == float and values.shape == (count, columns):
+        return values
     try:
         rows = [np.broadcast_to(np.asarray(row, float), columns) for row in values]  # type: ignore[union-attr]
     except (TypeError, ValueError):

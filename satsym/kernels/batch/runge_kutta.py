@@ -1,0 +1,352 @@
+"""RK4 on arrays, by as few calls of NumPy as are found: each goes through memory, and that is what takes the time.
+
+Half a step is the unit of time, so that slopes are added as they are; and states whose rates are themselves states need
+no slopes of their own. Which states are multiplied by that unit, and which quotients by a number, is tried out
+beforehand. What a step comes to is a sum of rows, the states and the slopes, which products of matrices form.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.kernels.batch import compiling
+from satsym.kernels.batch.factored import INVERSE, UNIT, Arithmetic, Factored
+from satsym.kernels.batch.inlined import inlined
+from satsym.kernels.batch.tape import Bound, Buffers, Moved, Operation, Tape, aligned, bound
+from satsym.kernels.core import Kernels
+from satsym.spec import ProblemSpec
+
+T = TypeVar("T")
+
+STAGES = (("now", 0.0), ("middle", 1.0), ("middle", 1.0), ("end", 2.0))
+"""The time of each, and how many units the slopes before lead on."""
+
+WEIGHTS = (1.0, 2.0, 2.0, 1.0)
+"""Of their slopes, in thirds of a unit."""
+
+SCALES = (2.0, 0.5)
+"""By which quotients are tried to be multiplied."""
+
+MOST_TRIED, MOST_OPERATIONS = 6, 400
+"""Quotients that are tried to be multiplied, and operations of a step up to which anything is tried."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """In which form a step is written."""
+
+    powers: tuple[int, ...]
+    """Of the unit, by which states are multiplied."""
+    scales: tuple[float, ...] = ()
+    """By which quotients are."""
+    late: bool = True
+    """Whether values that never change are multiplied in late."""
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The rate of a state: a value of its own, or a state times a number."""
+
+    rate: Factored
+    state: int | None
+
+    @property
+    def row(self) -> int | None:
+        """The value of its own."""
+        return self.rate.value if self.state is None else None
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A step on a tape."""
+
+    tape: Tape
+    powers: tuple[int, ...]
+    """Of the unit, by which states are multiplied."""
+    slopes: tuple[tuple[Slope, ...], ...]
+    """Of each stage."""
+    ahead: tuple[int | None, ...]
+    """Of the last stage, the states of which two slopes were added to them in place."""
+    quotients: int
+    """Whose scales may be chosen."""
+
+    @property
+    def rows(self) -> list[int]:
+        """Slopes that are values of their own."""
+        every = (slope.row for stage in self.slopes for slope in stage)
+        return list(dict.fromkeys(row for row in every if row is not None))
+
+    @property
+    def operations(self) -> int:
+        """In each step."""
+        return self.tape.operations(self.rows)
+
+    @property
+    def moved(self) -> list[int]:
+        """States that the last stage moves in place."""
+        needed = set(self.tape.needed(self.rows))
+        return [i for i, value in enumerate(self.ahead) if value in needed]
+
+    def ends(self, unit: float) -> Array:
+        """What states come to, as sums of states and rows when the last stage is over, shape (n, n + rows)."""
+        start = now = np.eye(len(self.powers), len(self.powers) + len(self.rows))
+        for _ in self.moved:  # each may follow from others
+            change = STAGES[-1][1] * self._rates(start, unit)[-2][self.moved]
+            start = now.copy()
+            start[self.moved] -= change
+        rates = self._rates(start, unit)
+        return np.asarray(start + sum(weight / 3.0 * one for weight, one in zip(WEIGHTS, rates, strict=True)))
+
+    def _rates(self, start: Array, unit: float) -> list[Array]:
+        """Slopes times the unit, stage by stage, as sums of states and rows, from the states in this form."""
+        n, places = len(self.powers), {value: k for k, value in enumerate(self.rows)}
+        basis, point, found = np.eye(n + len(places))[n:], start, list[Array]()
+        for (_, by), slopes in zip(STAGES, self.slopes, strict=True):
+            point = start + by * found[-1] if found else start
+            rates = np.zeros_like(start)
+            for i, (slope, power) in enumerate(zip(slopes, self.powers, strict=True)):
+                row = basis[places[slope.row]] if slope.row is not None else point[slope.state]
+                rates[i] = slope.rate.factor * unit ** (slope.rate.power + 1 + power) * row
+            found.append(rates)
+        return found
+
+
+def fewest(kernels: Kernels) -> Step:
+    """The step of a model with the fewest operations of those that are tried.
+
+    Raises
+    ------
+    Unsuited
+        If the dynamics are no straight line of operations.
+    """
+    names = ("x", "u", "p")
+    loads: dict[str, Callable[[int], str]] = {name: _numbered(name) for name in names} | {"t": lambda _: "t"}
+    body = inlined(compiling.module_text(kernels), "dynamics", loads, "a_")
+    results = [f"result_{i} = {result}" for i, result in enumerate(body.results)]
+    statements, spec = ast.parse("\n".join([*body.lines, *results])).body, kernels.spec
+    n = len(spec.states)
+
+    def written(choice: Choice) -> Step:
+        return _written(spec, statements, choice)
+
+    idle = written(Choice((0,) * n))
+    velocities = {slope.state for slope in idle.slopes[0] if slope.row is None and slope.rate.factor}
+    scaled = tuple(int(i in velocities) for i in range(n))
+    begun = [Choice(powers, late=late) for powers in dict.fromkeys([(0,) * n, scaled]) for late in (True, False)]
+    if idle.operations <= MOST_OPERATIONS:
+        begun = [_improved(written, choice, min(idle.quotients, MOST_TRIED)) for choice in begun]
+    return min(map(written, begun), key=lambda step: step.operations)
+
+
+def _improved(written: Callable[[Choice], Step], choice: Choice, quotients: int) -> Choice:
+    """Another choice, as long as one is better that differs in one place."""
+    best = replace(choice, scales=(1.0,) * quotients)
+    fewest, powers = written(best).operations, range(len(choice.powers))
+    for scale, k in [(scale, k) for k in range(quotients) for scale in SCALES] + [(None, i) for i in powers]:
+        if scale is None:
+            other = replace(best, powers=_with(best.powers, k, 1 - best.powers[k]))
+        else:
+            other = replace(best, scales=_with(best.scales, k, scale))
+        if (count := written(other).operations) < fewest:
+            best, fewest = other, count
+    return best
+
+
+def _with(values: tuple[T, ...], place: int, value: T) -> tuple[T, ...]:
+    """With another value in a place."""
+    return (*values[:place], value, *values[place + 1 :])
+
+
+def _numbered(name: str) -> Callable[[int], str]:
+    return lambda k: f"{name}_{k}"
+
+
+def _written(spec: ProblemSpec, statements: Sequence[ast.stmt], choice: Choice) -> Step:
+    """A step in the form that was chosen."""
+    tape, powers = Tape(), choice.powers
+    arithmetic = Arithmetic(tape, choice.scales, choice.late)
+    counts = {"u": len(spec.controls), "p": len(spec.parameters)}
+    given = {f"{name}_{k}" for name, count in counts.items() for k in range(count)}
+    names = {name: Factored(tape.given(name, False)) for name in sorted(given)}
+    start = [Factored(tape.given(f"x_{i}", True), 1.0, -power) for i, power in enumerate(powers)]
+    point, moved, found = start, list[int | None](), list[tuple[Slope, ...]]()
+    for stage, (time, by) in enumerate(STAGES):
+        if found:
+            pairs = list(zip(start, found[-1], strict=True))
+            point = [arithmetic.sum(x, slope.rate.times(by, 1)) for x, slope in pairs]
+        if stage == len(STAGES) - 1:
+            moved = [_in_place(tape, x, slope.rate.times(by, 1)) for x, slope in pairs]
+            point = [
+                one if value is None else replace(one, value=value) for one, value in zip(point, moved, strict=True)
+            ]
+        own = names | {"t": Factored(tape.given(time, True))} | {f"x_{i}": value for i, value in enumerate(point)}
+        known = arithmetic.lines(statements, own)
+        rates = [known[f"result_{i}"] for i in range(len(powers))]
+        found.append(tuple(_slope(arithmetic, rate, point, i) for i, rate in enumerate(rates)))
+    return Step(tape, powers, tuple(found), tuple(moved), arithmetic.quotients)
+
+
+def _in_place(tape: Tape, x: Factored, rate: Factored) -> int | None:
+    """Where the slope before leads on from a state, in its place; ``None`` where it must be multiplied first."""
+    suited = rate.value in tape.changing and rate.fixed is None and rate.power == x.power
+    if not suited or x.value is None or rate.value is None:
+        return None
+    return tape.apply(Moved(rate.factor / x.factor), x.value, rate.value)
+
+
+def _slope(arithmetic: Arithmetic, rate: Factored, point: Sequence[Factored], state: int) -> Slope:
+    """The rate of a state at a point."""
+    tape, values = arithmetic.tape, [one.value for one in point]
+    if not rate.factor:
+        return Slope(rate, 0)
+    if rate.value in values and rate.fixed is None:
+        return Slope(rate, values.index(rate.value))
+    if rate.fixed is not None:
+        return Slope(arithmetic.like(rate, point[state].times(1.0, -1)), None)
+    if rate.value is None or not isinstance(tape.made[rate.value], Operation):  # a number, or what was given
+        value = tape.constant(1.0) if rate.value is None else rate.value
+        rate = replace(rate, value=tape.apply(np.positive, value))
+    return Slope(rate, None)
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Sums of the same shape: states that depend on each other, with the slopes that they depend on."""
+
+    states: tuple[tuple[int, ...], ...]
+    rows: tuple[tuple[int, ...], ...]
+    """Which of the step's, for each."""
+    weights: Array
+    """Of states and rows, shape (sums, states, states + rows)."""
+    now: Array
+    after: Array
+    """States and rows before a step and after it, in turns, shape (sums, states + rows, columns)."""
+
+
+class OnTape:
+    """RK4 under constant controls: ``advance(t, h, steps, y, u, p)`` moves every column of y, in place.
+
+    Raises
+    ------
+    Unsuited
+        If the dynamics are no straight line of operations.
+    """
+
+    def __init__(self, kernels: Kernels) -> None:
+        self.step = fewest(kernels)
+        needed = {self.step.tape.made[value] for value in self.step.tape.needed(self.step.rows)}
+        counts = (("u", len(kernels.spec.controls)), ("p", len(kernels.spec.parameters)))
+        self._given = [(name, k) for name, count in counts for k in range(count) if f"{name}_{k}" in needed]
+        self._sums = _sums(self.step)
+        self._times = [name for name in dict.fromkeys(name for name, _ in STAGES) if name in needed]
+        self._ends = lru_cache(maxsize=8)(self.step.ends)
+        self._kept: dict[int, Arranged] = {}
+
+    def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
+        """So many steps of size h from t, in place."""
+        if not h:
+            return
+        columns, unit = y.shape[1], 0.5 * h
+        # taken away while it is in use: another thread makes its own
+        arranged = self._kept.pop(columns, None) or self.arranged(columns)
+        for name, k in self._given:
+            arranged.given[f"{name}_{k}"][...] = (u if name == "u" else p)[k]
+        scales = unit ** np.array(self.step.powers, dtype=float)
+        arranged.begin(self._ends(unit), unit)
+        for row, value, scale in zip(arranged.states(0), y, scales, strict=True):
+            np.multiply(value, scale, out=row)
+        ahead = {"now": 0.0, "middle": unit, "end": h}
+        for i in range(steps):
+            for name in self._times:
+                arranged.given[name][()] = t + i * h + ahead[name]
+            arranged.turns[i % 2].run()
+        for row, value, scale in zip(arranged.states(steps), y, scales, strict=True):
+            np.divide(row, scale, out=value)
+        self._kept = {columns: arranged}
+
+    def arranged(self, columns: int) -> Arranged:
+        """Arrays for so many columns, which are not made anew for the next motions, and the tape with them."""
+        given = {f"{name}_{k}": aligned(columns) for name, k in self._given}
+        given |= {name: np.empty(()) for name in (*self._times, UNIT, INVERSE)}
+        groups = [_group(shape, sums, columns) for shape, sums in self._sums.items()]
+        buffers, values, turns = Buffers(columns), self.step.rows, []
+        for k in range(2):
+            own = dict(given)
+            results: dict[int, Array] = {}
+            for group in groups:
+                table, after = (group.now, group.after)[:: 1 - 2 * k]
+                count = group.weights.shape[1]
+                for states, rows, part in zip(group.states, group.rows, table, strict=True):
+                    own |= {f"x_{i}": part[place] for place, i in enumerate(states)}
+                    results |= {values[row]: part[count + place] for place, row in enumerate(rows)}
+            made = bound(self.step.tape, own, results, buffers)
+            for group in groups:
+                table, after = (group.now, group.after)[:: 1 - 2 * k]
+                made.each.append((np.matmul, (group.weights, table, after[:, : group.weights.shape[1]])))
+            turns.append(made)
+        return Arranged(given, groups, tuple(turns))
+
+
+@dataclass(frozen=True, eq=False)
+class Arranged:
+    """Arrays of a step: what is given, by name, the groups of its sums, and the calls of steps in turns."""
+
+    given: dict[str, Array]
+    groups: list[Group]
+    turns: tuple[Bound, ...]
+
+    def begin(self, ends: Array, unit: float) -> None:
+        """Before the first of some steps."""
+        self.given[UNIT][()], self.given[INVERSE][()] = unit, 1.0 / unit
+        for group in self.groups:
+            for weights, states, rows in zip(group.weights, group.states, group.rows, strict=True):
+                weights[...] = ends[np.ix_(states, [*states, *(len(ends) + row for row in rows)])]
+        for turn in self.turns:
+            turn.begin()
+
+    def states(self, steps: int) -> list[Array]:
+        """After so many steps, in the model's order."""
+        found = dict[int, Array]()
+        for group in self.groups:
+            for states, part in zip(group.states, (group.now, group.after)[steps % 2], strict=True):
+                found |= dict(zip(states, part, strict=False))
+        return [found[i] for i in range(len(found))]
+
+
+Sums = dict[tuple[int, int], list[tuple[tuple[int, ...], tuple[int, ...]]]]
+"""By how many they are: states that depend on each other, and the rows that they depend on."""
+
+
+def _sums(step: Step) -> Sums:
+    """Of a step."""
+    ends = step.ends(0.7) != 0.0
+    n, left = len(ends), set(range(len(ends)))
+    found: Sums = {}
+    while left:
+        states = {min(left)}
+        while True:
+            used = ends[sorted(states)].any(axis=0)
+            more = states | {i for i in range(n) if used[i] or (ends[i] & used).any()}
+            if more == states:
+                break
+            states = more
+        rows = tuple(np.flatnonzero(used[n:]).tolist())
+        found.setdefault((len(states), len(rows)), []).append((tuple(sorted(states)), rows))
+        left -= states
+    return found
+
+
+def _group(shape: tuple[int, int], sums: list[tuple[tuple[int, ...], tuple[int, ...]]], columns: int) -> Group:
+    (states, rows), count = shape, len(sums)
+    tables = [aligned(count, states + rows, columns) for _ in range(2)]
+    for table in tables:
+        table[...] = 0.0
+    weights = np.zeros((count, states, states + rows))
+    return Group(tuple(one for one, _ in sums), tuple(one for _, one in sums), weights, *tables)
