@@ -333,7 +333,7 @@ TRANSLATIONS = {
             "Guling dan geleng satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
         ),
         "Satellite with a constant momentum of its wheel about -y, in a circular orbit": (
-            "Satelit dengan momentum roda yang konstan terhadap -y, pada orbit lingkaran"
+            "Satelit dengan momentum roda yang konstan terhadap sumbu -y, pada orbit lingkaran"
         ),
         "Gyrostat that points to the Earth, linearised about rest": (
             "Girostat yang mengarah ke Bumi, linearisasi di sekitar keadaan diam"
@@ -344,22 +344,22 @@ TRANSLATIONS = {
         "Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques": (
             "Manuver guling dan geleng girostat dengan integral kuadrat torsi yang minimum"
         ),
-        "roll angle, about x, after yaw": "sudut guling, terhadap x, sesudah geleng",
-        "yaw angle, about z, the first of the three": "sudut geleng, terhadap z, yang pertama dari ketiganya",
-        "pitch angle, about y, the last of the three": "sudut angguk, terhadap y, yang terakhir dari ketiganya",
-        "angle of the inner gimbal, about x": "sudut gimbal dalam, terhadap x",
-        "angle of the outer gimbal, about z": "sudut gimbal luar, terhadap z",
-        "deflection of the mode about x": "lendutan modus terhadap x",
-        "deflection of the mode about y": "lendutan modus terhadap y",
-        "deflection of the mode about z": "lendutan modus terhadap z",
-        "angular velocity in space along the body's x": "kecepatan sudut dalam ruang sepanjang sumbu x benda",
-        "angular velocity in space along the body's y": "kecepatan sudut dalam ruang sepanjang sumbu y benda",
-        "angular velocity in space along the body's z": "kecepatan sudut dalam ruang sepanjang sumbu z benda",
+        "roll angle, about x, after yaw": "sudut guling, terhadap sumbu x, sesudah geleng",
+        "yaw angle, about z, the first of the three": "sudut geleng, terhadap sumbu z, yang pertama dari ketiganya",
+        "pitch angle, about y, the last of the three": "sudut angguk, terhadap sumbu y, yang terakhir dari ketiganya",
+        "angle of the inner gimbal, about x": "sudut gimbal dalam, terhadap sumbu x",
+        "angle of the outer gimbal, about z": "sudut gimbal luar, terhadap sumbu z",
+        "deflection of the mode about x": "lendutan modus terhadap sumbu x",
+        "deflection of the mode about y": "lendutan modus terhadap sumbu y",
+        "deflection of the mode about z": "lendutan modus terhadap sumbu z",
+        "angular velocity in space along the body's x": "kecepatan sudut di ruang sepanjang sumbu x benda",
+        "angular velocity in space along the body's y": "kecepatan sudut di ruang sepanjang sumbu y benda",
+        "angular velocity in space along the body's z": "kecepatan sudut di ruang sepanjang sumbu z benda",
         "rate of the inner gimbal": "laju gimbal dalam",
         "rate of the outer gimbal": "laju gimbal luar",
-        "rate of the mode about x": "laju modus terhadap x",
-        "rate of the mode about y": "laju modus terhadap y",
-        "rate of the mode about z": "laju modus terhadap z",
+        "rate of the mode about x": "laju modus terhadap sumbu x",
+        "rate of the mode about y": "laju modus terhadap sumbu y",
+        "rate of the mode about z": "laju modus terhadap sumbu z",
         "rate of the roll angle": "laju sudut guling",
         "rate of the yaw angle": "laju sudut geleng",
         "rate of the pitch angle": "laju sudut angguk",
@@ -369,7 +369,9 @@ TRANSLATIONS = {
         "torque of the motor between wheel and inner gimbal": "torsi motor antara roda dan gimbal dalam",
         "torque on the body in roll": "torsi guling pada benda",
         "torque on the body in yaw": "torsi geleng pada benda",
-        "momentum of the wheel relative to the body, about -y": "momentum roda relatif terhadap benda, terhadap -y",
+        "momentum of the wheel relative to the body, about -y": (
+            "momentum roda relatif terhadap benda, terhadap sumbu -y"
+        ),
         "moment of inertia of the satellite in roll": "momen inersia guling satelit",
         "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
         "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
@@ -387,12 +389,12 @@ TRANSLATIONS = {
         "body": "benda",
         "wheel": "roda",
         "mode": "modus",
-        "frequency of the mode about x, the body fixed": "frekuensi modus terhadap x, dengan benda dijepit",
-        "frequency of the mode about y, the body fixed": "frekuensi modus terhadap y, dengan benda dijepit",
-        "frequency of the mode about z, the body fixed": "frekuensi modus terhadap z, dengan benda dijepit",
-        "damping ratio of the mode about x": "rasio redaman modus terhadap x",
-        "damping ratio of the mode about y": "rasio redaman modus terhadap y",
-        "damping ratio of the mode about z": "rasio redaman modus terhadap z",
+        "frequency of the mode about x, the body fixed": "frekuensi modus terhadap sumbu x, dengan benda dijepit",
+        "frequency of the mode about y, the body fixed": "frekuensi modus terhadap sumbu y, dengan benda dijepit",
+        "frequency of the mode about z, the body fixed": "frekuensi modus terhadap sumbu z, dengan benda dijepit",
+        "damping ratio of the mode about x": "rasio redaman modus terhadap sumbu x",
+        "damping ratio of the mode about y": "rasio redaman modus terhadap sumbu y",
+        "damping ratio of the mode about z": "rasio redaman modus terhadap sumbu z",
     },
 }
 

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py fa1f49f00f5dfcff7088d1aed3cb6b0f
-Digest: fe3e07f42754a15c19f5f917539362e394755d1922c3eeb3d09bb01984eb3974
+Source: ../derivations/examples/brachistochrone.py f18f56c7f88b02210d335c924b489d9e
+Digest: 4731b5a0f6402eaa0b6cebd857cc68137b60c0f40b11f5afb483be492e38822a
 """
 
 import math

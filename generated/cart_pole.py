@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 1ec4b261474823ca7f437e71ca4dd56f
-Digest: 24119c5ae2101ad2f80a219a09b68e8f5d523895533890ec43aafaca1094395e
+Source: ../derivations/examples/cart_pole.py 9a7154384b5eff7ec3322bd0d0378b26
+Digest: 49b4cb861a0c4d1f27bf5dd7fa2978a9236275c65aa6f01b9558b5d88da24d3c
 """
 
 import math

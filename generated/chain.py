@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py 7586c7c24736b49a23ff8d1429f856a6
-Digest: 4a08cb6643a07947dbdd01072ea1eb5414e587a96ffbbc42d464db0cd4144146
+Source: ../derivations/examples/chain.py d29e7ad6f64f73e1d7e1847a9324bcf9
+Digest: f5f265f2c136b4f08fdc6070ac69f5124b1eb30342a342e8508ed58d6095eca2
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 68e75e5a0eefaf3893bb62c7c5faced76640f1f98e783d0db5abe04070ff3476
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: cc42670a25deaa5c1655108081a828c0af019b55d58075ccf143c3ff3202ddab
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 2a9d79bafc964d19b46c3ac7eecef48bbaa3af11242c83d94a54c131b6ac3db3
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: 8f021dc1aa399e82898ead9dcfd5659646feb3624bb4ae65db236a916b2fc0d5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py 27604a23a96d665117c75fa4aca8df42
-Digest: c6849321a29726ab62fbde678f2ad31ff76ecd524d00f3c2932db399afb6f697
+Source: ../derivations/examples/goddard.py 9b052ddd67fc13364b4876e03e6802d0
+Digest: 9d561127f11a390b47b484d93a2eed8845879856b7e39c3d3fab8bf02dbbe343
 """
 
 import math

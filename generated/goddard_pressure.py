@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py 0e43ebacce119da123bfb296be9d49b7
-Digest: 9f03b52d637bd267c6bd36e29270c9bbf4d6616dd258d3e170cc625d8d9e838a
+Source: ../derivations/examples/goddard_pressure.py 691175e550e27f72c662b0b03cb7d0ae
+Digest: 4af7b19a88c7c544faf0838156e8c9c79a080b2ce307fdb3794beba297a6b6a0
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 4ea5d5a7ce0750864276acbd17f4931c38f6776c8dd71fa506897793c804fd2e
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: 6e0b248672941547915aad984676acd229490023c3b7f42ac13fbaccab4af42c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 7e0d67aeedb816dfc987f3cdd1b6e0b1cd39a398b7bb24069c738e3589d95dd6
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: b881970bd1b73ddc47e4573056b5dd26c445c52433b645e95763ef59e5c64dbe
 """
 
 import math

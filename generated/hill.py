@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py b7b14df847dca4bf2b9a93d1ef3edd41
-Digest: 866ae272a0a50fde7acc4fc4c1f5635470a006cdcfe3686ad6022fb794fa6287
+Source: ../derivations/hill.py 1105876c3a88db3643ed0fd96075af15
+Digest: 58f5e47b9219a5019e0dc90f8021cafcc2e91bc4892e00160b5a55f0167c63c9
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 3ec78a7c8707327607d302db3be43cea
-Digest: 6654693c9781bf8246e3869afc0efa598a1580816f44938fc772c3e1b8a7c119
+Source: ../derivations/examples/obstacle.py 054941eaa0fecdb701b53c436d749155
+Digest: 2161959de230d67b93afda6c6e5de5d9da69e9524578a8a6037ddb8ef6dae47b
 """
 
 import math

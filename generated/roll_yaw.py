@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 12110010365c5200143cd259b49f682c81bfb4e4ef2b61f4c02eca2f18629f84
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: aa1ece40519ad62a76b80240502e0028d52584f96ab76cf426fea4eedeff5bb2
 """
 
 import math

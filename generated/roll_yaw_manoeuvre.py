@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 29b82ad6df9a5895d95cd1380b748d3b
-Digest: 4ebb26185e561549d4c86c7c8d2f6b5a1f88bde3fa019ca473315dec133b92d3
+Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
+Digest: 174d951aba0f71be84cb97a6cb3646abdc2557234e9c7a3983e036fd7f83f54a
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py db57e97f9df96084b0175eb46640aaa4
-Digest: 562e9f1366193d829048e1442b7f3d443ced23445104db0eb87172707841031a
+Source: ../derivations/examples/shuttle.py 791a218c15a3090d7ebd6503b41fff8c
+Digest: 73e46d7ff8462ba1df9c2d7b23811ece7dbf376f4f44b83fc72952bf7dae63a5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py db57e97f9df96084b0175eb46640aaa4
-Digest: 2c59f7fb302d1ad980714fe85c767ddfd024735c82be9f6069d8a59bef498793
+Source: ../derivations/examples/shuttle.py 791a218c15a3090d7ebd6503b41fff8c
+Digest: 386635ae2500897202cf0428701cd59b30348041e365618edbb7b7c9f9dff22a
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py 078cf3905af2aafee1b73814bf026035
-Digest: a2d19bf71a28e2c92a82c6f694b7c52c262ef36504ce56e7da87bc9e959c756c
+Source: ../derivations/examples/transfer_fuel.py 368ae8e816b2fce072ae5d156224b4c5
+Digest: 03b0077a66133c0fd50be586f5bde4c298e4c18cc87d803e873de6098a509dbf
 """
 
 import math

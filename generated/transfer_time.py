@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py 42b06c64f5ad41d9d80ce09027f93a9d
-Digest: 1c6e273fa68c2beeeadeeda3fe649d716177d30807ae18d113aa4abb13cff60c
+Source: ../derivations/examples/transfer_time.py f3f85ae410ede7ac5e9208e0b9191e12
+Digest: 532877d063fde9e687c8903a6fbce0dc1f9ab22b5d12cda01a4d2c185dd0bb8c
 """
 
 import math

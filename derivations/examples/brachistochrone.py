@@ -42,7 +42,7 @@ TRANSLATIONS = {
         "height": "tinggi",
         "speed": "laju",
         "direction of the motion below the horizontal": "arah gerak di bawah horizontal",
-        "gravity": "gravitasi",
+        "gravity": "percepatan gravitasi",
     },
 }
 

@@ -58,7 +58,7 @@ TRANSLATIONS = {
         "mass of the cart": "massa kereta",
         "mass at the pole's end": "massa di ujung tiang",
         "length of the pole": "panjang tiang",
-        "gravity": "gravitasi",
+        "gravity": "percepatan gravitasi",
     },
 }
 

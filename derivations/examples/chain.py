@@ -35,7 +35,7 @@ TRANSLATIONS = {
         "A hanging chain": "Rantai yang menggantung",
         "A curve over the horizontal, with its length": "Kurva di atas horizontal beserta panjangnya",
         "height": "tinggi",
-        "length so far": "panjang sejauh ini",
+        "length so far": "panjang sampai titik ini",
         "slope of the chain": "kemiringan rantai",
     },
 }

@@ -53,7 +53,7 @@ TRANSLATIONS = {
         "thrust": "gaya dorong",
         "drag at velocity one and the initial height": "gaya hambat pada kecepatan satu dan ketinggian awal",
         "how fast drag falls with height": "laju berkurangnya gaya hambat terhadap ketinggian",
-        "gravity at the initial height": "gravitasi pada ketinggian awal",
+        "gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",
     },
 }

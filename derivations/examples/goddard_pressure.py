@@ -61,7 +61,7 @@ TRANSLATIONS = {
         "density of the air at the initial height": "massa jenis udara pada ketinggian awal",
         "area that drag acts on": "luas yang dikenai gaya hambat",
         "how fast density falls with height": "laju berkurangnya massa jenis udara terhadap ketinggian",
-        "gravity at the initial height": "gravitasi pada ketinggian awal",
+        "gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",
         "largest dynamic pressure": "tekanan dinamik terbesar",
     },

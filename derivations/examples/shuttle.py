@@ -100,7 +100,7 @@ TRANSLATIONS = {
         "A shuttle glides to the largest latitude without being heated too much": (
             "Pesawat ulang-alik meluncur ke lintang terbesar tanpa terlalu panas"
         ),
-        "Gliding entry over a round Earth at rest": "Masuk atmosfer secara meluncur di atas Bumi bulat yang diam",
+        "Gliding entry over a round Earth at rest": "Masuk atmosfer dengan meluncur di atas Bumi bulat yang diam",
         "altitude": "ketinggian",
         "longitude": "bujur",
         "latitude": "lintang",

@@ -49,8 +49,8 @@ TRANSLATIONS = {
         "transverse velocity": "kecepatan transversal",
         "direction of the thrust, above the local horizontal": "arah gaya dorong di atas horizontal setempat",
         "gravitational parameter": "parameter gravitasi",
-        "thrust over the initial mass": "gaya dorong per massa awal",
-        "flow of mass over the initial mass": "laju massa per massa awal",
+        "thrust over the initial mass": "gaya dorong dibagi massa awal",
+        "flow of mass over the initial mass": "laju aliran massa dibagi massa awal",
     },
 }
 

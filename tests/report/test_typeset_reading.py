@@ -8,8 +8,9 @@ import pytest
 import sympy as sp
 
 from satsym.report.latex.document import render
+from satsym.report.latex.equations import APART, NEAR, array
 from satsym.report.latex.references import cited
-from satsym.report.texts import languages
+from satsym.report.texts import languages, load
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.products import united
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
@@ -75,8 +76,29 @@ def test_a_figure_is_referred_to_before_it_and_stands_before_the_quantities() ->
 
 
 def test_works_cited_together_are_in_the_order_of_their_numbers() -> None:
-    body, _ = cited(r"\cite{bryson} \cite{hartl,bryson}", "it")
+    body, _ = cited(r"\cite{bryson} \cite{hartl,bryson}", "it", load("en"))
     assert body.endswith(r"\cite{it:bryson,it:hartl}")
+
+
+def test_what_is_said_of_a_kind_leads_to_its_literature_where_there_is_one_of_that_kind() -> None:
+    assert "primer vector see" in render(shipped("transfer_fuel"))
+    assert "primer vector see" not in render(shipped("brachistochrone"))
+
+
+def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas() -> None:
+    _, works = cited(r"\cite{kelley}", "it", load("id"))
+    assert "R.~E. Kopp, dan H.~G. Moyer" in works
+    assert "dalam G.~Leitmann" in works
+    assert "<" not in works
+    text = render(shipped("double_integrator_energy"), "id")
+    assert r"J_{\mathrm{diam}}" in text
+    assert r"\mathrm{rest}" not in text
+
+
+@pytest.mark.parametrize(("entry", "between"), [("1", r" \\ "), (r"\tfrac{1}{2}", NEAR), (r"\frac{1}{x}", APART)])
+def test_rows_of_a_matrix_stand_apart_as_its_fractions_need(entry: str, between: str) -> None:
+    assert between in array([["0", entry], ["0", "0"]])
+    assert (r"\vskip" in array([["0", entry], ["0", "0"]])) == (entry != "1")
 
 
 def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() -> None:

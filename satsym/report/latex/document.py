@@ -63,7 +63,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     composer, name = _Composer(derivation, texts), tex.label(derivation.name)
     body = "\n\n".join(composer.paragraphs())
     body = _NAME.sub(lambda found: texts.phrase(found[0]), body)
-    body, works = cited(body, name, texts.get("words", "and"))
+    body, works = cited(body, name, texts)
     source = f"% Written by satsym from the derivation of {name}. Do not edit.\n"
     macros, end = preamble.macros(name, texts), composer.checks()
     if not standalone:
@@ -147,8 +147,8 @@ class _Composer:
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
         said = [conclusion(self._context, c) for c in step.conclusions]
-        further = self._texts.find("further", step.name)
-        return "\n".join((heading, stated, self._shown[step.name].body, *said, *([further] if further else [])))
+        further = [found for key in (step.name, *step.kinds) if (found := self._texts.find("further", key))]
+        return "\n".join((heading, stated, self._shown[step.name].body, *said, *further))
 
     def _sources(self, step: Step) -> str:
         return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})

@@ -17,6 +17,8 @@ INDENT = 1.0
 
 APART = r" \\ \noalign{\vskip 4pt} "
 """Between rows of a matrix with fractions."""
+NEAR = r" \\ \noalign{\vskip 2pt} "
+"""Between rows of a matrix with small fractions, which touch each other otherwise."""
 TALL = 4
 """Lines of one equation that are kept on one page, at most."""
 TOGETHER = 4
@@ -56,7 +58,9 @@ def array(cells: Sequence[Sequence[str]]) -> str:
     if len(cells) == len(cells[0]) == 1:
         return cells[0][0]
     rows = [" & ".join(row) for row in cells]
-    body = (APART if any(r"\frac" in row for row in rows) else r" \\ ").join(rows).replace(r"\frac", r"\dfrac")
+    written = "".join(rows)
+    between = APART if r"\frac" in written else NEAR if r"\tfrac" in written else r" \\ "
+    body = between.join(rows).replace(r"\frac", r"\dfrac")
     return rf"\left(\begin{{array}}{{@{{}}{'c' * len(cells[0])}@{{}}}} {body} \end{{array}}\right)"
 
 

@@ -77,6 +77,7 @@ def _attitude(shown: Picture) -> Iterator[str]:
         look, along = (",black!50", 1.3) if k < 3 else (",thick", 0.95)
         x, y = arrow.end
         side = "right" if x > abs(y) else "below" if abs(x) < abs(y) and y < 0 else "left" if x < 0 else "above"
+        side = "below" if side == "left" and k >= 3 else side  # not on the name of the orbit's axis beside it
         yield rf"\draw[->{look}] (0,0) -- {_at(arrow.end, along * far)} node[{side}] {_names(arrow)}"
     for points, name in shown.turns:
         yield r"\draw[->] plot[smooth] coordinates {" + " ".join(_at(p, far) for p in points) + "}"
