@@ -119,14 +119,10 @@ def run(
                     continue
                 found = [_lost()]
             start, count = study.place(chunk.number)
-            if len(found) < count:
-                one_by_one = apart.setdefault(chunk.number, {})
-                one_by_one[chunk.start] = found[0]
-                if len(one_by_one) < count:
-                    continue
-                found = [row for _, row in sorted(apart.pop(chunk.number).items())]
-            parts.append(chunk.number, start, found)
-            log(f"chunk {chunk.number}: {len(found)} rows in {time.monotonic() - since:.3f} s")
+            whole = found if len(found) == count else _joined(apart, chunk, found[0], count)
+            if whole:
+                parts.append(chunk.number, start, whole)
+                log(f"chunk {chunk.number}: {len(whole)} rows in {time.monotonic() - since:.3f} s")
         report()
 
 
@@ -147,6 +143,13 @@ def _result(future: Future[list[Row]]) -> list[Row] | int:
     if type(error).__name__ == DEADLY:
         return MOST_DEATHS
     raise error
+
+
+def _joined(apart: dict[int, dict[int, Row]], chunk: Chunk, row: Row, count: int) -> list[Row]:
+    """The rows of a chunk that is computed row by row, once all of them are there; none before."""
+    found = apart.setdefault(chunk.number, {})
+    found[chunk.start] = row
+    return [row for _, row in sorted(apart.pop(chunk.number).items())] if len(found) == count else []
 
 
 def _lost() -> Row:

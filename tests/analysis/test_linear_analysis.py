@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import equilibrium, linearise
 from satsym.analysis.linear.polynomials import characteristic, companion_form, companion_matrix, place
-from satsym.analysis.linear.ranks import controllability, hautus, kalman, observability, staircase
+from satsym.analysis.linear.ranks import TOLERANCE, controllability, kalman, observability, staircase
+from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.analysis.linear.stability import stability
 from satsym.analysis.linear.structure import analyse
@@ -99,10 +100,17 @@ def test_what_is_out_of_reach_is_told_with_its_eigenvalues(moved, stuck, inputs,
 
 @settings(max_examples=25)
 @given(SEEDS)
-def test_the_test_of_hautus_agrees_with_the_ranks(seed):
-    lost = hautus(in_other_units(satellite().with_inputs(["u1"]), seed))
-    assert [rank for _, rank in lost] == [3, 4, 4]
-    assert [rank for _, rank in hautus(in_other_units(satellite().with_inputs(["u2"]), seed))] == [4, 4, 4]
+def test_the_ranks_are_those_of_popov_belevitch_and_hautus(seed):
+    """At each eigenvalue s inputs move all modes if (A - s, B) has full rank."""
+    for inputs, ranks in (["u1"], [3, 4, 4]), (["u2"], [4, 4, 4]):
+        given_system = in_other_units(satellite().with_inputs(inputs), seed)
+        fitted = scaled(given_system)
+        pencils = [
+            np.hstack([fitted.A - each.value / fitted.rate * np.eye(len(fitted.A)), fitted.B])
+            for each in spectrum(given_system.A)
+        ]
+        assert [np.linalg.matrix_rank(pencil, TOLERANCE * fitted.size) for pencil in pencils] == ranks
+        assert controllability(given_system).rank == min(ranks)
 
 
 def test_observability_is_that_of_python_control():

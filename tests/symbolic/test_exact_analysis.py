@@ -138,7 +138,7 @@ def test_the_verdict_is_that_of_the_blocks(built: tuple[sp.Matrix, Counter]):
         expected = "marginally stable", "bounded on the axis"
     else:
         expected = "asymptotically stable", "all left"
-    assert (found.verdict, found.cause) == expected
+    assert (found.verdict, found.cause.value) == expected
     assert found.block == largest
     assert found.reason
 

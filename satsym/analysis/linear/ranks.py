@@ -112,20 +112,6 @@ def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
     return reached, basis, form
 
 
-def hautus(given: LinearSystem) -> tuple[tuple[complex, int], ...]:
-    """The test of Popov, Belevitch and Hautus: each eigenvalue s with the rank of (A - s, B).
-
-    The inputs move the modes of those at which the rank is full.
-    """
-    fitted = scaled(given)
-    limit = TOLERANCE * fitted.size
-    found = []
-    for each in spectrum(given.A):
-        pencil = np.hstack([fitted.A - each.value / fitted.rate * np.eye(len(fitted.A)), fitted.B])
-        found.append((each.value, int((np.linalg.svd(pencil, compute_uv=False) > limit).sum())))
-    return tuple(found)
-
-
 @dataclass(frozen=True, eq=False)
 class KalmanForm:
     """Kalman's decomposition: coordinates in four groups, by whether inputs move and outputs show them."""

@@ -21,8 +21,6 @@ from satsym.version import __version__
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation
 
-SECTIONS = ("answer", "certificate", "motion", "pictures", "instance", "derivation", "reproduce")
-
 
 def render(
     solution: Solution, derivation: Derivation | None, given: str, language: str = "en", stated: str = ""

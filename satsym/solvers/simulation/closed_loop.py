@@ -84,23 +84,7 @@ def simulate(
     """
     from scipy.integrate import solve_ivp
 
-    f, p, within = dynamics or instance.model.dynamics, instance.parameters, instance.control_set.nearest()
-    count = 0
     most = MOST_EVALUATIONS + int(FOR_STABILITY * fastest(instance) * abs(nodes[-1] - nodes[0]))
-
-    def rates(t: float, x: Array) -> Any:
-        nonlocal count
-        count += 1
-        if limits is not None and count % EVERY == 0:
-            limits.check()
-        if count > most:
-            return [math.nan] * len(x)
-        try:
-            state = x.tolist()
-            return f(t, state, within(law.control(t, state)), p)
-        except ArithmeticError:
-            return [math.nan] * len(x)
-
     positive = [i for i, state in enumerate(instance.model.spec.states) if state.positive]
 
     def boundary(_t: float, x: Array) -> float:
@@ -110,7 +94,7 @@ def simulate(
     start = np.array(instance.initial)
     with np.errstate(all="ignore"):
         found = solve_ivp(
-            rates,
+            _rates(instance, law, dynamics or instance.model.dynamics, most, limits),
             (float(nodes[0]), float(nodes[-1])),
             start,
             method="DOP853",
@@ -131,6 +115,28 @@ def simulate(
     met = wanted(every) if limits is None else limits.in_blocks(wanted, every)
     u[:, : len(every)] = instance.control_set.project(met)
     return Run(x, u, found.nfev // 12, found.status == 1)
+
+
+def _rates(
+    instance: Instance, law: Law, dynamics: Function, most: int, limits: Limits | None
+) -> Callable[[float, Array], list[float]]:
+    """Rates of change of the states by time and states; NaN where they have none, and from the last evaluation on."""
+    p, within, count = instance.parameters, instance.control_set.nearest(), 0
+
+    def rates(t: float, x: Array) -> list[float]:
+        nonlocal count
+        count += 1
+        if limits is not None and count % EVERY == 0:
+            limits.check()
+        if count > most:
+            return [math.nan] * len(x)
+        try:
+            state = x.tolist()
+            return list(dynamics(t, state, within(law.control(t, state)), p))
+        except ArithmeticError:
+            return [math.nan] * len(x)
+
+    return rates
 
 
 def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 from typing import Literal
 
 import sympy as sp
@@ -11,10 +12,19 @@ from satsym.symbolic.analysis.routh import routh
 from satsym.symbolic.analysis.spectrum import Factor, Spectrum
 
 Verdict = Literal["asymptotically stable", "marginally stable", "unstable", "depends on the parameters"]
-Cause = Literal["all left", "bounded on the axis", "right", "block on the axis", "parameters decide"]
 
 _TIMES = {1: "simple", 2: "double", 3: "triple"}
 _GROWTH = {2: "linearly", 3: "quadratically", 4: "cubically"}
+
+
+class Cause(Enum):
+    """What decides; texts of a verdict have these names."""
+
+    LEFT = "all left"
+    BOUNDED = "bounded on the axis"
+    RIGHT = "right"
+    BLOCK = "block on the axis"
+    PARAMETERS = "parameters decide"
 
 
 @dataclass(frozen=True)
@@ -40,23 +50,23 @@ def stability(of: Spectrum) -> Stability:
     block = max((f.blocks[0] for f in of.factors if f.axis), default=0)
     if right:
         found = tuple(r for f in right for r in _growing(f))
-        return Stability("unstable", "right", found, block, (), _exponential(found))
+        return Stability("unstable", Cause.RIGHT, found, block, (), _exponential(found))
     if any(f.right is None for f in of.factors):
         conditions = tuple(c for c in routh(of.coefficients).column[1:])
         reason = (
             "the parameters decide: all eigenvalues have negative real parts exactly where each of these is positive: "
             + ", ".join(map(str, conditions))
         )
-        return Stability("depends on the parameters", "parameters decide", (), block, conditions, reason)
+        return Stability("depends on the parameters", Cause.PARAMETERS, (), block, conditions, reason)
     if block > 1:
         worst = next(f for f in of.factors if f.axis and f.blocks[0] == block)
-        return Stability("unstable", "block on the axis", worst.roots, block, (), _polynomial(worst))
+        return Stability("unstable", Cause.BLOCK, worst.roots, block, (), _polynomial(worst))
     if block:
         found = tuple(r for f in of.factors if f.axis for r in f.roots)
         reason = "the eigenvalues on the imaginary axis have Jordan blocks of size 1: deviations neither grow nor decay"
-        return Stability("marginally stable", "bounded on the axis", found, block, (), reason)
+        return Stability("marginally stable", Cause.BOUNDED, found, block, (), reason)
     reason = "all eigenvalues have negative real parts: deviations decay exponentially"
-    return Stability("asymptotically stable", "all left", (), block, (), reason)
+    return Stability("asymptotically stable", Cause.LEFT, (), block, (), reason)
 
 
 def _growing(factor: Factor) -> tuple[sp.Expr, ...]:

@@ -13,7 +13,7 @@ from satsym.symbolic.analysis.jordan import jordan_form as jordan_of
 from satsym.symbolic.analysis.routh import RouthArray
 from satsym.symbolic.analysis.routh import routh as routh_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
-from satsym.symbolic.analysis.stability import Stability
+from satsym.symbolic.analysis.stability import Cause, Stability
 from satsym.symbolic.analysis.stability import stability as stability_of
 from satsym.symbolic.checks import DIGITS, Point, compare, numeric, points
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
@@ -53,7 +53,7 @@ def stability(so_far: Derivation) -> Step | None:
         equations += [Equation(name, lhs, sp.ImmutableMatrix([row])) for name, (lhs, row) in rows.items()]
     verdict = stability_of(of)
     checks = [_determinant(of), *(_multiplicities(of) if of.closed_form else ())]
-    if verdict.cause != "parameters decide":
+    if verdict.cause is not Cause.PARAMETERS:
         checks.append(_growth(of, verdict))
     conclusions = (_verdict(verdict), *_assumed(of.assumed))
     return Step(
@@ -153,9 +153,9 @@ def _growth(of: Spectrum, verdict: Stability) -> Check:
     for point in points(_symbols(of), "growth"):
         early, late = (mp.log(mp.mnorm(mp.expm(a(point) * time), "f")) for time in (EARLY, LATE))
         power = float((late - early) / mp.log(mp.mpf(LATE) / EARLY))
-        if verdict.cause == "right":
+        if verdict.cause is Cause.RIGHT:
             errors.append(0.0 if power > DECISIVE else 1.0)
-        elif verdict.cause == "all left":
+        elif verdict.cause is Cause.LEFT:
             errors.append(0.0 if power < -DECISIVE else 1.0)
         else:
             errors.append(abs(power - (verdict.block - 1)))
@@ -186,8 +186,8 @@ def _verdict(found: Stability) -> Conclusion:
     """The sentence of a verdict, with what it speaks of."""
     values: dict[str, sp.Basic] = {"size": sp.Integer(found.block), "power": t ** max(found.block - 1, 0)}
     values |= {"eigenvalues": sp.Tuple(*found.eigenvalues), "conditions": sp.Tuple(*found.conditions)}
-    unnamed = found.cause in ("right", "block on the axis") and not found.eigenvalues
-    return Conclusion(f"{found.cause}, unnamed" if unnamed else found.cause, values)
+    unnamed = found.cause in (Cause.RIGHT, Cause.BLOCK) and not found.eigenvalues
+    return Conclusion(f"{found.cause.value}, unnamed" if unnamed else found.cause.value, values)
 
 
 def _assumed(expressions: tuple[sp.Expr, ...]) -> tuple[Conclusion, ...]:
