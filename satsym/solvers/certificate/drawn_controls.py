@@ -13,8 +13,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
-from satsym.solvers.certificate.neighbours import Simulations, simulations_of
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.certificate.simulations import Simulations, simulations_of
 from satsym.solvers.simulation.together import together
 
 GROUPS, DRAWN, WAVES = 8, 96, 4

@@ -7,23 +7,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
-from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.accessory import Along, accessory
 from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
-from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import idle_end, products, typical
-from satsym.solvers.collocation.problem import ended
-from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.control.regularised import sloping
-
-STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
-"""RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
-solution's end within which these follow it; the fewest that do."""
+from satsym.solvers.certificate.side_by_side import SideBySide
+from satsym.solvers.certificate.simulations import Simulations, simulations_of, stated_control
 
 AMPLITUDES = (0.05, 0.01)
 """Of departures from the control to both sides, relative to the largest control, and of the final time's change."""
@@ -61,53 +53,6 @@ class Neighbours:
         return found
 
 
-@dataclass(frozen=True, eq=False)
-class Simulations:
-    """Simulations of one instance with as many steps."""
-
-    instance: Instance
-    """What is simulated."""
-    rows: NDArray[np.intp]
-    """Indices of the boundary residuals that tie the final state."""
-    scale: Array
-    """Sizes of these."""
-    steps: int
-    """Of each simulation."""
-    end: float
-    """The final time."""
-    own: tuple[Array, float] = (np.zeros((0, 0)), 0.0)
-    """States at the nodes and the integral of the running cost under the solution's own control."""
-    missed: float = 0.0
-    """Relative distance of the end to which that leads from the solution's."""
-
-    def grid(self, longer: float = 0.0) -> Grid:
-        """To a final time that much later."""
-        return Grid.uniform(self.instance.t0, self.end + longer, self.steps)
-
-    def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
-        """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
-        return self.measured(*self.motion(control, grid), grid)
-
-    def measured(self, x: Array, running: float, grid: Grid) -> tuple[float, Array]:
-        """The same of a motion."""
-        instance, end = self.instance, tuple(x[:, -1].tolist())
-        terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
-        none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
-        if instance.model.spec.throttled:
-            none = tuple(sloping(instance, np.zeros((len(end), 1)))[:, 0].tolist())
-        arguments = none, nu, instance.parameters, instance.control_set.arguments, final_argument(instance)
-        residual = ended(instance, grid.tf, end, *arguments)
-        return running + terminal, residual[self.rows] / self.scale
-
-    def motion(self, control: Array, grid: Grid) -> tuple[Array, float]:
-        """States at the nodes and the integral of the running cost."""
-        instance = self.instance
-        x, _, running = instance.model.forward(
-            grid.nodes, instance.initial, control[:, ::2], control[:, 1::2], instance.parameters
-        )
-        return x, running
-
-
 def neighbours(solution: Solution) -> Neighbours:
     """The cheapest neighbour in the direction in which the second variation is least."""
     nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, 2 * len(AMPLITUDES), 0, float("nan")))
@@ -135,14 +80,7 @@ def neighbours(solution: Solution) -> Neighbours:
     unit = direction / size
     search = _Search(simulations, along, solution, reference[1], missed)
     # The grid's own end may make one side cheaper: that is of first order, and cancels in the mean of both.
-    means, turned, before = list[float](), np.zeros((2, len(unit))), math.inf
-    for a in AMPLITUDES:
-        # of what corrections add, the part that is the same to both sides goes with the square of the amplitude
-        share, (one, two) = a / before, turned / 2.0
-        same, other = share**2 * (one + two), share * (one - two)
-        both = [search.corrected(side * a * unit, same + side * other) for side in (1.0, -1.0)]
-        means.append((both[0][0] + both[1][0]) / 2.0)
-        turned, before = np.array([added for _, added in both]), a
+    means = search.together(unit, u) or search.one_by_one(unit)
     solved = [cost for cost in means if np.isfinite(cost)]
     cheapest = min(solved, default=float("inf"))
     stated = solution.objective + (cheapest - reference[0])  # without what simulating makes of both
@@ -176,6 +114,35 @@ class _Search:
         """The grid of the solution's own duration, its nodes with midpoints, and the solution's control there."""
         grid = self.simulations.grid()
         return grid, interleave(grid.nodes, grid.midpoints), stated_control(self.solution, grid)
+
+    def together(self, unit: Array, control: Array) -> list[float] | None:
+        """Mean costs of both sides for each amplitude, all side by side; ``None`` where these do not settle.
+
+        Parameters
+        ----------
+        unit
+            The departure of size one, shape (k,).
+        control
+            The solution's own at nodes and midpoints.
+        """
+        if self.second.duration.any():
+            return None
+        changes = np.outer(unit, [side * a for a in AMPLITUDES for side in (1.0, -1.0)])
+        beside = SideBySide(self.simulations, self.second, control, typical(self.solution)[0])
+        costs = beside.costs(changes, self.end, self.missed)
+        return None if costs is None else [float(mean) for mean in costs.reshape(-1, 2).mean(axis=1)]
+
+    def one_by_one(self, unit: Array) -> list[float]:
+        """The same, each from what was found of the ones before; infinite where a side cannot be made to end there."""
+        means, turned, before = list[float](), np.zeros((2, len(unit))), math.inf
+        for a in AMPLITUDES:
+            # of what corrections add, the part that is the same to both sides goes with the square of the amplitude
+            share, (one, two) = a / before, turned / 2.0
+            same, other = share**2 * (one + two), share * (one - two)
+            both = [self.corrected(side * a * unit, same + side * other) for side in (1.0, -1.0)]
+            means.append((both[0][0] + both[1][0]) / 2.0)
+            turned, before = np.array([added for _, added in both]), a
+        return means
 
     def corrected(self, change: Array, added: Array) -> tuple[float, Array]:
         """The cost of a neighbour once its end is as the solution's, and what that adds to the change.
@@ -214,25 +181,3 @@ class _Search:
         moved = np.array([np.interp(at, times, row) for row in by])
         control = self.simulations.instance.control_set.project(stated_control(self.solution, grid) + moved)
         return self.simulations(control, grid)
-
-
-def simulations_of(solution: Solution) -> Simulations | None:
-    """Simulations with the fewest steps with which the solution's own control leads to its end."""
-    instance, n = solution.instance, len(solution.x)
-    size, _ = typical(solution)
-    fixed = np.flatnonzero(fixed_states(instance))
-    tied = n + np.arange(len(instance.model.spec.multipliers))
-    for steps, limit in STEPS:
-        found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
-        grid = found.grid()
-        own = found.motion(stated_control(solution, grid), grid)
-        missed = float((np.abs(own[0][:, -1] - solution.x[:, -1]) / size).max())
-        if missed < limit:
-            return replace(found, own=own, missed=missed)
-    return None
-
-
-def stated_control(solution: Solution, grid: Grid) -> Array:
-    """The control of a solution at nodes and midpoints, shape (m, 2 N + 1)."""
-    times = interleave(grid.nodes, grid.midpoints)
-    return np.array([np.interp(times, solution.times, row) for row in solution.u])

@@ -18,7 +18,7 @@ from satsym.instance import Guess
 from satsym.solution import Solution
 from satsym.solvers.certificate.accessory import accessory
 from satsym.solvers.certificate.drawn_controls import drawn_below, natural
-from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
+from satsym.solvers.certificate.simulations import Simulations, simulations_of, stated_control
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""

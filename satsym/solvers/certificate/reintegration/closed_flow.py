@@ -12,8 +12,8 @@ from itertools import islice
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.lapack import lapack
 from satsym.solution import Solution
+from satsym.solvers.certificate.reintegration.chain import Chain
 from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
 from satsym.solvers.certificate.reintegration.segments import Segments
 from satsym.solvers.failures import FAILURES
@@ -64,10 +64,5 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
 
 def _moved(along: Segments, gaps: Array) -> Array:
     """By how much stations but the first move for the motion from each to end at the next, shape (2n, K-1)."""
-    size, count = gaps.shape
-    band = np.zeros((count, size, 2 * size))  # below the diagonal, column by column, as LAPACK has it
-    for k in range(size):
-        np.negative(along.transition[1:, :, k], out=band[:-1, k, size - k : 2 * size - k])
-    right = (gaps / along.scale[:, None]).T.reshape(-1, 1)
-    found, _ = lapack().dtbtrs(band.reshape(-1, 2 * size).T, right, uplo="L", diag="U")
-    return np.asarray(found.reshape(count, size).T * along.scale[:, None])
+    carried = Chain(along.transition).carried((gaps / along.scale[:, None]).T[:, :, None])
+    return np.asarray(carried[:, :, 0].T * along.scale[:, None])
