@@ -99,7 +99,7 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     if task.checked is Checked.LOCAL:
         nodes, fine = _confirmed(many, nodes)
     else:
-        fine = nodes.solved & positive(nodes.transition * (many.units / many.units[:, None])[:, :, None, None])
+        fine = _second_variation_positive(many, nodes)
     x, costates, costs, switches = (
         nodes.z[:n, -1].copy(),
         nodes.z[n:, 0].copy(),
@@ -125,6 +125,17 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
         costates=costates,
         switches=switches,
     )
+
+
+def _second_variation_positive(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
+    """Which are solved and minima by steps of low order, without what else makes a certificate."""
+    from satsym.solvers.batch.newton import transitions
+
+    found, solved = nodes.solved.copy(), np.flatnonzero(nodes.solved)
+    with np.errstate(all="ignore"):
+        table = transitions(many.only(solved), nodes.z[:, :, solved])
+        found[solved] = positive(table * (many.units / many.units[:, None])[:, :, None, None])
+    return found
 
 
 def _confirmed(many: Many, nodes: Nodes) -> tuple[Nodes, NDArray[np.bool_]]:

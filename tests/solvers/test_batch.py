@@ -16,7 +16,7 @@ from satsym.solvers.batch import closed_form
 from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.motion import motion
-from satsym.solvers.batch.newton import Nodes, Outcome
+from satsym.solvers.batch.newton import Nodes, Outcome, transitions
 from satsym.solvers.batch.solving import solved, solved_together
 from satsym.solvers.certificate.corners import positive
 from satsym.solvers.two_point import solve
@@ -105,7 +105,7 @@ def test_no_extremal_beyond_its_conjugate_time_is_a_minimum(tf: float, minimum: 
     assert -nodes.z[1, 0, 0] == pytest.approx(0.3, abs=1e-10)
     assert (minima(many, nodes) == minimum).all()
     units = (many.units / many.units[:, None])[:, :, None, None]
-    assert (positive(nodes.transition * units) == minimum).all()
+    assert (positive(transitions(many, nodes.z) * units) == minimum).all()
 
 
 @pytest.mark.slow(in_turn=True)

@@ -63,15 +63,35 @@ def over_blocks(columns: str, lines: Sequence[str]) -> list[str]:
     return [*head, *indented(lines)]
 
 
+def lanes_of(target: str, source: str) -> list[str]:
+    """For each column of a block ``target = source``; where columns are missing the last one stands in.
+
+    In the source the column is ``{column}``. Blocks that are full are read as vectors, which others cannot be.
+    """
+    return [
+        f"if width == {LANES}:",
+        *indented(over_lanes([f"{target} = {source.format(column='at + j')}"])),
+        "else:",
+        *indented(over_lanes([f"{target} = {source.format(column='at + min(j, width - 1)')}"])),
+    ]
+
+
 def loaded(begin: int, source: str, rows: int) -> list[str]:
-    """Rows of an array into the workspace; where columns are missing the last one stands in."""
+    """Rows of an array into the workspace."""
     if not rows:
         return []
-    take = f"w[{begin} + i * {LANES} + j] = {source}[i, at + min(j, width - 1)]"
-    return [f"for i in range({rows}):", *indented(over_lanes([take]))]
+    take = lanes_of(f"w[{begin} + i * {LANES} + j]", f"{source}[i, {{column}}]")
+    return [f"for i in range({rows}):", *indented(take)]
 
 
 def stored(begin: int, target: str, rows: int) -> list[str]:
     """Rows of the workspace into an array."""
     give = f"{target}[i, at + j] = w[{begin} + i * {LANES} + j]"
-    return [f"for i in range({rows}):", "    for j in range(width):", f"        {give}"]
+    return [
+        f"for i in range({rows}):",
+        f"    if width == {LANES}:",
+        *indented(indented(over_lanes([give]))),
+        "    else:",
+        "        for j in range(width):",
+        f"            {give}",
+    ]

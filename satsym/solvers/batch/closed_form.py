@@ -61,8 +61,7 @@ def solved(many: Many) -> Nodes:
         outcome[fine[bounds_met(many.only(fine), z[:, :, fine])]] = Outcome.BOUNDS
         inside = flows[:, :-1].reshape(-1, rows + 1, rows + 1) @ np.repeat(begins[:-1] @ given, POINTS, axis=0)
         cost = _cost(many, inside[:, :rows], np.outer(widths, weights / 2.0).ravel(), np.outer(widths, shares[:-1]))
-    transition = flows[:, -1, :rows, :rows].transpose(1, 2, 0)[..., None]
-    return Nodes(z, cost, error, outcome, np.broadcast_to(transition, (*transition.shape[:3], count)))
+    return Nodes(z, cost, error, outcome)
 
 
 def _cost(many: Many, z: Array, weights: Array, shares: Array) -> Array:

@@ -8,7 +8,16 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.kernels.batch import compiling
-from satsym.kernels.batch.workspace import LANES, Workspace, element, function, indented, over_blocks, over_lanes
+from satsym.kernels.batch.workspace import (
+    LANES,
+    Workspace,
+    element,
+    function,
+    indented,
+    lanes_of,
+    over_blocks,
+    over_lanes,
+)
 
 
 class Condensing(Protocol):
@@ -72,27 +81,24 @@ def text(rows: int) -> str:
     )
 
     def rowwise(count: int, into: int, source: str) -> list[str]:
-        line = f"w[{into} + i * {LANES} + j] = {source}"
-        return [f"for i in range({count}):", *indented(over_lanes([line]))]
+        return [f"for i in range({count}):", *indented(lanes_of(f"w[{into} + i * {LANES} + j]", source))]
 
     product: list[str] = [f"v{k} = {element(now, k)}" for k in range(rows)]
     for i in range(rows):
         terms = " + ".join(f"{element(slopes, i * rows + k)} * v{k}" for k in range(rows))
         product.append(f"{element(after, i)} = {terms} + {element(added, i)}")
-    lane = "at + min(j, width - 1)"
-    stored = ["for i in range({rows}):", "    for j in range(width):"]
     step = [
-        *rowwise(rows * rows, slopes, f"transition[i, s, {lane}]"),
+        *rowwise(rows * rows, slopes, "transition[i, s, {column}]"),
         *rowwise(rows, added, "0.0"),
         "for c in range(columns):",
         *indented(
             [
                 "if c == columns - 1 and gaps.shape[2]:",
-                *indented(rowwise(rows, added, f"gaps[i, s, {lane}]")),
-                *rowwise(rows, now, f"found[i * columns + c, s, {lane}]"),
+                *indented(rowwise(rows, added, "gaps[i, s, {column}]")),
+                *rowwise(rows, now, "found[i * columns + c, s, {column}]"),
                 *over_lanes(product),
-                stored[0].format(rows=rows),
-                stored[1],
+                f"for i in range({rows}):",
+                "    for j in range(width):",
                 f"        found[i * columns + c, s + 1, at + j] = w[{after} + i * {LANES} + j]",
             ]
         ),

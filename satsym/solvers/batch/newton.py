@@ -59,8 +59,6 @@ class Nodes:
     """Estimate of the largest error, relative to the sizes of states and costates, shape (M,)."""
     outcome: NDArray[np.object_]
     """Of :class:`Outcome`, shape (M,)."""
-    transition: Array
-    """Ends of segments by their beginnings, by steps of low order, shape (2n, 2n, N, M)."""
 
     @property
     def solved(self) -> NDArray[np.bool_]:
@@ -69,8 +67,8 @@ class Nodes:
 
     def only(self, chosen: NDArray[np.intp]) -> Nodes:
         """Some of them."""
-        z, cost, error, transition = (rows[..., chosen] for rows in (self.z, self.cost, self.error, self.transition))
-        return Nodes(z, cost, error, self.outcome[chosen], transition)
+        z, cost, error = (rows[..., chosen] for rows in (self.z, self.cost, self.error))
+        return Nodes(z, cost, error, self.outcome[chosen])
 
 
 def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
@@ -118,8 +116,7 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
     cost, error = np.full(many.count, np.nan), np.full(many.count, np.inf)
     before, shown = np.full(many.count, np.inf), np.full(many.count, np.inf)
     parts, on = np.full(many.count, FEWEST_PARTS), np.flatnonzero(outcome == Outcome.SOLVED)
-    transition = _rough(many, z, 2)[1]
-    matching = Matching.of(transition, many.units, many.condense)
+    matching = Matching.of(transitions(many, z), many.units, many.condense)
     for _ in range(MOST_ACCURATE):
         for count in distinct(parts[on]).tolist():
             own = on[parts[on] == count]
@@ -145,7 +142,12 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
         if not len(on):
             break
     outcome[on] = Outcome.NO_CONVERGENCE
-    return Nodes(z, cost, error, outcome, transition)
+    return Nodes(z, cost, error, outcome)
+
+
+def transitions(many: Many, z: Array) -> Array:
+    """Ends of segments by their beginnings, by steps of low order, shape (2n, 2n, N, M)."""
+    return _rough(many, z, 2)[1]
 
 
 def _rough(many: Many, z: Array, parts: int) -> tuple[Array, Array]:

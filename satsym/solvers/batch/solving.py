@@ -73,19 +73,18 @@ def _open(nodes: Nodes) -> NDArray[np.bool_]:
 
 def _blank(many: Many) -> Nodes:
     """Nothing solved yet."""
-    rows, segments, count = 2 * many.states, len(many.mesh) - 1, many.count
+    count = many.count
     return Nodes(
-        np.full((rows, segments + 1, count), np.nan),
+        np.full((2 * many.states, len(many.mesh), count), np.nan),
         np.full(count, np.nan),
         np.full(count, np.inf),
         np.full(count, Outcome.NO_CONVERGENCE, dtype=object),
-        np.full((rows, rows, segments, count), np.nan),
     )
 
 
 def _put(found: Nodes, chosen: NDArray[np.intp], some: Nodes) -> None:
     """Into what was found, in place."""
-    found.z[:, :, chosen], found.transition[..., chosen] = some.z, some.transition
+    found.z[:, :, chosen] = some.z
     found.cost[chosen], found.error[chosen], found.outcome[chosen] = some.cost, some.error, some.outcome
 
 
