@@ -153,6 +153,8 @@ class Found:
     """At the end and at the start, shapes (n, M)."""
     switches: Array
     """How often controls switch, shape (M,)."""
+    unreachable: Mapping[int, str] = field(default_factory=dict)
+    """Why some have no answer: their ends cannot be reached."""
 
 
 def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:
@@ -170,6 +172,11 @@ def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str 
         Column.ORIGIN: found.origins[k],
     }
     return Row(key, Status.CONVERGED.value, "", numbers)
+
+
+def infeasible(key: str, message: str) -> Row:
+    """Of an end that cannot be reached."""
+    return Row(key, Status.INFEASIBLE.value, Status.INFEASIBLE.explain(message))
 
 
 def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:

@@ -52,12 +52,15 @@ def rows_together(task: Task, solve: Together, single: Callable[[str, Instance],
         return []
     found = solve(task, [instance for _, instance in cases])
     verdict = Verdict.LOCAL_MINIMUM.value if task.checked is Checked.LOCAL else None
-    return [
-        rows.of_extremal(key, instance.model.spec, found, k, verdict)
-        if found.minimum[k]
-        else rows.tried(single, key, instance)
-        for k, (key, instance) in enumerate(cases)
-    ]
+
+    def row(k: int, key: str, instance: Instance) -> Row:
+        if found.minimum[k]:
+            return rows.of_extremal(key, instance.model.spec, found, k, verdict)
+        if k in found.unreachable:
+            return rows.infeasible(key, found.unreachable[k])
+        return rows.tried(single, key, instance)
+
+    return [row(k, *case) for k, case in enumerate(cases)]
 
 
 def plain(task: Task) -> bool:
@@ -91,6 +94,7 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     from satsym.solvers.batch.many import Many
     from satsym.solvers.batch.newton import Outcome
     from satsym.solvers.batch.solving import Answers, solved_together
+    from satsym.solvers.batch.unreachable import unreachable
 
     many = Many.of(task.instance, instances, task.compiled)
     linear = closed_form.applies(many)
@@ -124,6 +128,7 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
         x_final=x,
         costates=costates,
         switches=switches,
+        unreachable=unreachable(many, instances, met[~fine[met]]) if linear else {},
     )
 
 

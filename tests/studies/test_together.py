@@ -12,6 +12,9 @@ import pytest
 from satsym import instance, solvers
 from satsym.analysis.regulator import many
 from satsym.report import study as reports
+from satsym.solvers.batch import unreachable
+from satsym.solvers.batch.many import Many
+from satsym.solvers.switching.linear.by_reach import separating
 from satsym.status import BadInput
 from satsym.studies import chunks, solving
 from satsym.studies.asked import Study, Task
@@ -161,3 +164,32 @@ def test_workers_change_no_byte(tmp_path: Path) -> None:
         reports.carry_out(study, tmp_path / name, lambda count=count: Workers(count), count)
     for name in ("table.csv", "result.json", "study.json"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
+
+
+def test_ends_that_no_control_reaches_are_known_from_the_planes_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At rest from q to 0 with u from -1 to U takes at least the root of 2 q (1 + 1/U)."""
+    case, rng = instance.load("double-integrator-energy"), np.random.default_rng(5)
+    assert case.tf is not None
+    cases, least = [], []
+    for off in (-1e-2, -1e-4, 1e-4, 1e-2, 0.3):
+        for upper in rng.uniform(0.5, 2.0, 4).tolist():
+            least.append(case.tf * (1.0 + off))
+            cases.append(replace(case, initial=(least[-1] ** 2 / (2.0 + 2.0 / upper), 0.0), upper=(upper,)))
+    problems, looked = Many.of(case, cases, False), []
+    monkeypatch.setattr(unreachable, "separating", lambda one: looked.append(one) or separating(one))
+    found = unreachable.unreachable(problems, cases, np.arange(len(cases)))
+    assert sorted(found) == [k for k, time in enumerate(least) if time > case.tf]
+    assert len(looked) < len(cases)
+    assert all("separate it from the reachable set" in message for message in found.values())
+
+
+def test_rows_beyond_reach_are_not_solved_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    def alone(*_: object) -> NoReturn:
+        raise AssertionError
+
+    monkeypatch.setattr(solving, "alone", alone)
+    written = instance.read("double-integrator-energy")
+    study = asking(written, written.instance(), {"vary": {"initial.q": "2.5:6.0:4", "control.u1.upper": "0.5:2.0:4"}})
+    found = computed(study)
+    assert {row.status for row in found} == {"infeasible"}
+    assert all(row.message.endswith("wider bounds on the control") for row in found)

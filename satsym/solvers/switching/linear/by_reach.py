@@ -15,7 +15,7 @@ from satsym.solvers.switching.linear.first_arrival import arrivals
 from satsym.solvers.switching.linear.from_costates import guessed
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Priced, Reach, given_rows
-from satsym.solvers.switching.linear.separation import separates
+from satsym.solvers.switching.linear.separation import Plane, plane, separates
 from satsym.solvers.switching.structure import Guess
 
 LATER = 1e-2
@@ -64,11 +64,26 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
     names = instance.model.spec.state_names
     missed = reach.nearest_miss()
     told = ", ".join(f"{names[i]} by {abs(value):.3g}" for i, value in zip(rows, missed, strict=True))
-    plane = ", ".join(f"{names[i]}: {costate[i] / np.abs(costate).max():.3g}" for i in rows)
     return (
         f"no control within its bounds reaches the given end in {instance.tf - instance.t0:.10g}: "
-        f"the nearest one misses {told}, and costates at the end ({plane}) separate it from the reachable set"
+        f"the nearest one misses {told}, and {separated_by(instance, costate)}"
     )
+
+
+def separated_by(instance: Instance, costate: Array) -> str:
+    """What separates an end, in words."""
+    names, largest = instance.model.spec.state_names, np.abs(costate).max()
+    each = ", ".join(f"{names[i]}: {costate[i] / largest:.3g}" for i in given_rows(instance))
+    return f"costates at the end ({each}) separate it from the reachable set"
+
+
+def separating(instance: Instance) -> Plane | None:
+    """A plane with the end of a linear motion on one side and everything that is reached on the other, if any."""
+    motion = linear_motion(instance)
+    if motion is None or instance.tf is None:
+        return None
+    distance, costate = Reach(instance, motion, instance.tf - instance.t0).separation()
+    return plane(instance, costate) if distance > THERE else None
 
 
 def _soonest(instance: Instance, motion: LinearMotion, limits: Limits) -> Exact | None:

@@ -1,8 +1,11 @@
-"""Whether costates separate a given end from all that is reached, by an integration of its own (SciPy's DOP853)."""
+"""Whether costates separate given ends from all that is reached, by an integration of its own (SciPy's DOP853)."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
@@ -17,43 +20,81 @@ LONGEST = 1.0 / 64.0
 """Share of the duration that a step may be: a control could switch unseen in a longer one."""
 
 
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """What motions of one system can do along costates, in a given time, whatever they start from and their bounds."""
+
+    costate: Array
+    """At the end, the largest being 1, shape (n,)."""
+    first: Array
+    """At the start."""
+    up: Array
+    down: Array
+    """The effects of controls along it, integrated where they are positive, and where they are negative, shape (m,)."""
+    drift: float
+    moved: float
+    """The effect of what moves without control, integrated, and its magnitude."""
+
+    def beyond(self, initial: Array, wanted: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
+        """Of which starts, shape (n, M), no control within bounds, (m, M), leads to the end, or past it, shape (M,).
+
+        So much less than the end asks for is a proof, as far as the integration is right.
+
+        Parameters
+        ----------
+        wanted
+            What ends ask for along the costates: the terms of each, shape (F, M).
+        """
+        with np.errstate(invalid="ignore"):
+            least = self.drift + self.up @ lower + self.down @ upper
+            terms = self.moved + (self.up - self.down) @ np.maximum(np.abs(lower), np.abs(upper))
+            begun = self.first[:, None] * initial
+            margin = begun.sum(axis=0) + least - wanted.sum(axis=0)
+            return np.asarray(margin > CLEAR * (np.abs(begun).sum(axis=0) + np.abs(wanted).sum(axis=0) + terms))
+
+
+def plane(instance: Instance, costate: Array) -> Plane | None:
+    """The plane of costates at the given final time, shape (n,); ``None`` where it cannot be integrated.
+
+    The motion must be linear. The adjoint equation is integrated backwards, and with it what controls do along it.
+    """
+    from scipy.integrate import solve_ivp
+
+    assert instance.tf is not None
+    model, p, n, m = instance.model, instance.parameters, len(costate), len(instance.lower)
+    at_zero, idle = (0.0,) * n, (0.0,) * m
+
+    def backwards(t: float, y: Array) -> Array:
+        by_x = np.array(model.jacobian_x(t, at_zero, idle, p)).reshape(n, n)
+        pushed = y[:n] @ np.array(model.jacobian_u(t, at_zero, idle, p)).reshape(n, -1)
+        drift = y[:n] @ np.array(model.dynamics(t, at_zero, idle, p))
+        sides = np.maximum(pushed, 0.0), np.minimum(pushed, 0.0)
+        return np.concatenate([-y[:n] @ by_x, *(-side for side in sides), [-drift, -abs(drift)]])
+
+    largest = costate / max(float(np.abs(costate).max()), 1e-300)
+    start = np.concatenate([largest, np.zeros(2 * m + 2)])
+    longest = LONGEST * (instance.tf - instance.t0)
+    found = solve_ivp(
+        backwards, (instance.tf, instance.t0), start, method="DOP853", rtol=TOLERANCE, atol=1e-14, max_step=longest
+    )
+    if found.status < 0:
+        return None
+    first, up, down, (drift, moved) = np.split(found.y[:, -1], [n, n + m, n + 2 * m])
+    return Plane(largest, first, up, down, float(drift), float(moved))
+
+
 def separates(instance: Instance, costate: Array) -> bool:
     """Whether no control within its bounds brings the motion to its end, or beyond, along the costates at the end.
-
-    The motion must be linear. The adjoint equation is integrated backwards, and with it the least that any control
-    does along it; so much less than the end asks for is a proof, as far as the integration is right.
 
     Parameters
     ----------
     costate
         At the given final time, shape (n,); zero where the final state is free.
     """
-    from scipy.integrate import solve_ivp
-
     assert instance.tf is not None
-    model, p, n = instance.model, instance.parameters, len(costate)
-    low, high = np.array(instance.lower), np.array(instance.upper)
-    largest = np.maximum(np.abs(low), np.abs(high))
-    at_zero, idle = (0.0,) * n, (0.0,) * len(low)
-
-    def backwards(t: float, y: Array) -> Array:
-        by_x = np.array(model.jacobian_x(t, at_zero, idle, p)).reshape(n, n)
-        pushed = y[:n] @ np.array(model.jacobian_u(t, at_zero, idle, p)).reshape(n, -1)
-        drift = y[:n] @ np.array(model.dynamics(t, at_zero, idle, p))
-        least = float(np.minimum(pushed * low, pushed * high).sum())
-        terms = abs(drift) + np.abs(pushed) @ largest
-        return np.concatenate([-y[:n] @ by_x, [-drift - least, -terms]])
-
-    size = max(float(np.abs(costate).max()), 1e-300)
-    start = np.concatenate([costate / size, [0.0, 0.0]])
-    longest = LONGEST * (instance.tf - instance.t0)
-    found = solve_ivp(
-        backwards, (instance.tf, instance.t0), start, method="DOP853", rtol=TOLERANCE, atol=1e-14, max_step=longest
-    )
-    if found.status < 0:
+    one, rows = plane(instance, costate), given_rows(instance)
+    if one is None:
         return False
-    first, least, terms = found.y[:n, -1], float(found.y[n, -1]), float(found.y[n + 1, -1])
-    rows = given_rows(instance)
-    from_start, wanted = first * np.array(instance.initial), (costate / size)[rows] * goal(instance, rows, instance.tf)
-    margin = float(from_start.sum()) + least - float(wanted.sum())
-    return margin > CLEAR * (float(np.abs(from_start).sum() + np.abs(wanted).sum()) + abs(terms))
+    wanted = one.costate[rows] * goal(instance, rows, instance.tf)
+    numbers = (np.array(row)[:, None] for row in (instance.initial, wanted, instance.lower, instance.upper))
+    return bool(one.beyond(*numbers)[0])
