@@ -62,6 +62,22 @@ def in_indonesian(text: str) -> str:
     return _DIMENSION.sub(lambda name: known[name[0]]["id"] if name[0] in known else name[0], text)
 
 
+def measured_in_indonesian(text: str) -> str:
+    """What was measured, with what its terms are called in Indonesian; numbers and formulas stay as they are."""
+    known = _pairs("measured")
+    phrases = "|".join(map(re.escape, known))
+    return re.sub(rf"\b(?:{phrases})\b", lambda phrase: known[phrase[0]], text)
+
+
+def property_in_indonesian(value: str) -> str:
+    """The value of a term: a property that textbooks name in Indonesian, anything else as it is."""
+    return _pairs("properties").get(value, value)
+
+
+def _pairs(table: str) -> dict[str, str]:
+    return {text["en"]: text["id"] for text in tables()[table].values()}
+
+
 def stated(said: Said, what: str = "") -> Said:
     """A sentence without its full stop, and after a colon what there is to it."""
     return joined([said, f": {what}." if what else "."], "")

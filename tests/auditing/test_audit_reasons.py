@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from satsym.auditing.measurements.earth import quantity
 from satsym.auditing.measurements.formulas import subs
 from satsym.auditing.propositions.evaluation import Evaluation
 from satsym.auditing.propositions.reading import proposition
-from satsym.report.findings.review import Review
+from satsym.report.findings.review import Review, measured
 from satsym.report.texts import load
 from satsym.status import BadInput
 from tests.support.ledgers import TANGENTIAL, judged, ledger, row
@@ -57,6 +58,20 @@ def test_reports_in_indonesian_tell_why_in_indonesian_where_the_ledger_does(tmp_
     assert "sign" not in told["id"][0]
     assert told["id"][1:] == ["Nilainya 2.", "It is 2."]
     assert found["second"].diagnosis.endswith("It is 2.")
+
+
+def test_what_terms_measure_is_called_in_indonesian_and_formulas_are_left(tmp_path: Path) -> None:
+    about = "{[E.stability for E in EQUILIBRIA if E.called == 'oscillator with cubic driving'][0]}"
+    claim = {"kind": "claim", "original": "so", "from": [], "why": f"it is {about}", "why_id": f"sistemnya {about}"}
+    rows = [{"item": "1", "printed": "2 == 3", **claim}]
+    (found,) = judged(tmp_path, rows).values()
+    assert (found.why, found.why_id) == ("It is unstable.", "Sistemnya tidak stabil.")
+    row = replace(found, derived="min(u) = 0 (the optimum of its-thesis, 4012 numbers)")
+    assert measured(Review.of(ledger(tmp_path, rows), [row], load("id")).rows[0]) == (
+        "min(u) = 0 (optimum its-thesis, 4012 bilangan)"
+    )
+    formula = replace(row, derived="numbers", by_formula=True)
+    assert Review.of(ledger(tmp_path, rows), [formula], load("id")).rows[0].derived == "numbers"
 
 
 @pytest.mark.parametrize("path", documents.shipped(), ids=lambda path: path.name)

@@ -119,7 +119,11 @@ def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
 ) -> None:
     monkeypatch.setattr("satsym.report.page.run.pictures", lambda _solution, _texts: [])  # have a test of their own
     short = replace(solution, certificate=None)
-    assert render(short, None, "soft-return", "id") == render(short, None, "soft-return", "id")
+    indonesian = render(short, None, "soft-return", "id")
+    assert indonesian == render(short, None, "soft-return", "id")
+    assert "6,283185307 s" in indonesian  # as in its pictures and formulas
+    assert "1,1" in re.findall("<td>([^<]*)</td>", indonesian)
+    assert "6.283185307 s" in render(short, None, "soft-return", "en")
     failed = render(replace(solution, certificate=None, message="<b>no & way"), None, "x", "en")
     assert "&lt;b&gt;no &amp; way" in failed
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -12,7 +13,7 @@ from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import Proposition, matching, proposition
 from satsym.auditing.propositions.relations import Fit
-from satsym.auditing.sentences import Said
+from satsym.auditing.sentences import Said, property_in_indonesian
 from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
@@ -66,10 +67,10 @@ class Pages:
 
     def explained(self) -> Said:
         """The sentence for people, with what its terms measure."""
-        return Said(*(self._filled(why) for why in (self._row.why, self._row.why_id)))
+        return Said(self._filled(self._row.why, str), self._filled(self._row.why_id, property_in_indonesian))
 
-    def _filled(self, why: tuple[str | Proposition, ...]) -> str:
-        return "".join(part if isinstance(part, str) else self._evaluation.term(part) for part in why)
+    def _filled(self, why: tuple[str | Proposition, ...], written: Callable[[str], str]) -> str:
+        return "".join(part if isinstance(part, str) else written(self._evaluation.term(part)) for part in why)
 
     @cached_property
     def _evaluation(self) -> Evaluation:

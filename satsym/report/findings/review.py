@@ -10,7 +10,7 @@ from typing import Any
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
-from satsym.auditing.sentences import say
+from satsym.auditing.sentences import measured_in_indonesian, say
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
@@ -44,9 +44,7 @@ class Review:
     def of(cls, ledger: Ledger, rows: Sequence[Judged], texts: Texts) -> Review:
         """What was judged, in the language of a report as far as it is known in that."""
         if texts.language == "id":
-            rows = [
-                replace(row, why=row.why_id or row.why, diagnosis=row.diagnosis_id or row.diagnosis) for row in rows
-            ]
+            rows = [_in_indonesian(row) for row in rows]
         return cls(ledger, rows, texts)
 
     @property
@@ -221,6 +219,11 @@ def items(judged: Sequence[Judged]) -> list[str]:
     for row in judged:
         numbers[row.item] = numbers.get(row.item, 0) + 1
     return [f"{item} ({number})" if number > 1 else item for item, number in numbers.items()]
+
+
+def _in_indonesian(row: Judged) -> Judged:
+    derived = row.derived if row.by_formula else measured_in_indonesian(row.derived)
+    return replace(row, why=row.why_id or row.why, diagnosis=row.diagnosis_id or row.diagnosis, derived=derived)
 
 
 def measured(row: Judged) -> str:

@@ -8,7 +8,7 @@ from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.prose import scrolled
 from satsym.report.results.unit_names import time_unit
-from satsym.report.said import message, say
+from satsym.report.said import decimal, message, numbers, say
 from satsym.report.terminal.solution import control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
@@ -23,7 +23,7 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
     span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""
     switches = ", ".join(
-        f"{name} {', '.join(figure(t) for t in times)}"
+        f"{name} {numbers(map(figure, times))}"
         for name, times in zip(spec.control_names, solution.switching_times, strict=True)
         if times
     )
@@ -41,7 +41,9 @@ def facts(solution: Solution, texts: Texts) -> Markup:
         "switching_times": f"{switches} {unit}" if switches else "",
         "events": events,
     }
-    pairs = [tag("dt", texts.get("page", key)) + tag("dd", value.strip()) for key, value in known.items() if value]
+    pairs = [
+        tag("dt", texts.get("page", key)) + tag("dd", decimal(value.strip())) for key, value in known.items() if value
+    ]
     return tag("dl", *map(Markup, pairs))
 
 
@@ -80,10 +82,10 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
 
 
 def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
-    """Rows below their header, without columns that hold nothing; a first cell names its row."""
+    """Rows below their header, without empty columns; a first cell names its row, and numbers are as in print."""
     header, *body = rows
     body = [
-        [unit_text(cell) if name == say("unit") else cell for name, cell in zip(header, row, strict=True)]
+        [unit_text(cell) if name == say("unit") else decimal(cell) for name, cell in zip(header, row, strict=True)]
         for row in body
     ]
     kept = [k for k, column in enumerate(zip(*body, strict=True)) if any(column)] if body else []

@@ -13,6 +13,7 @@ from satsym.report.latex.checks import checked
 from satsym.report.latex.document import SECTION_FROM, in_language
 from satsym.report.latex.steps import Context, conclusion, listed_sources, rule
 from satsym.report.page.prose import prose, scrolled
+from satsym.report.said import decimal
 from satsym.report.terminal.table import figure
 from satsym.report.texts import PHRASES, Texts
 from satsym.spec import Variable
@@ -96,7 +97,7 @@ class Derived:
             tag("td", math(v.latex)),
             tag("th", tag("code", v.symbol), scope="row"),
             tag("td", unit_text(v.unit)),
-            tag("td", "" if value is None else figure(value, 10), class_="number"),
+            tag("td", "" if value is None else decimal(figure(value, 10)), class_="number"),
             tag("td", said, lang=self._texts.language if self._texts.find(PHRASES, v.meaning) else "en"),
         )
 

@@ -12,6 +12,7 @@ from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.plots.orbits.scenes import Orbit, box
 from satsym.report.plots.scene import Scene
+from satsym.report.said import decimal
 from satsym.report.texts import Texts
 
 SIDE = 400.0
@@ -42,7 +43,7 @@ def motion(scene: Scene, texts: Texts) -> Markup:
         tag("path", d=f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12", class_="origin"),
         *(_body(name, places) for name, places in evenly.items()),
     ]
-    span = f"{number(float(scene.times[-1] - scene.times[0]))} {unit_text(scene.time_unit)}".strip()
+    span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit_text(scene.time_unit)}".strip()
     return tag(
         "figure",
         tag("input", type="checkbox", id="pause"),
