@@ -198,6 +198,7 @@ def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch
         ('model = "polar_orbit"\n[time]\ntf = []\n', ("solve", "x.toml")),
         ('model = "../nothing"\n[initial]\nq = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
         ("", ("solve", "uny-lqr", "--set", "time.tf=-1")),
+        ('model = "polar_orbitt"\n[initial]\nr = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
         ("", ("new", "My Model")),
         ("", ("latex", "polar_orbitt")),
         ("", ("lqr", "clohessy_wiltshire", "--set", "initial.x1=1")),
@@ -213,6 +214,24 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
     shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\](?: \w+)?|(?<=: )\w+:|bukan TOML yang sah: [^;]*", "", other[2]))
     assert not ENGLISH.search(shown), other[2]
     assert other[2] != english[2]
+
+
+@pytest.mark.parametrize(
+    ("english", "indonesian"),
+    [
+        ("k.py:3: 'Newton' is not defined; write `from m import Newton`", "tulislah `from m import Newton`"),
+        ("k.py:3: Newton has no field 'rate'; did you mean \"rates\"?", "tidak mempunyai isian 'rate'"),
+        ("k.py:3: powers are written **, as in x**3; ^ is none in Python", "^ bukan pangkat dalam Python"),
+        ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),
+        ('x.toml: [final] r: got "a list of 2"; write a number', 'tertulis "a list of 2"'),
+        ("l.toml:3: row 1: got a table; write an expression in quotes", "tertulis tabel"),
+    ],
+)
+def test_mistakes_of_files_are_said_in_indonesian_and_what_they_hold_is_left(english: str, indonesian: str) -> None:
+    with spoken("id"):
+        said_so = message(english)
+    assert indonesian in said_so
+    assert not ENGLISH.search(NAMES.sub("", re.sub(r"`[^`]*`", "", said_so)))
 
 
 @pytest.mark.parametrize(

@@ -34,8 +34,8 @@ _FOREIGN = "error"
 """The place of what a library says, which nobody translates."""
 _TEXT_PLACE = "said_"
 """Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
-_MIXED, _BETWEEN = "arcs", re.compile(r"(, | \(|\))")
-"""The place of names of arcs, some of which are words of ours, and what is between them."""
+_MIXED, _BETWEEN = ("arcs", "got"), re.compile(r"(, | \(|\))")
+"""Places of names of arcs and of what was got, some of which are words of ours, and what is between them."""
 _ASKED: ContextVar[str | None] = ContextVar("language", default=None)
 
 
@@ -159,7 +159,7 @@ def _part(place: str, text: str, asked: str) -> str | None:
     """What fills a place, translated where it is a text; nothing where it is a sentence and is to be a name."""
     if place.startswith(_TEXT_PLACE):
         return _inside(text, asked)
-    if place == _MIXED:
+    if place in _MIXED:
         return "".join(_translated(part, asked, "items") or part for part in _BETWEEN.split(text))
     return None if place != _FOREIGN and _SENTENCE.search(_QUOTED.sub("", text)) else text
 
