@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -47,19 +47,19 @@ class Arcs:
 
     def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
         """The same after a share of a correction; its first argument in shape (N+1, 2n)."""
-        return replace(self, nodes=self.nodes + length * nodes.T, theta=self.theta + length * theta)
+        return Arcs(self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps)
 
     def with_steps(self, steps: int) -> Arcs:
         """The same with another number of steps."""
-        return replace(self, steps=steps)
+        return Arcs(self.problem, self.mesh, self.nodes, self.theta, steps)
 
     def size(self, nodes: Array, theta: Array) -> float:
         """Largest change: of states, relative to their size (at least one), of costates and a free duration."""
-        n, here, change = self.problem.states, np.abs(self.nodes).max(axis=1), np.abs(nodes).max(axis=0)
-        changes = [change[:n].max() / max(1.0, here[:n].max()), change[n:].max() / max(FAINT, here[n:].max())]
-        if self.problem.free_time:
-            changes.append(abs(theta[-1] / self.theta[-1]))
-        return float(max(changes))
+        state, costate = np.abs(self.nodes).reshape(2, -1).max(axis=1).tolist()
+        change = np.abs(nodes).max(axis=0).reshape(2, -1).max(axis=1)
+        changes = change / (max(1.0, state), max(FAINT, costate))
+        found = float(changes.max())  # no number where one is none
+        return max(found, abs(float(theta[-1] / self.theta[-1]))) if self.problem.free_time else found
 
     @cached_property
     def course(self) -> tuple[Array, Array]:

@@ -48,11 +48,12 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
     arcs, error, iterations
         The last arcs, with twice as many steps; their estimated error, infinite where Newton failed; corrections.
     """
-    enough, shown = arcs.steps, False
+    enough, shown, transition = arcs.steps, False, None
     arcs = arcs.with_steps(max(enough // FEWER, 1))
     for iteration in range(1, MOST + 1):
         try:
-            nodes, theta = _correction(arcs)
+            # what twice as many steps would say of the arcs' derivatives changes a correction that is next to nothing
+            nodes, theta, transition = _correction(arcs, transition if shown else None)
         except np.linalg.LinAlgError:
             break
         arcs = arcs.moved(nodes, theta, within_domain(arcs, nodes, theta))
@@ -71,18 +72,22 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
     return arcs, float("inf"), iteration
 
 
-def _correction(arcs: Arcs) -> tuple[Array, Array]:
-    """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns."""
+def _correction(arcs: Arcs, transition: Array | None) -> tuple[Array, Array, Array]:
+    """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns; how arcs end by where they begin.
+
+    Parameters
+    ----------
+    transition
+        The latter, (N, 2n, 2n), if it is known well enough: integrating it takes several times as long as the arcs.
+    """
     problem, case, n = arcs.problem, arcs.problem.instance, arcs.problem.states
+    nodes, scale = np.ascontiguousarray(arcs.nodes.T), problem.scale.both[:, 0]
+    times = case.t0 + problem.elapsed(arcs.theta) * arcs.mesh
+    given = case.parameters, problem.control_set.arguments
+    ends, _, varied = integrator(case.model, transition is None)(times, nodes * scale, arcs.steps, *given)
+    transition = varied if transition is None else transition
     field = spread(case.model, problem.free_time)(
-        np.ascontiguousarray(arcs.nodes.T),
-        problem.initial,
-        arcs.mesh,
-        case.t0 + problem.elapsed(arcs.theta) * arcs.mesh,
-        arcs.steps,
-        case.parameters,
-        problem.control_set.arguments,
-        problem.scale.both[:, 0],
+        nodes, problem.initial, arcs.mesh, times, ends, transition, *given, scale
     )
     residual, by_end, by_theta = problem.ending(arcs.nodes[:, -1], arcs.theta)
     slopes = by_end @ field[-1]
@@ -92,26 +97,33 @@ def _correction(arcs: Arcs) -> tuple[Array, Array]:
     if singular:
         raise np.linalg.LinAlgError("singular")
     start = np.concatenate([found[:n], found[len(found) - problem.free_time :], [1.0]])
-    return field @ start, found[n:]
+    return field @ start, found[n:], transition
 
 
 @lru_cache(maxsize=16)
 def spread(model: Kernels, free_time: bool) -> Compiled:
     """How nodes follow what is unknown at the start if all arcs are to meet, compiled at its first call.
 
-    ``(nodes, initial, mesh, times, steps, p, bounds, scale) -> field`` in scaled variables: the columns of the field,
-    shape (N+1, 2n, k), are what each initial costate does, what the duration does where it is free, and what
-    closes the gaps between the arcs and at the start.
+    ``(nodes, initial, mesh, times, ends, transition, p, bounds, scale) -> field`` in scaled variables, but for the ends
+    of arcs and how these follow their beginnings: the columns of the field, shape (N+1, 2n, k), are what each initial
+    costate does, what the duration does where it is free, and what closes the gaps between the arcs and at the start.
     """
     n = len(model.spec.states)
     rows, last = 2 * n, n + free_time
-    arcs, vector, rates = integrator(model, True), packed(n), model.functions["canonical"]
+    vector, rates = packed(n), model.functions["canonical"]
 
     @njit()
     def field(
-        nodes: Array, initial: Array, mesh: Array, times: Array, steps: int, p: Numbers, bounds: Numbers, scale: Array
+        nodes: Array,
+        initial: Array,
+        mesh: Array,
+        times: Array,
+        ends: Array,
+        transition: Array,
+        p: Numbers,
+        bounds: Numbers,
+        scale: Array,
     ) -> Array:
-        ends, _, transition = arcs(times, nodes * scale, steps, p, bounds)
         found, begun = np.zeros((len(mesh), rows, last + 1)), np.zeros(rows)
         for j in range(n):
             found[0, n + j, j] = 1.0
