@@ -85,12 +85,11 @@ def solve(
     from satsym.instance.numbers import changed
     from satsym.report.results.objects import solution_object, with_settings
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
-    from satsym.studies.reading import settings
 
     written = instance.read(subject)
     written = replace(written, tree=_continued(written.tree, varied))
     case = written.instance()
-    given = settings(case, values)
+    given = _set(case, values)
     case = _changed(changed(case, given), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, look)
     with live() as line:
@@ -129,6 +128,15 @@ def _number(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
+
+
+def _set(case: Instance, values: Sequence[str]) -> dict[str, float]:
+    """What ``--set`` gives, by key; studies, which read it, are loaded for that only."""
+    if not values:
+        return {}
+    from satsym.studies.reading import settings
+
+    return settings(case, values)
 
 
 def _changed(case: Instance, **options: Any) -> Instance:
