@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from satsym.arrays import Array
-from satsym.solvers.cold_start.from_path import from_path
+from satsym.solvers.cold_start.from_path import finished, from_path
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import kept, settled
@@ -28,7 +28,7 @@ HARDER = 0.1
 HARDEST, HARD = 1e-6, 1e-2
 """Softness at which this ends, and from which on the bounds themselves are tried."""
 
-TOLERANCE, MOST, TRIED = 1e-5, 40, 60
+TOLERANCE, MOST, TRIED = 1e-5, 40, 20
 """Size of the last step of each minimisation; steps of one, and of the first."""
 
 BLOCKED = 5.0
@@ -51,7 +51,8 @@ def within_bounds(
     most
         Steps of its minimisation.
     """
-    first = from_path(problem.softened(softness), path, limits, most)
+    softened = problem.softened(softness)
+    first = finished(softened, from_path(softened, path, limits, most), limits)
     if not first.minimum:
         return first
     if not first.curve.in_domain(problem.positive):

@@ -96,7 +96,7 @@ def minimise(
         limits.tell(cost * problem.scale.cost, size)
         if size < tolerance:
             curve, known = curve.moved(step, 1.0), linearised if newton else None
-            reason, known = _kind(system, curve, known, sure=newton and not close)
+            reason, known = kind(system, curve, known, sure=newton and not close)
             return Attempt(curve, reason, iteration + 1, system.cost(curve), hard, known)
         close = newton and size < CLOSE and fraction == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
@@ -237,7 +237,9 @@ def _convex(hessians: Array) -> Array:
     return found
 
 
-def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:
+def kind(
+    system: System, curve: Curve, near: Linearised | None = None, sure: bool = False
+) -> tuple[Reason, Linearised | None]:
     """Whether an extremal is a minimum, and the equations by which that is judged: those next to it, if at hand.
 
     Parameters
