@@ -19,6 +19,7 @@ from satsym.cli.app import program
 from satsym.cli.help import texts
 from satsym.report import plots, said
 from satsym.report.said import counted, decimal, message, numbers, say, spoken, translations
+from satsym.report.terminal.keys import keys_text
 from satsym.solvers import simulate, solve
 from satsym.spec import ProblemSpec
 from satsym.status import Status, Verdict
@@ -156,6 +157,14 @@ def test_all_titles_that_are_shipped_are_translated_and_meanings_of_the_satellit
         for text in authored(kernels.load(name).spec)
     }
     assert own - {""} - INDONESIAN.keys() == set()
+
+
+def test_every_key_of_an_instance_file_is_explained_in_indonesian() -> None:
+    with spoken("id"):
+        listed = keys_text()
+    assert not ENGLISH.search(NAMES.sub("", re.sub(r"\[[^]]*\]|^ {2}\S+|simulate --feedback", "", listed, flags=re.M)))
+    heads, others = (re.findall(r"^\[.*", text, re.M) for text in (listed, keys_text()))
+    assert heads == others != []
 
 
 def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> None:

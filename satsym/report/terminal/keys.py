@@ -8,6 +8,7 @@ from itertools import groupby
 from pathlib import Path
 
 from satsym.instance.keys import Entry, entries
+from satsym.report.said import message, say
 
 HEAD = """# Instance files
 
@@ -38,21 +39,22 @@ def keys_text() -> str:
     blocks = []
     for title, rows in _blocks():
         deep = 4 + max((len(row[0]) for row in rows if len(row[0]) <= DEEPEST), default=0)
-        lines = [title]
+        lines = [message(title)]
         for name, value, unit, default, meaning, _ in rows:
-            about = "; ".join(part for part in (value, unit and f"unit: {unit}", _said(default)) if part)
-            first = f"  {name}".ljust(deep)
+            of = unit and say("unit: <unit>", unit=message(unit))
+            about = "; ".join(part for part in (message(value), of, _said(default)) if part)
+            first = f"  {message(name) if ' ' in name else name}".ljust(deep)
             if len(first) > deep:
                 lines.append(first)
                 first = " " * deep
-            for start, text in ((first, meaning), (" " * deep, about)):
+            for start, text in ((first, message(meaning)), (" " * deep, about)):
                 lines += textwrap.wrap(text, width, initial_indent=start, subsequent_indent=" " * deep)
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks)
 
 
 def _said(default: str) -> str:
-    return default if default in ("", REQUIRED) else f"by default {default}"
+    return message(default) if default in ("", REQUIRED) else say("by default <value>", value=default)
 
 
 def page() -> str:
