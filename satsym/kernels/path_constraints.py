@@ -67,7 +67,8 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
     if of.kernels.spec.switching:
         return
     slope = of("stationarity", u=u)
-    yield Relation("path_multiplier", "makes the control stationary", slope, -eta * effect, np.abs(slope))
+    terms = np.abs(slope) + np.abs(of("control_hessian", u=u) * u).sum(axis=1)  # of a control that is free they cancel
+    yield Relation("path_multiplier", "makes the control stationary", slope, -eta * effect, terms)
 
 
 def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:

@@ -20,6 +20,9 @@ from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
 
+CORNERS = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.Piecewise)
+"""Functions whose derivatives jump; of them only the magnitude of a control has its own place in a law."""
+
 
 def refuse_misfits(model: Model, problem: Problem | None) -> None:
     """Refuse declarations that do not fit together: states, rates, references, sizes of vectors.
@@ -125,6 +128,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     parameters, constants = set(symbols_of(model.parameters)), constants_of(model)
     motion = constants | set(symbols_of(model.states))
     everything = motion | set(symbols_of(model.controls))
+    moving = {*symbols_of(model.states), *symbols_of(model.controls), n.TIME}
+    magnitudes = {sp.Abs(u) for u in symbols_of(model.controls)}
     fixed = parameters | set(symbols_of(one.variable for one in model.definitions))
 
     def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
@@ -135,6 +140,13 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         if foreign:
             message = f"{derivation.name}: {what} {_complaint(foreign, everything)}"
             raise DerivationError(message, (field, *sorted(s.name for s in foreign)))
+        corners = (e for stated in expressions for e in sp.sympify(stated).atoms(*CORNERS) if e not in magnitudes)
+        if jumping := sorted(str(e) for e in corners if e.free_symbols & moving):
+            raise DerivationError(
+                f"{derivation.name}: {what} has {jumping[0]} in it, whose derivatives jump; state what is smooth, such "
+                "as sqrt(v**2 + h**2) with a small h in place of Abs(v)",
+                (field,),
+            )
 
     for definition in model.definitions:
         refuse(f"the value of {definition.variable.symbol}", [definition.value], parameters, "definitions")

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from sympy import Float, cos
 
 from satsym.solvers import solve
-from satsym.status import Status, Verdict
+from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import t
 from tests.support.models import build, k, q, scalar, w
 
@@ -48,6 +48,19 @@ def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: 
     assert found.objective == pytest.approx(cost, rel=1e-9)
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.slow(in_turn=True)
+def test_of_a_control_whose_square_is_paid_for_the_better_bound_is_taken(tmp_path: Path) -> None:
+    """At full speed towards zero; an instance without both bounds has no such law."""
+    problem = scalar("paid_for_speed", w, q**2 - w**2, 0, "box")
+    text = "[initial]\nq = 1.0\n[time]\ntf = 0.5\n"
+    found = solve(build(tmp_path, problem, text + "[control]\nw = [-1.0, 1.0]\n"))
+    assert found.objective == pytest.approx((1.0 - 0.5**3) / 3.0 - 0.5, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    with pytest.raises(BadInput, match="need not be convex in this control, so it needs both bounds"):
+        solve(build(tmp_path, problem, text))
 
 
 @pytest.mark.parametrize(("size", "rate", "weight"), [(0.55, 4.59, 0.05), (0.69, 4.68, 0.05), (0.38, 4.61, 0.05)])

@@ -14,7 +14,7 @@ import pytest
 from satsym.derivations.examples.transfer_fuel import m, transfer_fuel
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
-from sympy import sqrt
+from sympy import Rational, sqrt
 
 from satsym import instance
 from satsym.instance import Instance
@@ -27,6 +27,7 @@ from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
 from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.cold_start.arcs_of_norms import _steady
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -282,11 +283,40 @@ def test_a_vector_in_an_annulus_has_its_least_or_its_largest_norm(tmp_path: Path
 
 @pytest.mark.study
 def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
-    """A velocity that is steered: any course at any speeds along the straight line costs its length."""
+    """A velocity that is steered: any course at any speeds along the straight line costs its length.
+
+    A body that falls straight down needs the same impulse however it is spread over the time.
+    """
     text = BETWEEN.replace("vx = 0.0\nvy = 0.0\n", "")
     found = solve(build(tmp_path, pushed("steered", {x: ux, y: uy}), text))
     assert found.status is Status.NOT_CONVERGED
     assert "for some time nothing decides the norm of a vector" in found.message
+    falling = pushed("falling", {x: vx, y: vy, vx: ux, vy: uy - Rational("1.62")})
+    down = """
+        [initial]
+        x = 0.0
+        y = 100.0
+        vx = 0.0
+        vy = -5.0
+        [final]
+        y = 0.0
+        vx = 0.0
+        vy = 0.0
+        [time]
+        tf = 12.0
+        [control]
+        max_norm = 4.0
+        """
+    found = solve(build(tmp_path, falling, down))
+    assert found.status is Status.NOT_CONVERGED
+    assert "for some time nothing decides the norm of a vector" in found.message
+
+
+@pytest.mark.parametrize(
+    ("shares", "lasting"), [([0.9, 0.31, 0.08, 0.02], False), ([0.5, 0.3, 0.28, 0.28], True), ([0.1], False)]
+)
+def test_norms_between_their_bounds_are_switches_where_they_get_fewer(shares: list[float], lasting: bool):
+    assert _steady(shares) is lasting
 
 
 @pytest.mark.study

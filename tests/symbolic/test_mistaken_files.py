@@ -54,6 +54,21 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
             "rates={c: speed}",
             "give one rate for each state; without a rate: place; no state: c",
         ),
+        (
+            "c * speed**2",
+            "c * speed**2 + abs(place)",
+            "mine.py:12: stroll: the running cost has Abs(place) in it, whose derivatives jump; state what is smooth",
+        ),
+        (
+            "rates={place: speed}",
+            "rates={place: abs(speed)}",
+            "Abs(speed) in the equations of motion is not supported, only in the cost; state a control for each sign",
+        ),
+        (
+            "terminal_cost=place**2",
+            "terminal_cost=place**2 + abs(place)",
+            "the terminal cost has Abs(place) in it",
+        ),
         ("(speed,), (c,) =", "(speed,) (c,) =", "mine.py:7: SyntaxError: cannot assign to function call"),
     ],
 )

@@ -171,10 +171,20 @@ def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
         (switching({x1: u1}, -sp.Abs(u1)), "the weight of |u1| in the cost, -1, may be negative"),
         (switching({x1: u1}, x1 * sp.Abs(u1)), "the weight of |u1| in the cost, x1, may be negative"),
         (switching({x1: -sp.Abs(u1)}, x1**2 + u1), "Abs(u1) in the equations of motion is not supported"),
+        (switching({x1: sp.Abs(x2), x2: u1}, 1), "the rate of x1 has Abs(x2) in it, whose derivatives jump"),
+        (switching({x1: sp.sign(x2), x2: u1}, 1), "the rate of x1 has sign(x2) in it, whose derivatives jump"),
+        (switching({x1: u1}, sp.Abs(u1) + sp.Max(x1, 0)), "the running cost has Max(0, x1) in it"),
+        (
+            switching({x1: u1 + u2}, sp.Abs(u1), control_set="free", control_sets={"both": Box("u1", "u2")}),
+            "|u1| among control_sets is not supported",
+        ),
         (switching({x1: u1, x2: x1}, u2**2 + x2), "H_uu is singular"),
         (switching({x1: u1}, sp.Abs(u1) + u1**2), "H is not quadratic in the controls"),
     ],
-    ids=["ball", "free", "minus |u|", "weight of either sign", "|u| in the motion", "mixed", "|u| and u^2"],
+    ids=[
+        *("ball", "free", "minus |u|", "weight of either sign", "|u| in the motion", "|x| in the motion", "a sign"),
+        *("a maximum", "|u| among sets", "mixed", "|u| and u^2"),
+    ],
 )
 def test_what_has_no_law_here_is_refused_in_one_line(problem: Problem, complaint: str) -> None:
     with pytest.raises(DerivationError) as caught:

@@ -83,7 +83,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
-            return without(instance, _out_of_reach(found, limits), tuple(history), began)
+            return without(instance, _advised(instance, _out_of_reach(found, limits)), tuple(history), began)
         return _finished(instance, found, limits, history, began)
 
 
@@ -164,6 +164,15 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
     if near is None or near.arrives or near.undecided or limits.expired:
         return stopped
     return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
+
+
+def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
+    """With what else may lead to an answer where magnitudes cost: singular arcs are recognised without a weight."""
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    if stopped.status is not Status.NOT_CONVERGED or not any(weights):
+        return stopped
+    advice = "singular arcs are found only without |u|; state a control for each sign, both from 0 on"
+    return replace(stopped, message=f"{stopped.message}; {advice}")
 
 
 def others(instance: Instance, duration: float, limits: Limits) -> list[Exact]:

@@ -104,6 +104,11 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
                     f"{name}: H has products of {u.name} with {', '.join(mixed)}, which are in other control sets; "
                     "this is not supported: state them as one set, such as the components of a vector"
                 )
+            if slope.has(sp.sign):
+                raise DerivationError(
+                    f'{name}: |{u.name}| among control_sets is not supported; state control_set = "box" for all '
+                    "controls, or a control for each sign, both from 0 on"
+                )
             if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
         found.append(_of_angle(name, h, part) if part.kind == "angle" else _of_vector(name, h, part, slopes, side))
@@ -234,13 +239,18 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
         return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
     if sp.simplify(rows.det()) == 0:
         raise DerivationError(f"{name}: H_uu of {controls} is singular, so H_u = 0 does not determine them")
-    if part.kind == "box" and rows.is_diagonal() and any(indefinite(name, row) for row in rows.diagonal()):
+    if part.kind == "box" and rows.is_diagonal() and any(_falls(name, side * row) for row in rows.diagonal()):
         bends, falls = rows.diagonal(), (side * tidy(-entry) for entry in load)
         each = zip(part.symbols, bends, falls, strict=True)
         laws = tuple(Vertex(side * simplified(bend), fall, *ends_of(part, u)) for u, bend, fall in each)
         return Minimum(part, "stationary", gradient=tuple(slopes), laws=laws)
     hats = tuple(tidy(simplified(u)) for u in rows.LUsolve(load))
     return Minimum(part, "quadratic", (), tuple(slopes), hats, rows.applyfunc(sp.simplify))
+
+
+def _falls(name: str, curvature: sp.Expr) -> bool:
+    """Whether H bends downwards, always or in places."""
+    return bool(sp.simplify(curvature).is_negative) or indefinite(name, curvature)
 
 
 def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimum:

@@ -62,9 +62,11 @@ def applies(so_far: Derivation) -> bool:
     if problem.control_set != "ball":
         if any(e.has(sp.Abs) for e in stated):
             return False
-        _, *rates = stated
+        cost, *rates = stated
         if problem.control_set == "box" and any(sp.simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
             return True  # the costates decide whether H is convex
+        if problem.control_set == "box" and any(sp.simplify(sp.diff(cost, u, 2)).is_negative for u in controls):
+            return True  # the better end is the minimiser
         slopes = [sp.diff(e, u) for e in stated for u in controls]
         return any(sp.simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
     if len(controls) == 1:

@@ -62,6 +62,22 @@ def applies(so_far: Derivation) -> bool:
     return True
 
 
+def refuse_magnitudes(so_far: Derivation) -> None:
+    """Refuse the magnitude of a single control in the motion, whose costates decide whether it is worth having.
+
+    Raises
+    ------
+    DerivationError
+        Where there is one.
+    """
+    magnitudes, rates = s.magnitudes(symbols_of(so_far.model.controls)), so_far.rhs("first_order")
+    if magnitude := next((a for a in magnitudes if any(rate.has(a) for rate in rates)), None):
+        raise DerivationError(
+            f"{so_far.name}: {magnitude} in the equations of motion is not supported, only in the cost; state a "
+            "control for each sign, both from 0 on, with their difference in its place and their sum for its magnitude"
+        )
+
+
 def parts(so_far: Derivation) -> Parts:
     """H taken apart, as the step ``switching_function`` has it."""
     assert so_far.problem is not None
@@ -275,8 +291,6 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
             f'control_set = "box", not "{problem.control_set}"'
         )
     stands_for = s.magnitudes(controls)
-    if magnitude := next((a for a in stands_for if any(e.has(a) for e in f)), None):
-        raise DerivationError(f"{name}: {magnitude} in the equations of motion is not supported, only in the cost")
     cost = sp.sympify(problem.running_cost).xreplace(stands_for)
     for u, v in zip(controls, stands_for.values(), strict=True):
         weight = tidy(sp.diff(cost, v))

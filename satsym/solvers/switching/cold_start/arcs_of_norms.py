@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from satsym.instance import Instance
@@ -17,18 +18,29 @@ from satsym.solvers.switching.cold_start.recognition import guess, sample
 SWITCHED = 0.35
 """Share of the time at most for which norms are far from their bounds where a structure is to be recognised."""
 
+LASTING, STEADY = 0.02, 0.5
+"""Such a share, and what is left of it where less is smoothed, where that time is no switch: those get as much shorter
+as less is smoothed."""
+
 
 def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, limits: Limits) -> Exact | Extremal:
     """Exact arcs as smoothed extremals show them, the first that satisfy the minimum principle."""
+    shares: list[float] = []
     for near in levels(problem, instance, curve, limits):
         problem, curve = near
-        if fraction_between(problem, curve) <= SWITCHED:
+        shares.append(fraction_between(problem, curve))
+        if shares[-1] <= SWITCHED:
             exact = attempt(instance, guess(instance, sample(problem, curve)), limits)
             if exact is not None:
                 return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)
         if limits.expired:
             break
     message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-    if fraction_between(problem, curve) > SWITCHED:
+    if shares[-1] > SWITCHED or _steady(shares):
         message = "for some time nothing decides the norm of a vector, and no law is known there"
     return stopped(problem, instance, curve, message, limits)
+
+
+def _steady(shares: Sequence[float]) -> bool:
+    """Whether norms stay far from their bounds for some time, however little is smoothed."""
+    return len(shares) > 1 and shares[-1] > LASTING and shares[-1] >= STEADY * shares[-2]
