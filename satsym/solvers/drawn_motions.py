@@ -94,10 +94,10 @@ def motions(problem: TwoPoint, rng: np.random.Generator, *, cheapest: bool = Fal
 
 def _drawn(problem: TwoPoint, rng: np.random.Generator) -> _Field:
     """Extremals of any direction, then others about those that nearly meet."""
-    onwards = _onwards(problem, _costates(problem, rng))
+    onwards = from_start(problem, _costates(problem, rng))
     if problem.unknowns:
         return _Field(problem, onwards, onwards)
-    found = _Field(problem, onwards, _backwards(problem, onwards, _costates(problem, rng), rng))
+    found = _Field(problem, onwards, to_end(problem, onwards, _costates(problem, rng), rng))
     for size in ROUNDS:
         parents = found.cheapest(NEAR, PARENTS)[:PARENTS]
         if not len(parents):
@@ -112,13 +112,14 @@ def _costates(problem: TwoPoint, rng: np.random.Generator) -> Array:
     return np.asarray(found / np.linalg.norm(found, axis=0) * 10.0 ** rng.uniform(*SIZES, DRAWN))
 
 
-def _onwards(problem: TwoPoint, costates: Array) -> Bundle:
+def from_start(problem: TwoPoint, costates: Array, steps: int = STEPS) -> Bundle:
+    """Extremals from the initial state with these costates, shape (n, S), for the whole duration."""
     start = np.repeat(problem.initial[:, None], costates.shape[1], axis=1)
-    return _simulated(problem, np.concatenate([start, costates]), backwards=False)
+    return simulated(problem, np.concatenate([start, costates]), problem.duration, steps)
 
 
-def _backwards(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.Generator) -> Bundle:
-    """From the end; where a final state is free it is that of a motion from the start, and transversality holds."""
+def to_end(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.Generator, steps: int = STEPS) -> Bundle:
+    """To the end; where a final state is free it is that of a motion from the start, and transversality holds."""
     n, free, reached = problem.states, ~problem.fixed, np.flatnonzero(np.isfinite(onwards.costs[-1]))
     count = costates.shape[1]
     end, terminal = np.repeat(straight(problem)[:, 1:], count, axis=1), np.zeros(count)
@@ -127,14 +128,15 @@ def _backwards(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.rand
         for k, z in enumerate(np.concatenate([end, costates]).T):
             costates[free, k] -= problem.boundary(z, problem.theta)[:n][free]
             terminal[k] = problem.terminal_cost(z, problem.theta)
-    found = _simulated(problem, np.concatenate([end, costates]), backwards=True)
+    found = simulated(problem, np.concatenate([end, costates]), -problem.duration, steps)
     return Bundle(found.z, found.costs + terminal)
 
 
-def _simulated(problem: TwoPoint, z: Array, *, backwards: bool) -> Bundle:
-    """Extremals through states and costates, shape (2n, S), at the start or at the end."""
-    tau, theta = np.linspace(0.0, 1.0, 2 * STEPS + 1)[:: -1 if backwards else 1], problem.theta
-    times, h = np.repeat(tau[:, None], z.shape[1], axis=1), problem.duration * (tau[2] - tau[0])
+def simulated(problem: TwoPoint, z: Array, lasting: float, steps: int) -> Bundle:
+    """Extremals through states and costates, shape (2n, S), for so long; back from the end where that is negative."""
+    backwards, theta = lasting < 0.0, problem.theta
+    tau = lasting / problem.duration * np.linspace(0.0, 1.0, 2 * steps + 1) + backwards
+    times, h = np.repeat(tau[:, None], z.shape[1], axis=1), lasting / steps
     found = [z]
     for first, middle, last in zip(times[:-2:2], times[1::2], times[2::2], strict=True):
         f1 = problem.rates(first, z, theta)
@@ -169,8 +171,8 @@ class _Field:
             one + size * np.linalg.norm(one, axis=0) * rng.standard_normal(one.shape) / np.sqrt(n)
             for one in (first, last)
         ]
-        onwards = _onwards(problem, changed[0])
-        backwards = _backwards(problem, onwards, changed[1], rng)
+        onwards = from_start(problem, changed[0])
+        backwards = to_end(problem, onwards, changed[1], rng)
         return _Field(problem, self.onwards.joined(onwards), self.backwards.joined(backwards))
 
     @cached_property

@@ -229,7 +229,7 @@ class _Course:
             np.matmul(carried, begun[k], out=begun[k + 1])
             begun[k + 1] += driven[k]
         given = np.concatenate([begun[:-1], shapes], axis=1)
-        weighed = (cost @ given).reshape(-1, given.shape[2])
+        weighed = (cost @ given).reshape(pieces * given.shape[1], given.shape[2])
         inside = given.reshape(weighed.shape).T @ weighed + begun[-1].T @ at_nodes[-1] @ begun[-1]
         times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
         place = np.interp(times, middles, np.arange(len(middles)))

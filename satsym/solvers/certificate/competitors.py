@@ -18,16 +18,17 @@ from satsym import activity
 from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
-from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
+from satsym.solvers.certificate import drawn_extremals
+from satsym.solvers.certificate.comparison import Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
 from satsym.solvers.certificate.drawn_controls import drawable, drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.certificate.searches import ROUGH, Search, accurate, at_its_duration, bounded, from_path
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 
 if TYPE_CHECKING:
-    from satsym.solvers.collocation.attempt import Attempt
     from satsym.solvers.collocation.curve import Curve
     from satsym.solvers.collocation.problem import TwoPoint
     from satsym.solvers.symmetry import Rotation, Spiral
@@ -38,8 +39,11 @@ WORK = 15_000
 SEEDS = 4
 """Starts that are drawn, of each kind."""
 
-MORE, MORE_WORK = 16, 4 * WORK
+MORE, MORE_WORK = 12, 4 * WORK
 """Further starts where the first ones lead to several minima, and the columns after which no other one is begun."""
+
+PATIENT, DRAWN_WORK = 10 * WORK, 30 * WORK
+"""Columns for one extremal that is drawn, and after which no other one is begun: long swings take many."""
 
 BENT = (0.3, 1.0)
 """Amplitudes of what is added to a straight line, in sizes of the states."""
@@ -56,14 +60,8 @@ EARLIER = (0.6, 0.8, 0.95)
 SHORTER_AND_LONGER = (0.4, 0.5, 0.6, 0.7, 0.8, 1.25, 1.5, 2.0)
 """Durations beside one that was chosen, as shares of it."""
 
-ROUGH = 1e-2
-"""Relative error of costs on the mesh of a cold start."""
-
 SAMPLES = 401
 """Values of a guess that leads to a cheaper competitor."""
-
-Search = Callable[[Limits], Competitor | None]
-"""Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
 
 
 def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
@@ -84,8 +82,9 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
         if found is None:
             missing.append(kind)
             continue
-        if smooth and 2 * found.summary.solved < found.summary.tried and not found.interrupted:
-            more = _tried(solution, kind, _from_motions(solution, seed), deadline)
+        if smooth and not found.interrupted:
+            drawn = tried(partial(drawn_extremals.searches, solution, found, seed)) or []
+            more = _tried(solution, kind, drawn, deadline, DRAWN_WORK, PATIENT)
             found = found if more is None else found.joined(more)
         if smooth and found.several and found.margin >= 0.0 and not found.interrupted:
             more = _tried(solution, kind, _from_more(solution, seed), deadline, MORE_WORK)
@@ -139,7 +138,7 @@ def _motion(competitor: Competitor, solution: Solution) -> tuple[Array, Array, f
 
 
 def _tried(
-    solution: Solution, kind: Kind, attempts: list[Search], deadline: float, work: float = math.inf
+    solution: Solution, kind: Kind, attempts: list[Search], deadline: float, work: float = math.inf, each: float = WORK
 ) -> Compared | None:
     """Every attempt at a kind that is begun before so much work is done; ``None`` where there is none."""
     if not attempts:
@@ -149,7 +148,7 @@ def _tried(
     for attempt in attempts:
         if spent > work:
             break
-        limits = Limits(200, deadline, work=WORK)
+        limits = Limits(200, deadline, work=each)
         with np.errstate(all="ignore"):
             competitor = tried(partial(attempt, limits))
         interrupted, spent = limits.late, spent + limits.meter.spent
@@ -170,7 +169,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     from satsym.solvers.symmetry import rotation, rotations
 
     instance, cost = solution.instance, solution.objective
-    problem, lasting = _at_its_duration(solution), float(solution.times[-1]) - instance.t0
+    problem, lasting = at_its_duration(solution), float(solution.times[-1]) - instance.t0
     fixed, rng = problem.instance, np.random.default_rng(seed)
 
     if instance.model.spec.directional or instance.model.spec.stationary:
@@ -178,10 +177,10 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
             yield kind, [_rough(search, cost) for search in searches]
         return
-    yield Kind.STARTS, [_from_path(problem, path, 1.0, cost) for path in _bent(problem, rng)]
+    yield Kind.STARTS, [from_path(problem, path, 1.0, cost) for path in _bent(problem, rng)]
     if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
-        soft = [_from_path(problem, path, softness, cost) for path, softness in starts]
+        soft = [from_path(problem, path, softness, cost) for path, softness in starts]
         yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
@@ -207,31 +206,15 @@ def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: floa
 
     def attempt(limits: Limits) -> Competitor | None:
         found = search(limits)
-        return None if found is None else _accurate(*found, cost)
+        return None if found is None else accurate(*found, cost)
 
     return attempt
 
 
-def _at_its_duration(solution: Solution) -> TwoPoint:
-    """The problem of a solution at its duration, without its guess."""
-    from satsym.solvers.collocation.scaling import two_point
-
-    instance, lasting = solution.instance, float(solution.times[-1]) - solution.instance.t0
-    return two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess()), lasting)
-
-
-def _from_motions(solution: Solution, seed: int) -> list[Search]:
-    """The minima within the bounds to which motions under controls that are drawn lead."""
-    from satsym.solvers.drawn_motions import motions
-
-    problem, rng = _at_its_duration(solution), np.random.default_rng(seed)
-    return [_from_path(problem, one.path, SOFT[-1], solution.objective) for one in motions(problem, rng)]
-
-
 def _from_more(solution: Solution, seed: int) -> list[Search]:
     """The minima within the bounds to which further paths lead that are drawn."""
-    problem, rng = _at_its_duration(solution), np.random.default_rng((seed, MORE))
-    return [_from_path(problem, path, 1.0, solution.objective) for path in _bent(problem, rng, MORE)]
+    problem, rng = at_its_duration(solution), np.random.default_rng((seed, MORE))
+    return [from_path(problem, path, 1.0, solution.objective) for path in _bent(problem, rng, MORE)]
 
 
 def _from_controls(solution: Solution, seed: int) -> list[Search]:
@@ -244,7 +227,7 @@ def _from_controls(solution: Solution, seed: int) -> list[Search]:
         return []
     lasting = drawn.grid.tf - drawn.grid.t0
     problem = two_point(replace(solution.instance, tf=drawn.grid.tf, tf_guess=None, guess=Guess()), lasting)
-    descend = _from_path(problem, paths.through(problem, drawn.states), SOFT[-1], solution.objective)
+    descend = from_path(problem, paths.through(problem, drawn.states), SOFT[-1], solution.objective)
 
     def attempt(limits: Limits) -> Competitor | None:
         found = tried(partial(descend, limits))
@@ -253,22 +236,11 @@ def _from_controls(solution: Solution, seed: int) -> list[Search]:
     return [attempt]
 
 
-def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Search:
-    """The minimum within the bounds to which a path of states leads."""
-    from satsym.solvers.cold_start.soft_bounds import within_bounds
-
-    def attempt(limits: Limits) -> Competitor | None:
-        found = within_bounds(problem, path, limits, softness)
-        return _accurate(problem, found.curve, cost) if found.solved else None
-
-    return attempt
-
-
 def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Search:
     """The minimum within the bounds with a number of turns."""
     from satsym.solvers.cold_start.path_of_problems import along_turns
 
-    return lambda limits: _bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
+    return lambda limits: bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 
 
 def _from_corners(problem: TwoPoint, cost: float) -> list[Search]:
@@ -279,7 +251,7 @@ def _from_corners(problem: TwoPoint, cost: float) -> list[Search]:
         return []
 
     def attempt(limits: Limits) -> Competitor | None:
-        found = (_accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
+        found = (accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
         return min(filter(None, found), key=lambda one: one.cost, default=None)
 
     return [attempt]
@@ -299,9 +271,9 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Search:
             return None
         smallest = trials.freed(rough)
         if smallest is not None and kept(smallest.problem.relaxed(0.0), smallest.start.found.curve):
-            return _accurate(smallest.problem.relaxed(0.0), smallest.start.found.curve, cost)
+            return accurate(smallest.problem.relaxed(0.0), smallest.start.found.curve, cost)
         given = replace(rough.problem, relaxation=0.0)
-        return _bounded(given, rough.start.found, cost, limits)
+        return bounded(given, rough.start.found, cost, limits)
 
     return attempt
 
@@ -318,37 +290,9 @@ def _cold(problem: TwoPoint, cost: float) -> Search:
 
     def attempt(limits: Limits) -> Competitor | None:
         start = cold_start(problem, limits, quick=True)
-        return _bounded(problem, start.found, cost, limits)
+        return bounded(problem, start.found, cost, limits)
 
     return attempt
-
-
-def _bounded(problem: TwoPoint, found: Attempt, cost: float, limits: Limits) -> Competitor | None:
-    """The minimum within the bounds to which one without them leads."""
-    from satsym.solvers.cold_start.soft_bounds import within_found
-
-    if not found.minimum or not found.curve.in_domain(problem.positive):
-        return None
-    rough = Competitor(problem, found.curve, found.cost * problem.scale.cost)
-    if rough.cost > cost + ROUGH * abs(cost):  # what costs more without the bounds does so within them
-        return rough
-    inside = within_found(problem, found, limits)
-    return _accurate(problem, inside.curve, cost) if inside.solved else None
-
-
-def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
-    """A minimum with its cost, as rough as its mesh where it clearly exceeds another cost."""
-    from satsym.solvers.collocation.accuracy.refinement import refine
-    from satsym.solvers.collocation.continuation import kept
-    from satsym.solvers.collocation.system import System
-
-    rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
-    if rough > cost + ROUGH * abs(cost):
-        return Competitor(problem, curve, rough)
-    refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
-    if not refined.solved or not refined.curve.in_domain(problem.positive):
-        return None
-    return Competitor(problem, refined.curve, refined.cost * problem.scale.cost)
 
 
 def _bent(problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS) -> Iterator[Callable[[Any], Any]]:

@@ -14,6 +14,7 @@ from satsym.solvers.certificate.comparison import COST_MARGIN, margin
 from satsym.solvers.certificate.switching import competitors as switching_competitors
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.linear.linear_motion import linear_motion
 
 COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
 """Relative difference of costs that is none: where it is not ``COST_MARGIN``."""
@@ -70,7 +71,14 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     checks = [_check(solution, one) for one in found.values()]
     if limits.late:
         checks += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in missing]
-    return Comparison(tuple(checks), tuple(found[kind] for kind in kinds if kind in found), missing)
+    competitors = tuple(found[kind] for kind in kinds if kind in found)
+    return Comparison(tuple(checks), competitors, missing + _unsolved(solution.instance, competitors))
+
+
+def _unsolved(instance: Instance, competitors: Iterable[Competitors]) -> tuple[Kind, ...]:
+    """Kinds of which nothing arrived: of a linear motion nothing does then, of others something else may."""
+    none = tuple(one.kind for one in competitors if not one.solved)
+    return none if none and linear_motion(instance) is None else ()
 
 
 def _check(solution: Solution, one: Competitors) -> Check:

@@ -1,0 +1,271 @@
+"""Extremals that may cost less than a known one, drawn from both ends: in its duration or, where that is free, in any.
+
+What costs less pushes no harder, so that costates are drawn about as large as those that are known; where the duration
+is free, so large that H vanishes, as it does all along then, and motions may meet after any time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import straight
+from satsym.solvers.drawn_motions import Bundle, from_start, simulated, to_end
+
+STEPS, LONG_STEPS = 100, 240
+"""Runge-Kutta steps in the known duration, and in the longest one where that is free."""
+
+DRAWN, SIZES = 512, (-1.5, 0.7)
+"""Extremals that are drawn on each side, and decimal logarithms of sizes of their costates, as shares of the largest
+known."""
+
+ROUNDS, CHILDREN, PARENTS, NEAR = (0.3, 0.1), 256, 48, 0.15
+"""Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
+cheapest whose gaps are below that."""
+
+TIMES, ANY_TIMES, NEIGHBOURS = 8, 40, 4
+"""Times at which they may meet, where the duration is given and where it is free, and how many of the nearest of the
+other side are looked at."""
+
+CLOSE, FEWEST, MOST = 0.1, 64, 4000
+"""Gaps that are small, relative to what the known states range over, pairs that are looked at if none is, and at most.
+"""
+
+KEPT, APART, SHOWN = 4, 0.3, 21
+"""Motions that are kept, how far they are from each other and from the known one, and at how many times that is looked
+at. A duration that is longer by that share is another motion as well."""
+
+SEARCHED, HALVINGS = np.geomspace(1e-3, 1e2, 26), 12
+"""Sizes of costates, as shares of the known ones, between which H changes its sign, and halvings of that."""
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """An extremal, scaled as its problem is, which has its duration."""
+
+    states: Array
+    """At evenly spaced times, shape (n, M)."""
+    costates: Array
+    """At the same."""
+    cost: float
+    longest: float
+    """The longest duration of others; its own where that is given."""
+
+    @property
+    def size(self) -> float:
+        """Of costates."""
+        return float(np.linalg.norm(self.costates, axis=0).max())
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Another motion, almost an extremal."""
+
+    duration: float
+    states: Array
+    """Scaled, at evenly spaced times, shape (n, M); a jump between both parts is spread over them."""
+
+
+def beside(problem: TwoPoint, known: Known, rng: np.random.Generator) -> list[Beside]:
+    """Different motions that nearly meet, and would cost less if they did, the cheapest first.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, and with the duration of what is known.
+    """
+    if problem.unknowns or not problem.fixed.any() or not known.size > 0.0:
+        return []
+    given = np.array(problem.final[: problem.states]) > 0.0
+    if problem.fixed.all():  # what the end costs is no part of either motion
+        end = np.concatenate([straight(problem)[:, 1], np.zeros(problem.states)])
+        known = replace(known, cost=known.cost - problem.terminal_cost(end, problem.theta))
+    free = known.longest > problem.duration and problem.instance.model.spec.autonomous and bool(given.all())
+    with np.errstate(all="ignore"):
+        field = _of_any_duration(problem, known, rng) if free else _of_given(problem, known, rng)
+        for size in ROUNDS:
+            field = field.refined(size, rng)
+        return field.different()
+
+
+def _directions(n: int, count: int, rng: np.random.Generator) -> Array:
+    found = rng.standard_normal((n, count))
+    return np.asarray(found / np.linalg.norm(found, axis=0))
+
+
+def _of_given(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
+    """Extremals in the known duration."""
+    first, last = (
+        _directions(problem.states, DRAWN, rng) * known.size * 10.0 ** rng.uniform(*SIZES, DRAWN) for _ in range(2)
+    )
+    onwards = from_start(problem, first, STEPS)
+    return _Field(problem, known, problem.duration, False, onwards, to_end(problem, onwards, last, rng, STEPS))
+
+
+def _of_any_duration(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
+    """Extremals with which H vanishes, up to the longest duration."""
+    nothing = Bundle(np.zeros((LONG_STEPS + 1, 2 * problem.states, 0)), np.zeros((LONG_STEPS + 1, 0)))
+    field = _Field(problem, known, known.longest, True, nothing, nothing)
+    return field.joined(_directions(problem.states, DRAWN, rng), _directions(problem.states, DRAWN, rng), rng)
+
+
+def _vanishing(problem: TwoPoint, state: Array, directions: Array, size: float) -> Array:
+    """Costates of these directions with which H vanishes at a state; those with which it does not are left out."""
+    state = np.repeat(state[:, None], directions.shape[1], axis=1)
+    model, p = problem.instance.model, problem.instance.parameters
+    tau = np.zeros(directions.shape[1])
+
+    def hamiltonian(sizes: Array) -> Array:
+        z = np.concatenate([state, directions * sizes])
+        physical, u = z * problem.scale.both, problem.control(tau, z, problem.theta)
+        x, lam = physical[: problem.states], physical[problem.states :]
+        t = np.full(len(tau), problem.instance.t0)
+        return np.asarray(np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), tau.shape))
+
+    values = np.array([hamiltonian(np.full(len(tau), size * share)) for share in SEARCHED])
+    changes = values[:-1] * values[1:] <= 0.0
+    fit, at = np.flatnonzero(changes.any(axis=0)), changes.argmax(axis=0)
+    low, high = size * SEARCHED[at], size * SEARCHED[at + 1]
+    begin = np.take_along_axis(values, at[None], axis=0)[0]
+    for _ in range(HALVINGS):
+        middle = np.sqrt(low * high)
+        same = hamiltonian(middle) * begin > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.asarray((directions * np.sqrt(low * high))[:, fit])
+
+
+@dataclass(frozen=True, eq=False)
+class _Field:
+    """Extremals of both sides.
+
+    A pair of them is a row: node of the one from the start, node of the one to the end, these two, gap and cost.
+    """
+
+    problem: TwoPoint
+    known: Known
+    longest: float
+    free: bool
+    onwards: Bundle
+    backwards: Bundle
+
+    def joined(self, first: Array, last: Array, rng: np.random.Generator) -> _Field:
+        """With those that have such costates, sized so that H vanishes where durations are free."""
+        problem, steps = self.problem, len(self.onwards.z) - 1
+        if not self.free:
+            onwards = from_start(problem, first, steps)
+            backwards = to_end(problem, onwards, last, rng, steps)
+        else:
+            ends = problem.initial, straight(problem)[:, 1]
+            bundles = []
+            for state, costates, sign in zip(ends, (first, last), (1.0, -1.0), strict=True):
+                lam = _vanishing(problem, state, costates / np.linalg.norm(costates, axis=0), self.known.size)
+                z = np.concatenate([np.repeat(state[:, None], lam.shape[1], axis=1), lam])
+                bundles.append(simulated(problem, z, sign * self.longest, steps))
+            onwards, backwards = bundles
+        return replace(self, onwards=self.onwards.joined(onwards), backwards=self.backwards.joined(backwards))
+
+    def refined(self, size: float, rng: np.random.Generator) -> _Field:
+        """With others about the cheapest pairs, so far away relative to their costates."""
+        n, pairs = self.problem.states, self.cheapest(NEAR)[:PARENTS]
+        if not len(pairs):
+            return self
+        of = pairs[rng.integers(len(pairs), size=CHILDREN)].astype(int)
+        first, last = (
+            one + size * np.linalg.norm(one, axis=0) * rng.standard_normal(one.shape) / np.sqrt(n)
+            for one in (self.onwards.z[0][n:, of[:, 2]], self.backwards.z[-1][n:, of[:, 3]])
+        )
+        return self.joined(first, last, rng)
+
+    @property
+    def unit(self) -> Array:
+        """What the known states range over, shape (n,)."""
+        found = np.ptp(self.known.states, axis=1)
+        return np.asarray(np.where(found > 0.0, found, max(float(found.max()), 1e-300)))
+
+    def cheapest(self, gap: float) -> Array:
+        """Pairs that cost less than what is known and have gaps below that, or the closest few, the cheapest first."""
+        found = self._pairs
+        found = found[found[:, 5] < self.known.cost]
+        found = found[np.argsort(found[:, 4])]
+        found = found[: max(FEWEST, int(np.searchsorted(found[:, 4], gap)))]
+        return np.asarray(found[np.argsort(found[:, 5])])
+
+    @property
+    def _pairs(self) -> Array:
+        """Pairs that are close, shape (P, 6)."""
+        from scipy.spatial import cKDTree
+
+        steps, found = len(self.onwards.z) - 1, [np.zeros((0, 6))]
+        nodes = np.linspace(0, steps, (ANY_TIMES if self.free else TIMES) + 1)[1:].astype(int)
+        for group in [nodes] if self.free else nodes[:, None]:
+            here, there = (
+                self._points(self.onwards, group),
+                self._points(self.backwards, steps - group if self.free else group),
+            )
+            near = min(NEIGHBOURS, there.places.shape[1])
+            if not (here.places.shape[1] and near):
+                continue
+            gaps, places = cKDTree(there.states.T).query(here.states.T, k=np.arange(1, near + 1))
+            met = np.isfinite(gaps)  # else so far apart that their distance overflows
+            row = np.broadcast_to(np.arange(here.places.shape[1])[:, None], met.shape)[met]
+            one, other = here.places[:, row], there.places[:, places[met]]
+            cost = here.costs[row] + there.costs[places[met]]
+            found.append(np.column_stack([one[0], other[0], one[1], other[1], gaps[met], cost]))
+        return np.concatenate(found)
+
+    def _points(self, side: Bundle, nodes: NDArray[np.int64]) -> _Points:
+        """Where extremals of one side are at some nodes."""
+        n, costs = self.problem.states, side.costs[nodes]
+        at, which = np.nonzero(np.isfinite(costs) & (costs < self.known.cost))
+        states = side.z[nodes[at], :n, which].T / self.unit[:, None]
+        return _Points(states, costs[at, which], np.array([nodes[at], which]))
+
+    def different(self) -> list[Beside]:
+        """The cheapest pairs that are not close to one before, nor to what is known."""
+        pairs = self.cheapest(CLOSE)[:MOST]
+        motions, durations = self._motions(pairs, SHOWN)
+        shares = np.linspace(0.0, 1.0, self.known.states.shape[1])
+        shown = np.linspace(0.0, 1.0, SHOWN)
+        own = np.array([np.interp(shown, shares, row) for row in self.known.states])
+
+        def apart(states: Array, duration: float) -> NDArray[np.bool_]:
+            far = np.abs((motions - states) / self.unit[:, None]).max(axis=(1, 2)) >= APART
+            return np.asarray(far | (np.abs(np.log(durations / duration)) >= APART))
+
+        kept: list[Beside] = []
+        left = apart(own, self.problem.duration)
+        while left.any() and len(kept) < KEPT:
+            k = int(left.argmax())
+            kept.append(Beside(float(durations[k]), self._motions(pairs[k : k + 1])[0][0]))
+            left &= apart(motions[k], float(durations[k]))
+        return kept
+
+    def _motions(self, pairs: Array, count: int = 0) -> tuple[Array, Array]:
+        """Of pairs: states at so many shares of their durations, or of one pair at all nodes, and these durations."""
+        n, steps = self.problem.states, len(self.onwards.z) - 1
+        first, second, one, other = pairs[:, :4].astype(int).T
+        lasting = first + steps - second
+        at = np.rint(np.linspace(0.0, 1.0, count or int(lasting[0]) + 1) * lasting[:, None]).astype(int)
+        before, after = np.minimum(at, first[:, None]), np.clip(second[:, None] + at - first[:, None], 0, steps)
+        ahead = at <= first[:, None]
+        early = self.onwards.z[before, :n, one[:, None]]
+        late = self.backwards.z[after, :n, other[:, None]]
+        jump = (self.backwards.z[second, :n, other] - self.onwards.z[first, :n, one])[:, None]
+        rest = np.maximum(lasting - first, 1)[:, None]
+        halves = np.where(ahead, at / np.maximum(first, 1)[:, None], (at - lasting[:, None]) / rest) / 2.0
+        found = np.where(ahead[:, :, None], early, late) + jump * halves[:, :, None]
+        return found.transpose(0, 2, 1), lasting / steps * self.longest
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """States that extremals pass, in units of what is known."""
+
+    states: Array
+    costs: Array
+    places: NDArray[np.int64]
+    """Node and number of each, shape (2, P)."""
