@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from satsym import instance
 from satsym.analysis.classical import law
+from satsym.analysis.classical.performance import _crossing
 from satsym.analysis.regulator.feedback import simulate
 from satsym.cli import main
 from satsym.status import BadInput
@@ -194,3 +195,10 @@ def test_what_makes_no_law_is_refused_in_one_line(
 def test_a_law_is_not_simulated_where_none_is_stated(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "return-to-orbit", "--feedback", "classical"]) == 3
     assert "no [classical] table" in capsys.readouterr().err
+
+
+def test_a_crossing_is_where_the_sign_changes_or_at_the_node_that_is_only_just_reached() -> None:
+    times = np.array([2.0, 3.0, 4.0])
+    assert _crossing(times, lambda t: t - 3.25, 2) == pytest.approx(1.25, rel=1e-12)
+    assert _crossing(times, lambda t: 1e-17, 2) == 2.0, "rounding left both ends on one side"
+    assert _crossing(times, lambda t: t, 0) == 0.0

@@ -21,6 +21,7 @@ from satsym.solvers import two_point
 from satsym.solvers.certificate import certify, competitors
 from satsym.solvers.certificate.comparison import Competitor
 from satsym.solvers.certificate.constrained import second_variation
+from satsym.solvers.certificate.constrained.conditions import _defect
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.saddle import fall
@@ -286,3 +287,14 @@ def test_where_rounding_grows_along_the_flow_it_is_followed_part_by_part():
     moved = replay(replace(found, lam=beside), in_segments=True)
     assert moved is not None
     assert moved.gap > 1e-8
+
+
+def test_the_distance_from_the_flow_is_relative_to_the_size_of_each_state_and_costate() -> None:
+    found = satsym.solve("bryson-denham").found
+    again = replay(found)
+    assert again is not None
+    for row, share in ((0, 1e-3), (1, 1e-4)):
+        size = float(np.abs(found.lam[row]).max())
+        moved = found.lam.copy()
+        moved[row, 5] += share * size
+        assert _defect(replace(found, lam=moved), again) == pytest.approx(share, rel=0.05)

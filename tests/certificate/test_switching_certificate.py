@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +13,11 @@ from satsym import solvers as solve
 from satsym.report.results.objects import solution_object
 from satsym.solution import Solution
 from satsym.solvers import certificate
+from satsym.solvers.certificate.switching.conditions import _terms
 from satsym.solvers.certificate.switching.replay import replay
 from satsym.solvers.certificate.switching.variation import Variation, variation
 from satsym.solvers.switching import solving
+from satsym.solvers.switching.trajectory import PANELS, POINTS, _panels
 from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
 
@@ -127,3 +131,22 @@ def test_a_shift_in_time_is_the_reason_where_the_form_vanishes_along_it_alone() 
     assert not Variation(np.eye(3) - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)
     assert not Variation(across - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)  # flat across it as well
     assert not Variation(across, tied, 0.0).flat_by_shift(1e-7)  # the end does not allow it
+
+
+def test_h_is_compared_with_its_own_terms_at_one_time() -> None:
+    """Along a double integrator they are the costates times speed and force."""
+    found = solving.solve(case(TIME))
+    times = np.linspace(found.times[0], found.times[-1], 301)
+    x, lam, u = (
+        np.array([np.interp(times, found.times, row) for row in each]) for each in (found.x, found.lam, found.u)
+    )
+    expected = (np.abs(lam[0] * x[1]) + np.abs(lam[1] * u[0])).max()
+    assert _terms(found.instance, times, x, lam, u) == pytest.approx(expected, rel=1e-12)
+
+
+def test_panels_of_an_arc_are_counted_by_its_share_of_the_whole_in_any_unit_of_time() -> None:
+    for unit in (1e-3, 1.0, 86400.0):
+        arc = SimpleNamespace(start=2.0 * unit, end=3.0 * unit)
+        times, weights = _panels(arc, 4.0 * unit)
+        assert len(times) == POINTS * math.ceil(PANELS / 4.0)
+        assert weights @ times**2 == pytest.approx((27.0 - 8.0) / 3.0 * unit**3, rel=1e-12)
