@@ -165,6 +165,7 @@ def test_every_key_of_an_instance_file_is_explained_in_indonesian() -> None:
     assert not ENGLISH.search(NAMES.sub("", re.sub(r"\[[^]]*\]|^ {2}\S+|simulate --feedback", "", listed, flags=re.M)))
     heads, others = (re.findall(r"^\[.*", text, re.M) for text in (listed, keys_text()))
     assert heads == others != []
+    assert re.findall(r"^  KEADAAN  \w", listed, re.M)
 
 
 def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> None:

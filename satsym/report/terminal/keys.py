@@ -38,12 +38,13 @@ def keys_text() -> str:
     width = min(WIDEST, shutil.get_terminal_size().columns)
     blocks = []
     for title, rows in _blocks():
-        deep = 4 + max((len(row[0]) for row in rows if len(row[0]) <= DEEPEST), default=0)
+        names = [row[0] if row[0] == row[0].lower() else message(row[0]) for row in rows]
+        deep = 4 + max((len(name) for name in names if len(name) <= DEEPEST), default=0)
         lines = [message(title)]
-        for name, value, unit, default, meaning, _ in rows:
+        for name, (_, value, unit, default, meaning, _) in zip(names, rows, strict=True):
             of = unit and say("unit: <unit>", unit=message(unit))
             about = "; ".join(part for part in (message(value), of, _said(default)) if part)
-            first = f"  {message(name) if ' ' in name else name}".ljust(deep)
+            first = f"  {name}".ljust(deep)
             if len(first) > deep:
                 lines.append(first)
                 first = " " * deep
