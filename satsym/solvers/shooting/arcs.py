@@ -47,11 +47,13 @@ class Arcs:
 
     def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
         """The same after a share of a correction; its first argument in shape (N+1, 2n)."""
-        return Arcs(self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps)
+        return type(self)(
+            self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps
+        )
 
     def with_steps(self, steps: int) -> Arcs:
         """The same with another number of steps."""
-        return Arcs(self.problem, self.mesh, self.nodes, self.theta, steps)
+        return type(self)(self.problem, self.mesh, self.nodes, self.theta, steps)
 
     def size(self, nodes: Array, theta: Array) -> float:
         """Largest change: of states, relative to their size (at least one), of costates and a free duration."""

@@ -174,9 +174,9 @@ def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
 
     It turns at twice the trace of the Hessian of H on an n-dimensional space.
     """
-    unit = (scale / scale[:, None]).ravel() ** 2
-    squares = (slopes * slopes).transpose(1, 2, 0).reshape(len(unit), -1)  # as they lie in memory
-    rate = 2.0 * np.sqrt(len(scale) / 2.0 * (unit @ squares))
+    ratio = (scale / scale[:, None]).reshape(-1, 1)
+    scaled = slopes.transpose(1, 2, 0).reshape(len(ratio), -1) * ratio  # as they lie in memory
+    rate = 2.0 * np.sqrt(len(scale) / 2.0 * np.einsum("ij,ij->j", scaled, scaled))
     found: Array = np.maximum(rate[1:], rate[:-1]) * widths
     return found
 
