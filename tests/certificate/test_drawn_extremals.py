@@ -13,7 +13,7 @@ from sympy import Expr, Integer, Rational, sin
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
-from satsym.solvers.certificate.drawn_extremals import far_from_linear, longest, may_swing
+from satsym.solvers.certificate.seeded.drawn_extremals import far_from_linear, longest, may_swing
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.drawn_beside import Known, beside
 from satsym.status import Verdict

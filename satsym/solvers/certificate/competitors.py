@@ -18,12 +18,12 @@ from satsym import activity
 from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
-from satsym.solvers.certificate import drawn_extremals
 from satsym.solvers.certificate.comparison import Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
 from satsym.solvers.certificate.drawn_controls import drawable, drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.certificate.searches import ROUGH, Search, accurate, at_its_duration, bounded, from_path
+from satsym.solvers.certificate.seeded import drawn_extremals
+from satsym.solvers.certificate.seeded.searches import ROUGH, Search, accurate, at_its_duration, bounded, from_path
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted

@@ -14,7 +14,7 @@ from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.comparison import Compared
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.certificate.searches import Search, at_its_duration, from_path
+from satsym.solvers.certificate.seeded.searches import Search, at_its_duration, from_path
 
 UNLIKE = 1.0 / 3.0
 """Share of linearised rates by which they depart from their mean along the way, on average, where motions are nearly
