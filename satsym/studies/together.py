@@ -14,7 +14,7 @@ from satsym.instance.numbers import Table
 from satsym.solvers.certificate.corners import positive
 from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.redundant_ends import redundant
-from satsym.status import Verdict
+from satsym.status import Status, Verdict
 from satsym.studies import rows
 from satsym.studies.asked import Checked, Command, Task
 from satsym.studies.rows import Cases, Found, Row
@@ -27,6 +27,9 @@ NEIGHBOUR, LINE, CLOSED, REACHABLE = "nearest answer", Origin.STRAIGHT_LINE.valu
 UNBOUNDED = "answer without bounds"
 """The origin of answers: the nearest one, a line between the ends, a formula, what is reached in less time, or the same
 row's answer without bounds."""
+
+WIDEST = 1e9
+"""In place of bounds that there are none."""
 
 SHOOTING, LINEAR, SWITCHING = "shooting", "linear", "bang-bang"
 """The methods by which rows are solved together."""
@@ -53,14 +56,48 @@ def rows_together(task: Task, solve: Together, single: Callable[[str, Instance],
     found = solve(task, [instance for _, instance in cases])
     verdict = Verdict.LOCAL_MINIMUM.value if task.checked is Checked.LOCAL else None
 
-    def row(k: int, key: str, instance: Instance) -> Row:
+    def row(k: int, key: str, instance: Instance) -> Row | None:
         if found.minimum[k]:
             return rows.of_extremal(key, instance.model.spec, found, k, verdict)
-        if k in found.unreachable:
-            return rows.infeasible(key, found.unreachable[k])
-        return rows.tried(single, key, instance)
+        return rows.infeasible(key, found.unreachable[k]) if k in found.unreachable else None
 
-    return [row(k, *case) for k, case in enumerate(cases)]
+    done = [row(k, *case) for k, case in enumerate(cases)]
+    answered = [instance for (_, instance), minimum in zip(cases, found.minimum, strict=True) if minimum]
+    left = iter(_alone(single, [case for case, one in zip(cases, done, strict=True) if one is None], answered))
+    return [next(left) if one is None else one for one in done]
+
+
+def _alone(single: Callable[[str, Instance], Row], cases: Cases, answered: Sequence[Instance]) -> list[Row]:
+    """Each by itself, those with the widest bounds first: an end that these do not reach others do not, either.
+
+    What is answered within narrower bounds is known to be reached.
+    """
+    found: dict[int, Row] = {}
+    beyond: list[tuple[Instance, str]] = []
+    for k in sorted(range(len(cases)), key=lambda k: -_width(cases[k][1])):
+        key, instance = cases[k]
+        wider = next((message for other, message in beyond if _narrower(instance, other)), None)
+        if wider is not None:
+            found[k] = rows.infeasible(key, f"even with wider bounds: {wider}")
+            continue
+        found[k] = rows.tried(single, key, instance)
+        if found[k].status == Status.INFEASIBLE.value and not any(_narrower(one, instance) for one in answered):
+            beyond.append((instance, found[k].message))
+    return [found[k] for k in range(len(cases))]
+
+
+def _width(instance: Instance) -> float:
+    """A number that is no larger where bounds are narrower."""
+    ends = (instance.max_norm, *instance.upper, *(-low for low in instance.lower))
+    return sum(min(end, WIDEST) for end in ends)
+
+
+def _narrower(instance: Instance, other: Instance) -> bool:
+    """Whether all controls of one are controls of the other, between the same ends."""
+    same = all(getattr(instance, name) == getattr(other, name) for name in ("initial", "final", "parameters"))
+    lower, upper = zip(instance.lower, other.lower, strict=True), zip(instance.upper, other.upper, strict=True)
+    within = all(own >= far for own, far in lower) and all(own <= far for own, far in upper)
+    return same and within and instance.max_norm <= other.max_norm
 
 
 def plain(task: Task) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -357,10 +358,10 @@ def test_a_study_that_is_killed_says_nothing_of_what_is_cleaned_up_behind_it() -
 
 
 class Client:
-    """Of a cluster that does not answer, or has no workers."""
+    """Of a cluster that does not answer as one does, or has no workers."""
 
     def __init__(self, address: str, **_: Any) -> None:
-        if address == "nowhere":
+        if "idle" not in address:
             raise OSError
 
     def __enter__(self) -> Client:
@@ -372,9 +373,23 @@ class Client:
         return {}
 
 
+def test_a_scheduler_is_asked_for_only_where_something_listens() -> None:
+    """For the client of Dask that waits in vain complains again when it is removed."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        assert all(cluster._listens(one) for one in (f"tcp://127.0.0.1:{port}", f"127.0.0.1:{port}"))
+    assert not cluster._listens(f"tcp://127.0.0.1:{port}")
+
+
 @pytest.mark.parametrize(
     ("address", "line"),
-    [("", "pip install 'satsym[cluster]'"), ("nowhere", "no Dask scheduler answers there"), ("idle", "has no workers")],
+    [
+        ("", "pip install 'satsym[cluster]'"),
+        ("nowhere", "no Dask scheduler answers there"),
+        ("tcp://127.0.0.1:99999", "no Dask scheduler answers there"),
+        ("inproc://another", "no Dask scheduler answers there"),
+        ("inproc://idle", "has no workers"),
+    ],
 )
 def test_no_cluster_is_one_line_and_writes_nothing(
     address: str, line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -11,6 +11,7 @@ import pytest
 
 from satsym import instance, solvers
 from satsym.analysis.regulator import many
+from satsym.instance import Instance
 from satsym.report import study as reports
 from satsym.solvers.batch import unreachable
 from satsym.solvers.batch.many import Many
@@ -20,8 +21,8 @@ from satsym.studies import chunks, solving
 from satsym.studies.asked import Study, Task
 from satsym.studies.asking import MANY
 from satsym.studies.asking import asked as asking
-from satsym.studies.rows import Row
-from satsym.studies.together import together
+from satsym.studies.rows import Found, Row
+from satsym.studies.together import rows_together, together
 from satsym.studies.workers import Workers
 
 NAME = "return-to-orbit"
@@ -193,3 +194,35 @@ def test_rows_beyond_reach_are_not_solved_alone(monkeypatch: pytest.MonkeyPatch)
     found = computed(study)
     assert {row.status for row in found} == {"infeasible"}
     assert all(row.message.endswith("wider bounds on the control") for row in found)
+
+
+def test_what_wider_bounds_do_not_reach_narrower_ones_do_not() -> None:
+    """Between the same ends only, and where no answer within narrower bounds shows the contrary."""
+    tried: list[tuple[float, float]] = []
+
+    def single(key: str, one: Instance) -> Row:
+        tried.append((one.initial[0], one.upper[0]))
+        reached = one.initial[0] < 1.2 or one.upper[0] > 0.35
+        return Row(key, "converged", "") if reached else Row(key, "infeasible", "none arrives")
+
+    def solve(_: Task, instances: list[Instance]) -> Found:
+        minimum = np.array([one.initial[0] > 1.35 and one.upper[0] < 0.15 for one in instances])
+        none, states = np.zeros(len(minimum)), np.zeros((4, len(minimum)))
+        return Found(minimum, "shooting", [""] * len(minimum), none, none, states, states, none)
+
+    task = asked(vary={"initial.r": "1.1:1.3:2"}, certificate="local").task
+    bounds = (0.1, 0.3, 0.2, 0.4)
+    cases = [
+        (f"{r} {upper}", replace(task.instance, initial=(r, 0.0, 0.0, 1.0), lower=(-upper, -0.1), upper=(upper, 0.1)))
+        for r in (1.1, 1.3, 1.4)
+        for upper in bounds
+    ]
+    found = {row.key: row for row in rows_together(task, solve, single, cases)}
+    assert list(found) == [key for key, _ in cases]
+    assert [found[f"1.1 {upper}"].status for upper in bounds] == ["converged"] * 4
+    assert [found[f"1.3 {upper}"].status for upper in bounds] == ["infeasible"] * 3 + ["converged"]
+    assert found["1.3 0.3"].message == "none arrives"
+    for upper in (0.1, 0.2):
+        assert found[f"1.3 {upper}"].message.startswith("even with wider bounds: none arrives")
+    assert {upper for r, upper in tried if r == 1.3} == {0.3, 0.4}
+    assert {upper for r, upper in tried if r == 1.4} == {0.2, 0.3, 0.4}
