@@ -34,6 +34,10 @@ WEIGHTS = (1.0, 2.0, 2.0, 1.0)
 SCALES = (2.0, 0.5)
 """By which quotients are tried to be multiplied."""
 
+BLOCK, LEAST_BLOCK, CACHE = 8192, 2048, 2.5e6
+"""Columns at a time, at most and at least, and bytes of rows that are used again and again: few enough to stay in
+the cache, many enough that calls do not count."""
+
 MOST_TRIED, MOST_OPERATIONS = 6, 400
 """Quotients that are tried to be multiplied, and operations of a step up to which anything is tried."""
 
@@ -270,6 +274,14 @@ class OnTape:
         for row, value, scale in zip(arranged.states(steps), y, scales, strict=True):
             np.divide(row, scale, out=value)
         self._kept = {columns: arranged}
+
+    @property
+    def block(self) -> int:
+        """Columns that are best taken at a time."""
+        rows, found = 2 * (len(self.step.powers) + len(self.step.rows)), BLOCK
+        while found > LEAST_BLOCK and 8 * found * rows > CACHE:
+            found //= 2
+        return found
 
     def arranged(self, columns: int) -> Arranged:
         """Arrays for so many columns, which are not made anew for the next motions, and the tape with them."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +16,7 @@ from numpy.typing import ArrayLike
 from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.kernels.batch.factored import Unsuited
-from satsym.kernels.batch.runge_kutta import OnTape
+from satsym.kernels.batch.runge_kutta import BLOCK, OnTape
 from satsym.kernels.blocks import block_step, pairs
 from satsym.kernels.composition import weights
 from satsym.status import BadInput
@@ -25,10 +24,8 @@ from satsym.wording import shown, suggestion
 
 METHODS = ("RK4", "symplectic")
 
-BLOCK = 8192
-"""Columns at a time: few enough that their buffers stay in the cache, many enough that calls do not count."""
 COMPILED_BLOCK = 512
-"""The same for compiled code, to which calls cost nothing."""
+"""Columns at a time for compiled code, to which calls cost nothing; on arrays they are more."""
 
 
 def simulate(
@@ -79,13 +76,14 @@ def simulate(
         if controls.any():
             raise BadInput(f"u: the symplectic method is for uncontrolled motions; take RK4 for {kernels.spec.name}")
     if compiled:
-        advance = block_step(kernels, symplectic)
+        advance, block = block_step(kernels, symplectic), COMPILED_BLOCK
     else:
-        advance = _Kicks(kernels).advance if symplectic else _runge_kutta(kernels)
+        stepping = _Kicks(kernels) if symplectic else _runge_kutta(kernels)
+        advance, block = stepping.advance, stepping.block
     x = np.empty((len(start), len(nodes), count))
     with np.errstate(all="ignore"):
-        for begin in range(0, count, COMPILED_BLOCK if compiled else BLOCK):
-            part = slice(begin, begin + (COMPILED_BLOCK if compiled else BLOCK))
+        for begin in range(0, count, block):
+            part = slice(begin, begin + block)
             y = start[:, part].copy()
             given = [np.ascontiguousarray(rows[:, part]) for rows in (controls, parameters)]
             x[:, 0, part] = y
@@ -115,16 +113,18 @@ def _checked(
 
 
 @lru_cache(maxsize=32)
-def _runge_kutta(kernels: Kernels) -> Any:
+def _runge_kutta(kernels: Kernels) -> OnTape | _RungeKutta:
     """Steps by RK4: on a tape where that is possible, which is written once."""
     try:
-        return OnTape(kernels).advance
+        return OnTape(kernels)
     except (Unsuited, BadInput):
-        return _RungeKutta(kernels).advance
+        return _RungeKutta(kernels)
 
 
 class _RungeKutta:
     """RK4 with the generated batch form; buffers for one size of block."""
+
+    block = BLOCK
 
     def __init__(self, kernels: Kernels) -> None:
         self.dynamics = kernels.functions["dynamics_batch"]
@@ -155,6 +155,8 @@ class _RungeKutta:
 
 class _Kicks:
     """Kicks and drifts with the generated batch form."""
+
+    block = BLOCK
 
     def __init__(self, kernels: Kernels) -> None:
         self.dynamics = kernels.functions["dynamics_batch"]
