@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py 44314c87fa5d23f0e198f4ff33a9e0b3
-Digest: 912dee7bddd14f7648ceff0b69704c08cbac55e28c21debc74e80712a23cf569
+Source: ../derivations/examples/bryson_denham.py a9c3edbc54598754d0b528e1f2a1368f
+Digest: 15af679637f4bcba41d697edf53ae519e42a587650ddc159da4237e1db52f53c
 """
 
 import math
@@ -17,14 +17,14 @@ MODEL = {
     'title': 'A clamped beam under a ceiling',
     'source': 'derivations/examples/bryson_denham.py',
     'states': (
-        {'symbol': 'x', 'latex': 'x', 'meaning': 'position'},
-        {'symbol': 'v', 'latex': 'v', 'meaning': 'velocity'},
+        {'symbol': 'x', 'latex': 'x', 'meaning': 'deflection at the distance t along the beam'},
+        {'symbol': 'v', 'latex': 'v', 'meaning': 'slope of the beam'},
     ),
     'controls': (
-        {'symbol': 'u', 'latex': 'u', 'meaning': 'acceleration'},
+        {'symbol': 'u', 'latex': 'u', 'meaning': 'curvature of the beam'},
     ),
     'parameters': (
-        {'symbol': 'l', 'latex': '\\ell', 'meaning': 'position of the wall', 'default': 0.1111111111111111, 'positive': True},
+        {'symbol': 'l', 'latex': '\\ell', 'meaning': 'height of the ceiling', 'default': 0.1111111111111111, 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

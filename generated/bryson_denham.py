@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py 44314c87fa5d23f0e198f4ff33a9e0b3
-Digest: 97f6c6edd9ae51091031d59efa630f98a74f9eeac52b56026a52f6662372f69e
+Source: ../derivations/examples/bryson_denham.py a9c3edbc54598754d0b528e1f2a1368f
+Digest: 41b2bce2636e373a745ae94cba51ec06a6598fa371d834d90c7aad069a16cbc8
 """
 
 import math

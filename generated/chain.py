@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py d29e7ad6f64f73e1d7e1847a9324bcf9
-Digest: f5f265f2c136b4f08fdc6070ac69f5124b1eb30342a342e8508ed58d6095eca2
+Source: ../derivations/examples/chain.py 63f739e0fae1c29a6a919aad1d7ff9d6
+Digest: 4e7b7a52ec4c6a15fbcb2f4d1079976a006e9df3051c685fea5cdd22fea9d9bb
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'A hanging chain',
     'source': 'derivations/examples/chain.py',
     'states': (
-        {'symbol': 'height', 'latex': 'y', 'meaning': 'height'},
+        {'symbol': 'height', 'latex': 'y', 'meaning': 'height at the horizontal distance t'},
         {'symbol': 'length', 'latex': 's', 'meaning': 'length so far'},
     ),
     'controls': (

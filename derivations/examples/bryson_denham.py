@@ -33,7 +33,23 @@ bryson_denham = Problem(
     path_constraints={"wall": x - l},
 )
 
-beam = replace(bryson_denham, name="beam", title="A clamped beam under a ceiling", running_cost=u**2)
+beam = replace(
+    bryson_denham,
+    name="beam",
+    title="A clamped beam under a ceiling",
+    model=FirstOrder(
+        name="beam_under_a_ceiling",
+        title="A slender beam",
+        states=(
+            Variable("x", "x", meaning="deflection at the distance t along the beam"),
+            Variable("v", "v", meaning="slope of the beam"),
+        ),
+        controls=(Variable("u", "u", meaning="curvature of the beam"),),
+        parameters=(replace(PARAMETERS[0], meaning="height of the ceiling"),),
+        rates={x: v, v: u},
+    ),
+    running_cost=u**2,
+)
 
 TRANSLATIONS = {
     "id": {
@@ -44,6 +60,11 @@ TRANSLATIONS = {
         "velocity": "kecepatan",
         "acceleration": "percepatan",
         "position of the wall": "posisi dinding",
+        "A slender beam": "Balok langsing",
+        "deflection at the distance t along the beam": "lendutan pada jarak t sepanjang balok",
+        "slope of the beam": "kemiringan balok",
+        "curvature of the beam": "kelengkungan balok",
+        "height of the ceiling": "tinggi langit-langit",
     },
 }
 

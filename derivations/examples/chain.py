@@ -9,7 +9,7 @@ from sympy import sqrt
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("height", "y", meaning="height"),
+    Variable("height", "y", meaning="height at the horizontal distance t"),
     Variable("length", "s", meaning="length so far"),
 )
 CONTROLS = (Variable("slope", "u", meaning="slope of the chain"),)
@@ -34,7 +34,7 @@ TRANSLATIONS = {
     "id": {
         "A hanging chain": "Rantai yang menggantung",
         "A curve over the horizontal, with its length": "Kurva di atas horizontal beserta panjangnya",
-        "height": "tinggi",
+        "height at the horizontal distance t": "tinggi pada jarak mendatar t",
         "length so far": "panjang sampai titik ini",
         "slope of the chain": "kemiringan rantai",
     },

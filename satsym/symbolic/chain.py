@@ -6,7 +6,7 @@ hundreds, and their derivatives some thousands.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, TypeAlias
 
@@ -46,6 +46,22 @@ class Chain:
             if slope != 0:
                 found[symbol] = self.named(f"d_{symbol.name}_by_{by.name}", slope)
         return found
+
+
+def told(
+    parts: Iterable[Assignment], values: Iterable[sp.Expr], named: Callable[[int], sp.Symbol]
+) -> tuple[list[Assignment], list[sp.Expr]]:
+    """Parts without those that are the negative of another symbol and say nothing, numbered anew."""
+    said: dict[sp.Symbol, sp.Expr] = {}
+    kept: list[Assignment] = []
+    for symbol, value in parts:
+        shown = value.xreplace(said)
+        if (-shown).is_Symbol:
+            said[symbol] = shown
+        else:
+            said[symbol] = named(len(kept) + 1)
+            kept.append((said[symbol], shown))
+    return kept, [value.xreplace(said) for value in values]
 
 
 def along(value: sp.Expr, slopes: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:

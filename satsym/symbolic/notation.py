@@ -77,10 +77,15 @@ def indexed(latex: str, index: str) -> str:
     return rf"{found[1]}_{{{found[2] or found[3]},{index}}}" if found else rf"{{{latex}}}_{index}"
 
 
-def barred(latex: str) -> str:
-    """A symbol under a bar, which leaves its index out."""
+def accented(accent: str, latex: str) -> str:
+    """A symbol under an accent, which leaves its index out."""
     found = _LETTER_AND_INDEX.fullmatch(latex)
-    return rf"\bar{{{found[1]}}}_{{{found[2] or found[3]}}}" if found else rf"\bar{{{latex}}}"
+    return rf"\{accent}{{{found[1]}}}_{{{found[2] or found[3]}}}" if found else rf"\{accent}{{{latex}}}"
+
+
+def barred(latex: str) -> str:
+    """A symbol under a bar."""
+    return accented("bar", latex)
 
 
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:

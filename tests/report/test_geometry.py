@@ -66,7 +66,24 @@ def test_words_are_those_of_the_language() -> None:
     assert "gravitasi" in figure(model("polar_orbit"), load("id").with_own({"phrases": {"gravity": "gravitasi"}}), "it")
 
 
-@pytest.mark.parametrize("name", ["van_der_pol", "two_body", "goddard", "cart_pole"])
+def test_a_body_in_space_is_drawn_with_its_depth() -> None:
+    arrows, found = named("two_body"), model("two_body").picture()
+    assert found
+    assert len(found.axes) == 3
+    place = arrows[r"\mathbf{r}"].end
+    for k, name in enumerate("xyz"):
+        arrow = arrows[rf"\mathbf{{e}}_{{{name}}}"]
+        along = found.axes[k]
+        assert isclose(turn(arrow), atan2(along[1], along[0]), abs_tol=1e-6)
+    pull = arrows[r"\mathbf{F}_{\text{gravity}}"]
+    assert hypot(*pull.end) < hypot(*place)
+    assert isclose(pull.end[0] * place[1], pull.end[1] * place[0], rel_tol=1e-5)
+    (_, below), (_, centre) = found.guides
+    assert below[0] == place[0]
+    assert centre == (0, 0)
+
+
+@pytest.mark.parametrize("name", ["van_der_pol", "goddard", "cart_pole"])
 def test_no_geometry_is_invented(name: str) -> None:
     assert figure(model(name), load("en"), "it") == ""
 

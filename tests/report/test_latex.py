@@ -294,6 +294,9 @@ def test_what_people_write_is_escaped() -> None:
 def test_units_and_numbers_are_set_as_people_write_them() -> None:
     assert tex.unit("km**3/s**2") == r"$\mathrm{km^{3}/s^{2}}$"
     assert tex.unit("kg*m^2") == r"$\mathrm{kg\,m^{2}}$"
+    assert tex.unit("rad/V/s") == r"$\mathrm{rad/(V\,s)}$"
+    assert tex.unit("ohm") == r"$\mathrm{\Omega}$"
+    assert tex.number(1 / 9) == "$1/9$"
     assert tex.unit("1") == tex.number(None) == "--"
     assert tex.unit("50 $ per _") == r"\texttt{50 \$ per \_}"
     assert [tex.number(x) for x in (1.0, -0.25, 398600.4418, 1e-15, 2.5e20)] == [

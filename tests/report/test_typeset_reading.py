@@ -12,7 +12,7 @@ from satsym.report.latex.equations import APART, NEAR, array
 from satsym.report.latex.references import cited
 from satsym.report.texts import languages, load
 from satsym.symbolic import notation as n
-from satsym.symbolic.latex.products import united
+from satsym.symbolic.latex.rewriting import readable
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle.path import notation as path_notation
 from tests.support.derived import each, shipped
@@ -55,6 +55,16 @@ def test_a_single_control_is_spoken_of_as_one(name: str) -> None:
     assert "The control stays between its bounds" in text
 
 
+def test_what_there_is_one_of_is_spoken_of_as_one() -> None:
+    text = render(shipped("hypersensitive"))
+    assert r"The state $x$ obeys the equation of motion~\eqref{hypersensitive:first_order.x}, and" in text
+    assert "The control is not bounded." in text
+    assert "obeys the path constraint\n" in render(shipped("beam"))
+    assert "obeys the path constraints\n" in render(shipped("approach_cone"))
+    assert "Eigenvalues with positive real parts, $2$ and $1$, make" in render(shipped("three_modes"))
+    assert "An eigenvalue with a positive real part, $3$, makes" in render(shipped("saddle"))
+
+
 def test_of_free_controls_no_bounds_are_spoken_of() -> None:
     assert "bound is active" in render(shipped("cart_pole"))
     assert "bound is active" not in render(shipped("bryson_denham"))
@@ -66,6 +76,31 @@ def test_the_boundary_value_problem_leads_to_every_step_of_an_active_constraint(
     for step in ("boundary_control", "constraint_multiplier", "constrained_costates", "junction_conditions"):
         assert step in derivation
         assert rf"\ref{{approach_cone:{step}}}" in collected
+
+
+@pytest.mark.parametrize(
+    ("name", "defined"), [("catalyst", "switching_function.u"), ("zermelo", "control_parts.cosine_of_heading")]
+)
+def test_the_boundary_value_problem_defines_what_its_law_is_stated_in(name: str, defined: str) -> None:
+    collected = render(shipped(name)).rpartition(r"\section{The boundary-value problem}")[2]
+    assert rf"\tag{{\ref{{{name}:{defined}}}}}" in collected
+
+
+def test_the_boundary_value_problem_has_the_points_on_the_way() -> None:
+    collected = render(shipped("inspection")).rpartition(r"\section{The boundary-value problem}")[2]
+    for e in shipped("inspection").step("interior_conditions").equations:
+        assert rf"\tag{{\ref{{inspection:interior_conditions.{e.name}}}}}" in collected
+    assert "no path constraint is active" not in collected
+
+
+def test_of_several_constraints_those_with_the_same_equations_share_them() -> None:
+    text = render(shipped("shuttle_heating"))
+    costates = text.partition(r"\satsymstep{shuttle_heating:mixed_costates}")[2].partition(r"\satsymstep")[0]
+    assert r"and for $\Gamma_{2}$, $\Gamma_{3}$, $\Gamma_{4}$ and $\Gamma_{5}$" in costates
+    assert all(
+        rf"{{shuttle_heating:mixed_costates.{e.name}}}" in costates
+        for e in shipped("shuttle_heating").step("mixed_costates").equations
+    )
 
 
 def test_a_figure_is_referred_to_before_it_and_stands_before_the_quantities() -> None:
@@ -111,8 +146,8 @@ def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() 
 def test_squares_of_sine_and_cosine_that_make_one_are_not_written() -> None:
     assert r"\sin^{2} \theta + \cos^{2} \theta" not in render(shipped("shuttle"))
     x, a, b = sp.symbols("x a b", real=True)
-    assert united(a + b * sp.sin(x) ** 2 + b * sp.cos(x) ** 2) == a + b
-    assert united(a * sp.sin(x) ** 2 + b * sp.cos(x) ** 2).has(sp.sin)
+    assert readable(a + b * sp.sin(x) ** 2 + b * sp.cos(x) ** 2) == a + b
+    assert readable(a * sp.sin(x) ** 2 + b * sp.cos(x) ** 2).has(sp.sin)
 
 
 def test_equations_of_motion_look_the_same_wherever_they_stand() -> None:
@@ -144,12 +179,29 @@ def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
 
 def test_laws_list_what_they_are_made_of_and_no_more() -> None:
     angle, thrust, parts = (render(shipped(name)) for name in ("transfer_time", "transfer_fuel", "shuttle"))
-    assert r"$H$ is minimised by the direction of $(-a, -b)$:" in angle
+    assert r"minimised by the direction of $(-H_{\cos\beta}, -H_{\sin\beta})$:" in angle
     assert "switching function" not in angle
     assert r"switching function $|\mathbf{p}| - w$" in thrust
     assert r"T^{\max}" in thrust
     assert r"u^{\max}" not in thrust
     assert "parts are named $q$" in parts
+
+
+def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
+    text = render(shipped("reorientation"))
+    arcs = text.partition(r"\satsymstep{reorientation:singular_arcs}")[2].partition(r"\satsymstep")[0]
+    assert r"$\sigma_{u_1}^{(3)}$, $\sigma_{u_2}^{(3)}$ and $\sigma_{u_3}^{(3)}$" in arcs.partition("Not shown")[2]
+    assert r"\sigma_{u_1}^{(3)} &=" not in arcs
+    assert all(
+        rf"{{reorientation:singular_arcs.{e.name}}}" in arcs
+        for e in shipped("reorientation").step("singular_arcs").equations
+    )
+
+
+def test_ratios_of_polynomials_stand_by_falling_powers() -> None:
+    text = render(shipped("pitch_classical"))
+    assert r"G_{\theta}(s) &= \frac{K_1 s + K_2}{I_y s^{2} + K_1 s + K_2}" in text
+    assert r"\Delta(s) &= s^{2} + \frac{K_1 s}{I_y} + \frac{K_2}{I_y}" in text
 
 
 def test_fixed_axes_are_not_said_to_turn() -> None:

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 from satsym.report.latex import tex
 from satsym.report.latex.equations import Row, display
 from satsym.report.latex.steps import Context, costate_rows, row_of
-from satsym.symbolic import Step
+from satsym.symbolic import Problem, Step
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.model import symbols_of
+from satsym.symbolic.principle.path.interior import named
 
 ASIDE = (
     *("boundary_control", "control_rates", "constraint_multiplier", "constrained_costates", "junction_conditions"),
     *("mixed_constraints", "mixed_costates"),
 )
 """Steps for stretches on which a path constraint is active."""
+DEFINING = ("switching_function", "control_parts")
+"""Steps that define what control laws are stated in."""
 
 
 def collected(context: Context) -> Iterator[str]:
@@ -32,10 +36,14 @@ def collected(context: Context) -> Iterator[str]:
     motion, costates, law = (derivation.step(name) for name in ("state_equations", "costate_equations", "control_law"))
     along = [*(row_of(context, motion, e) for e in motion.equations), *costate_rows(context, costates)]
     yield said("multipliers" if problem.end_conditions else "unknowns") + "\n" + _shown(along)
-    yield said("control") + "\n" + _shown([row_of(context, law, e) for e in law.equations])
+    yield said("control") + "\n" + _shown([*(row_of(context, law, e) for e in law.equations), *_parts(context, law)])
     steps = [rf"\ref{{{tex.label(context.address(derivation.step(name)))}}}" for name in ASIDE if name in derivation]
-    if steps:
+    if steps and _constrained(problem):
         yield said("aside", steps=texts.listed(steps))
+    if "interior_conditions" in derivation:
+        passed = derivation.step("interior_conditions")
+        address = tex.label(context.address(passed))
+        yield said("interior", step=rf"\ref{{{address}}}") + "\n" + _shown(_passing(context, passed))
     ends = derivation.step("boundary_conditions")
     states = symbols_of(derivation.model.states)
     yield said("start") + "\n" + _shown(_at(context, ends, "t_0", [s.name for s in states]))
@@ -57,6 +65,27 @@ def collected(context: Context) -> Iterator[str]:
     if others:
         yield said("constraints") + "\n" + _shown(_at(context, ends, "t_f", others))
     yield said("final_time") + "\n" + _shown(_at(context, ends, "t_f", ["final_time"]))
+
+
+def _parts(context: Context, law: Step) -> list[Row]:
+    """What the law is stated in: switching functions, or the parts of H, as far as they stand in it."""
+    derivation = context.derivation
+    within = set[Any]().union(*(e.rhs.free_symbols for e in law.equations))
+    steps = [derivation.step(name) for name in DEFINING if name in derivation]
+    return [row_of(context, step, e) for step in steps for e in step.equations if e.lhs in within]
+
+
+def _constrained(problem: Problem) -> bool:
+    """Whether there is a path constraint; bounds beside points on the way are in the law."""
+    return bool(problem.path_constraints)
+
+
+def _passing(context: Context, step: Step) -> list[Row]:
+    """The conditions at points on the way, as they are stated, and what they make of costates and H."""
+    problem = context.derivation.problem
+    assert problem is not None
+    stated = set(named(problem))
+    return [replace(row_of(context, step, e), end="= 0" if e.name in stated else "") for e in step.equations]
 
 
 def _at(context: Context, step: Step, time: str, names: list[str]) -> list[Row]:

@@ -71,7 +71,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     own = texts.phrase(derivation.title)
     title = tex.escape(own)
     head = (
-        f"\\begin{{center}}\n  {{\\LARGE {title}\\par}}\n  \\vspace{{1ex}}{tex.name(derivation.name)}\n"
+        f"\\begin{{center}}\n  \\satsymtitle{{{title}}}\n  \\vspace{{1ex}}{tex.name(derivation.name)}\n"
         f"\\end{{center}}\n\\begin{{abstract}}\n{composer.abstract()}\n\\end{{abstract}}"
     )
     opening = preamble.preamble(texts, tex.bookmark(own))
@@ -110,6 +110,12 @@ class _Composer:
     def abstract(self) -> str:
         """What each section does."""
         places = {key: self._place(key) for key in (*self._sections, "checks")}
+        if (
+            "structure" in places
+            and "controllability" not in self._derivation
+            and "observability" not in self._derivation
+        ):
+            places = {"stability" if key == "structure" else key: place for key, place in places.items()}
         return " ".join(self._texts.get("abstract", key, section=place) for key, place in places.items())
 
     def paragraphs(self) -> list[str]:

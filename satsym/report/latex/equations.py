@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from satsym.report.latex.tex import label
 from satsym.report.latex.width import width
@@ -15,14 +15,16 @@ LINE = 35.0
 INDENT = 1.0
 """What a continued line is moved in by, in em; twice that within parentheses."""
 
-APART = r" \\ \noalign{\vskip 4pt} "
+APART = r" \\ \noalign{\vskip 5pt} "
 """Between rows of a matrix with fractions."""
 NEAR = r" \\ \noalign{\vskip 2pt} "
 """Between rows of a matrix with small fractions, which touch each other otherwise."""
 TALL = 4
 """Lines of one equation that are kept on one page, at most."""
-TOGETHER = 4
+TOGETHER = 3
 """Lines of the longest group of equations that no page may break."""
+FEWEST = 2
+"""Lines of a group of equations that a page must have, at least."""
 
 
 @dataclass(frozen=True)
@@ -142,8 +144,10 @@ def _both_sides_broken(row: Row) -> str:
 
 def _environment(name: str, lines: Sequence[str]) -> str:
     last, tall = len(lines) - 1, any(r"\begin{array}" in line for line in lines)
-    height = sum(1 + line.count(r"\\") for line in lines)
-    breakable = [tall or (height > TOGETHER and 0 < k < last - 1) for k in range(last)]
+    heights = [1 + line.count(r"\\") for line in lines]
+    above = list(accumulate(heights))
+    apart = [a >= FEWEST and above[-1] - a >= FEWEST for a in above]
+    breakable = [tall or (above[-1] > TOGETHER and apart[k]) for k in range(last)]
     ends = [r" \displaybreak[2] \\" if b else r" \\" for b in breakable]
     body = "\n  ".join(line + end for line, end in zip(lines, [*ends, ""], strict=True))
     return f"\\begin{{{name}}}\n  {body}\n\\end{{{name}}}"

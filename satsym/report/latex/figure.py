@@ -37,20 +37,23 @@ def _space(shown: Picture) -> Iterator[str]:
     first, *others = shown.arrows
     scale = SIZE / hypot(*first.end)
     far = 1.25 * SIZE
-    yield rf"\draw[->,black!50] (0,0) -- ({far:.2f},0)"
-    yield rf"\draw[->,black!50] (0,0) -- (0,{far:.2f})"
+    for axis in shown.axes:
+        yield rf"\draw[->,black!50] (0,0) -- {_at(axis, far)}"
+    for one, other in shown.guides:
+        yield rf"\draw[densely dotted,black!50] {_at(one, scale)} -- {_at(other, scale)}"
     if shown.path:
         yield r"\draw[dashed,black!50] plot[smooth] coordinates {" + " ".join(_at(p, scale) for p in shown.path) + "}"
     yield rf"\draw (0,0) -- {_at(first.end, scale)}" + (
-        rf" node[midway,above left] {_names(first)}" if first.labels else ""
+        rf" node[{'pos=0.3' if shown.guides else 'midway'},above left] {_names(first)}" if first.labels else ""
     )
     if shown.angle:
         turn, name = degrees(shown.angle[0]), shown.angle[1]
         yield rf"\draw[->] (0.9,0) arc (0:{turn:.1f}:0.9)"
         yield rf"\node at ({turn / 2:.1f}:1.15) {{${name}$}}"
+    beside = "above left" if shown.guides else "below right"
     for arrow in others:
         start, end = _at(arrow.start, scale), _at(arrow.end, scale)
-        yield rf"\draw[->,thick] {start} -- {end} node[{_side(arrow)}] {_names(arrow)}"
+        yield rf"\draw[->,thick] {start} -- {end} node[{_side(arrow, beside)}] {_names(arrow)}"
     yield rf"\fill (0,0) circle (1.5pt) {_at(first.end, scale)} circle (2pt)"
 
 
@@ -103,9 +106,9 @@ def _names(arrow: Arrow) -> str:
     return "{$" + r",\, ".join(arrow.labels) + "$}"
 
 
-def _side(arrow: Arrow) -> str:
+def _side(arrow: Arrow, beside: str) -> str:
     """Where the name of an arrow stands: on from its head, or beside one that points back to the centre."""
     x, y = (b - a for a, b in zip(arrow.start, arrow.end, strict=True))
     if x * arrow.start[0] + y * arrow.start[1] < 0 and abs(x * arrow.start[1] - y * arrow.start[0]) < 1e-6:
-        return "below right"
+        return beside
     return f"{'above' if y > 0 else 'below'} {'right' if x > 0 else 'left'}"

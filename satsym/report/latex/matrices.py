@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -26,6 +27,8 @@ TALL = 14
 """Lines of a matrix, at most; a row with fractions counts as two."""
 GAP = 1.0
 """Between columns, in em."""
+
+_LETTER = re.compile(r"(?:\\[a-z]+\{)?[A-Za-z]\}?")
 
 
 def with_matrices(
@@ -56,8 +59,9 @@ def with_matrices(
             entries = [Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs)) for name, e in named.items()]
             parts.append(display(entries))
             rows += entries
-    for matrix in listed:
-        parts.append(texts.get("groups", "nonzero", matrix=DEFINED.get(matrix.prefix, matrix.prefix)))
+    for place, matrix in enumerate(listed):
+        stands = DEFINED.get(matrix.prefix, matrix.prefix)
+        parts.append(texts.get("groups", "nonzero_next" if place or shown else "nonzero", matrix=_flat(stands)))
         entries = [
             Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs))
             for name, e in _places(matrix, matrix.prefix)
@@ -69,13 +73,18 @@ def with_matrices(
     return "\n".join(p for p in parts if p), [row.address for row in rows]
 
 
+def _flat(tex: str) -> str:
+    """With fractions on one line."""
+    return re.sub(r"\\frac\{(\S+)\}\{(\S+)\}", r"\1 / \2", tex)
+
+
 def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tuple[list[Row], list[Row]]:
     """An equation whose right-hand side is a matrix, and those that its long entries need, or all of its entries."""
     cells = [[typeset.tex(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
     head, _, _ = name.partition(" = ")
     letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
-    mirrored = bool(named or written is None) and _mirrored(matrix)
+    mirrored = bool(named or written is None) and is_mirrored(matrix)
     if written is not None and not mirrored:
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
@@ -88,7 +97,7 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     return [replace(first, address=address), *rest], []
 
 
-def _mirrored(matrix: Any) -> bool:
+def is_mirrored(matrix: Any) -> bool:
     """Whether a matrix is its own transpose; entries are simplified only where none shows that it is not."""
     if matrix.rows != matrix.cols:
         return False
@@ -98,7 +107,9 @@ def _mirrored(matrix: Any) -> bool:
 
 def _indexed(name: str, i: int, j: int) -> str:
     """An entry of what the name stands for; zero stays zero."""
-    return name if name == "0" else rf"({name.partition(' = ')[0]})_{{{i + 1},{j + 1}}}"
+    head = name.partition(" = ")[0]
+    letter = head if _LETTER.fullmatch(head) else f"({head})"
+    return name if name == "0" else rf"{letter}_{{{i + 1},{j + 1}}}"
 
 
 def fitted(

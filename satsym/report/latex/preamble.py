@@ -54,6 +54,9 @@ MACROS = r"""\makeatletter
   \protected@edef\@currentlabel{\theequation}\def\@currentHref{equation.\csname theHequation\endcsname}%
   \protected@edef\@currentHref{\@currentHref}%
   \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup\vskip\skip@}
+% {title}: on lines of like lengths
+\def\satsymtitle#1{{\leftskip=0pt plus 0.3\linewidth \rightskip=\leftskip \parfillskip=0pt \hbadness=10000
+  \LARGE #1\par}}
 % keeps a list on one page
 \def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
 \makeatother

@@ -73,7 +73,8 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
         equations = derivation.step("first_order").equations
         first, last = (tex.label(f"{derivation.name}:first_order.{e.name}") for e in (equations[0], equations[-1]))
         state = r",\, \allowbreak ".join(v.latex for v in problem.model.states)
-        paragraphs.append(texts.get("statement", "subject", first=first, last=last, state=state))
+        subject = "subject" if len(equations) > 1 else "subject_one"
+        paragraphs.append(texts.get("statement", subject, first=first, last=last, state=state))
     return Part(tuple(paragraphs), {"cost": (whole.address, rows[-1].address)})
 
 
@@ -83,7 +84,7 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
         return Part()
     shown = [line for part in parts_of(problem) for line in _limited(part)]
     if not shown:
-        return Part((texts.get("statement", "free"),))
+        return Part((texts.get("statement", "free" if len(problem.model.controls) > 1 else "free_one"),))
     in_a_line = r", \qquad ".join(shown)
     body = (
         in_a_line
@@ -125,7 +126,9 @@ def _constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
         for k, condition in enumerate(problem.end_conditions, 1)
     ]
     parts = {"constraints": rows[:equalities], "terminal_inequalities": rows[equalities:]}
-    return Part(tuple(f"{texts.get('statement', key)}\n{display(some)}" for key, some in parts.items() if some))
+    return Part(
+        tuple(f"{texts.get('statement', _one(key, some))}\n{display(some)}" for key, some in parts.items() if some)
+    )
 
 
 def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
@@ -135,7 +138,12 @@ def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter)
         Row(_address(derivation, name), typeset.terms(rate(name, 0)), typeset.terms(constraint), end=r"\le 0")
         for name, constraint in derivation.problem.path_constraints.items()
     ]
-    return Part((f"{texts.get('statement', 'path_constraints')}\n{display(rows)}",))
+    return Part((f"{texts.get('statement', _one('path_constraints', rows))}\n{display(rows)}",))
+
+
+def _one(key: str, rows: Sequence[Row]) -> str:
+    """The text about a single one, where there is one row."""
+    return key if len(rows) > 1 else f"{key}_one"
 
 
 def _interior(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

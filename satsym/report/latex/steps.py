@@ -6,14 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from satsym.report.latex import tex
-from satsym.report.latex.equations import Row, display
-from satsym.report.latex.matrices import matrix_rows, with_matrices
+from satsym.report.latex.equations import LINE, Row, display
+from satsym.report.latex.matrices import is_mirrored, matrix_rows, with_matrices
+from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.symbolic import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.convention import worded
-from satsym.symbolic.latex.terms import plain
+from satsym.symbolic.latex.terms import joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
-from satsym.symbolic.principle.path.notation import of_states, rate
+from satsym.symbolic.principle.path.notation import mixed, of_states, rate
+
+LONGEST = 12
+"""Lines of an equation that is shown where a step has several of no other use, at most."""
 
 
 @dataclass(frozen=True)
@@ -58,31 +62,44 @@ def _as_they_stand(context: Context, step: Step) -> Shown:
 
 
 def _by_constraint(context: Context, step: Step) -> Shown:
-    """What holds on the boundary of each constraint apart, where there are several."""
+    """What holds while each constraint is active apart, where there are several; together where it is the same."""
     problem = context.derivation.problem
-    names = list(of_states(problem)) if problem else []
-    if len(names) < 2:
-        return _as_they_stand(context, step)
+    names = [*of_states(problem), *mixed(problem)] if problem else []
     groups: dict[str, list[Row]] = {}
     for e in step.equations:
         of = max((name for name in names if e.name == name or e.name.startswith(f"{name}_")), key=len)
         groups.setdefault(of, []).append(row_of(context, step, e))
-    heads = {name: context.typeset.tex(rate(name, 0)) for name in groups}
-    parts = [f"{context.texts.get('groups', 'constraint', of=heads[k])}\n{display(v)}" for k, v in groups.items()]
-    rows = [row for group in groups.values() for row in group]
-    return Shown("\n".join(parts), rows[0].address, rows[-1].address)
+    if len(groups) < 2:
+        return _as_they_stand(context, step)
+    alike: dict[tuple[object, ...], list[str]] = {}
+    for name, rows in groups.items():
+        alike.setdefault(tuple((row.left, row.right) for row in rows), []).append(name)
+    parts, shown = [], []
+    for place, (first, *others) in enumerate(alike.values()):
+        heads = context.texts.listed([f"${context.typeset.tex(rate(name, 0))}$" for name in (first, *others)])
+        last = place and place == len(alike) - 1
+        parts.append(context.texts.get("groups", "constraint_next" if last else "constraint", of=heads))
+        same = [(row, old) for name in others for row, old in zip(groups[name], groups[first], strict=True)]
+        parts += [display(groups[first]), *_also(groups[first], same)]
+        shown += groups[first]
+    return Shown("\n".join(parts), shown[0].address, shown[-1].address)
 
 
 def _once(rows: Sequence[Row]) -> Shown:
     """What several of them say alike is shown the first time, and has its number for all of them."""
     first: dict[tuple[object, ...], Row] = {}
     same = [(row, first.setdefault((row.left, row.right), row)) for row in rows]
-    shown, places = list(first.values()), {row.address: k for k, row in enumerate(reversed(first.values()))}
+    shown = list(first.values())
     found = _display(shown)
-    also = [
-        rf"\satsymalso{{{places[old.address]}}}{{{tex.label(row.address)}}}%" for row, old in same if row is not old
-    ]
-    return replace(found, body="\n".join([found.body, *also]))
+    return replace(
+        found, body="\n".join([found.body, *_also(shown, [pair for pair in same if pair[0] is not pair[1]])])
+    )
+
+
+def _also(shown: Sequence[Row], same: Sequence[tuple[Row, Row]]) -> list[str]:
+    """Labels of rows that are not shown, at the numbers of shown ones that say the same."""
+    places = {row.address: k for k, row in enumerate(reversed(shown))}
+    return [rf"\satsymalso{{{places[old.address]}}}{{{tex.label(row.address)}}}%" for row, old in same]
 
 
 def _with_whole_matrices(context: Context, step: Step) -> Shown:
@@ -96,6 +113,11 @@ def _with_whole_matrices(context: Context, step: Step) -> Shown:
         shown += rows
         if entries:
             parts += [display(waiting), context.texts.get("groups", "entries"), display(entries)]
+            waiting = []
+        elif len(rows) > 1 and not is_mirrored(e.rhs):
+            words = context.texts.get("groups", "nonzero_of", matrix=context.typeset.tex(e.lhs))
+            parts += [display(waiting[: -len(rows)])] if waiting[: -len(rows)] else []
+            parts += [words, display(rows)]
             waiting = []
     body = "\n".join([*parts, *([display(waiting)] if waiting else [])])
     return Shown(body, shown[0].address, shown[-1].address)
@@ -112,9 +134,8 @@ def _rows(context: Context, step: Step, equation: Equation) -> tuple[list[Row], 
 
 def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
     """A polynomial by falling powers."""
-    terms = [term for power in context.typeset.by_powers(equation.rhs) for term in power]
     address = f"{context.address(step)}.{equation.name}"
-    return Row(address, context.typeset.terms(equation.lhs), tuple(terms))
+    return Row(address, context.typeset.terms(equation.lhs), tuple(context.typeset.by_powers(equation.rhs)))
 
 
 def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
@@ -141,7 +162,11 @@ def conclusion(context: Context, said: Conclusion) -> str:
         place: context.texts.listed([f"${text}$" for text in context.typeset.items(value)])
         for place, value in said.values.items()
     }
-    return context.texts.get("conclusions", said.key, **fill)
+    several = any(len(context.typeset.items(value)) > 1 for value in said.values.values())
+    many = f"{said.key}, several"
+    return context.texts.get(
+        "conclusions", many if several and context.texts.find("conclusions", many) else said.key, **fill
+    )
 
 
 def _stationarity(context: Context, step: Step) -> Shown:
@@ -225,11 +250,49 @@ def quantities(context: Context, step: Step) -> str:
     return context.texts.listed(found)
 
 
+def _transfer_functions(context: Context, step: Step) -> Shown:
+    """Ratios of polynomials by falling powers, without fractions in them."""
+    rows = []
+    for e in step.equations:
+        above, below = map(joined, context.typeset.ratio_in_laplace(e.rhs))
+        ratio = plain(rf"\frac{{{above}}}{{{below}}}")
+        rows.append(Row(f"{context.address(step)}.{e.name}", context.typeset.terms(e.lhs), ratio))
+    return _display(rows)
+
+
+def _poles(context: Context, step: Step) -> Shown:
+    """The polynomial by falling powers, then its zeros."""
+    rows = [row_of(context, step, e) for e in step.equations]
+    right = tuple(context.typeset.in_laplace(step.equations[0].rhs))
+    return _display([replace(rows[0], right=right), *rows[1:]])
+
+
+def _smoothed(context: Context, step: Step) -> Shown:
+    """Controls of the regularised problem with its mark."""
+    marked = {v.symbol: plain(rf"{v.latex}^{{\varepsilon}}") for v in context.derivation.model.controls}
+    rows = [(row_of(context, step, e), e.lhs) for e in step.equations]
+    return _display([replace(row, left=marked.get(str(left), row.left)) for row, left in rows])
+
+
+def _shorter(context: Context, step: Step) -> Shown:
+    """Without equations that take a good part of a page, which have the number of the one before."""
+    rows = [row_of(context, step, e) for e in step.equations]
+    shown = [row for row in rows if width(joined(row.right)) <= LONGEST * LINE] or rows
+    left = [row for row in rows if row not in shown]
+    if not left:
+        return _once(rows)
+    named = context.texts.listed([f"${row.left_tex}$" for row in left])
+    words = context.texts.get("groups", "omitted", listed=named)
+    before = [(row, next(s for s in reversed(rows[: rows.index(row)] or shown) if s in shown)) for row in left]
+    found = _once(shown)
+    return replace(found, body="\n".join([found.body, *_also(shown, before), words]))
+
+
 LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     **dict.fromkeys(
         (
             *("constraint_order", "boundary_control", "control_rates", "constraint_multiplier"),
-            *("constrained_costates", "junction_conditions"),
+            *("constrained_costates", "junction_conditions", "mixed_constraints", "mixed_costates"),
         ),
         _by_constraint,
     ),
@@ -239,6 +302,10 @@ LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     "boundary_conditions": _boundary_conditions,
     "boundary_residual": _at_the_end,
     "lqr_stationarity": _stationarity,
+    "singular_arcs": _shorter,
+    "transfer_function": _transfer_functions,
+    "poles_and_zeros": _poles,
+    "smoothed_law": _smoothed,
     "lqr_costates": _costate_equations,
 }
 
@@ -246,7 +313,7 @@ LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
 def numbers_of(first: str, last: str) -> str:
     """The equation number of an address, or the range of two."""
     ends = dict.fromkeys((tex.label(first), tex.label(last)))
-    return "--".join(rf"\eqref{{{label}}}" for label in ends)
+    return r"\mbox{--}".join(rf"\eqref{{{label}}}" for label in ends)
 
 
 def _derivative(by: str) -> str:

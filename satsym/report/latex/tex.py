@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from fractions import Fraction
 
 from satsym.formula.writing import GREEK
 
@@ -42,6 +43,8 @@ _SYMBOLS = {
     "³": r"\ensuremath{^3}",
     "\N{NO-BREAK SPACE}": "~",
 }
+LARGEST, LARGEST_DIGITS = 100, 12
+"""Denominator of a fraction as which a number is written that has more digits than these, at most."""
 GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
 _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
@@ -86,18 +89,24 @@ def unit(text: str) -> str:
     factors = list(_UNIT.finditer(compact))
     if "".join(f[0] for f in factors) != compact:
         return rf"\texttt{{{escape(text)}}}"
-    written = ""
-    for factor in factors:
-        written += {"*": r"\,", "/": "/", "": ""}[factor["operator"]]
-        written += factor["name"].replace("%", r"\%").replace("µ", "\N{MICRO SIGN}")
-        written += f"^{{{factor['power']}}}" if factor["power"] else ""
-    return rf"$\mathrm{{{written}}}$"
+    above, below = ([_factor(f) for f in factors if (f["operator"] == "/") is under] for under in (False, True))
+    written, under = r"\,".join(above), r"\,".join(below)
+    line = f"/({under})" if len(below) > 1 else f"/{under}" if below else ""
+    return rf"$\mathrm{{{written}{line}}}$"
+
+
+def _factor(unit: re.Match[str]) -> str:
+    name = {"ohm": r"\Omega"}.get(unit["name"], unit["name"].replace("%", r"\%").replace("µ", "\N{MICRO SIGN}"))
+    return f"{name}^{{{unit['power']}}}" if unit["power"] else name
 
 
 def number(value: float | None, point: str = ".") -> str:
     """A number as a person writes it, with a decimal point or what stands for it; an en dash for none."""
     if value is None:
         return "--"
+    ratio = Fraction(value).limit_denominator(LARGEST)
+    if float(ratio) == value and len(f"{value:.12g}") > LARGEST_DIGITS:
+        return f"${ratio}$"
     digits, _, exponent = f"{value:.12g}".replace(".", point).partition("e")
     if not exponent:
         return f"${digits}$"

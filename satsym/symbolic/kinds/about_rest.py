@@ -80,7 +80,7 @@ class AboutRest(SpecialCase):
     def names(self, problem: Problem | None) -> dict[str, str]:
         """Accelerations, and what linear theory finds."""
         latex = {v.symbol: v.latex for v in self.states}
-        found = {n.rate_of(v).name: rf"\ddot{{{latex[q.name]}}}" for q, v in self.velocities.items()}
+        found = {n.rate_of(v).name: n.accented("ddot", latex[q.name]) for q, v in self.velocities.items()}
         return found | ({} if problem else results(self))
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import mpmath as mp
@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.physics.mechanics import KanesMethod, ReferenceFrame, dynamicsymbols
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.chain import parts_of
+from satsym.symbolic.chain import parts_of, told
 from satsym.symbolic.checks import Point, compare, identity, numeric_along, slopes
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds import stated_as
@@ -82,8 +82,9 @@ def kane(so_far: Derivation) -> Step:
     parts: list[tuple[sp.Symbol, sp.Expr]] = []
     written = list(values.values())
     if sum(map(sp.count_ops, written)) > LONG:
-        names = (sp.Symbol(f"part_{k}", real=True) for k in range(1, 10**4))
-        parts, written = _told(*sp.cse(written, symbols=names, order="canonical"))
+        names = map(_part, range(1, 10**4))
+        found, reduced = sp.cse(written, symbols=names, order="canonical")
+        parts, written = told(found, reduced, _part)
     equations = [Equation(s.name, s, value) for s, value in parts]
     equations += [
         Equation(name, sp.Symbol(name, real=True), value)
@@ -91,23 +92,12 @@ def kane(so_far: Derivation) -> Step:
         if value != 0 or not name.startswith("mass")
     ]
     check = _newton_euler(model, parts, dict(zip(values, written, strict=True)))
-    return Step("kane", "Kane's equations", tuple(equations), ("kinematics", "bodies"), (check,))
+    rule = f"Kane's equations{', in parts' if parts else ''}"
+    return Step("kane", rule, tuple(equations), ("kinematics", "bodies"), (check,))
 
 
-def _told(
-    parts: Iterable[tuple[sp.Symbol, sp.Expr]], values: Iterable[sp.Expr]
-) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    """Parts without those that are the negative of another symbol and say nothing, numbered anew."""
-    said: dict[sp.Symbol, sp.Expr] = {}
-    kept: list[tuple[sp.Symbol, sp.Expr]] = []
-    for symbol, value in parts:
-        shown = value.xreplace(said)
-        if (-shown).is_Symbol:
-            said[symbol] = shown
-        else:
-            said[symbol] = sp.Symbol(f"part_{len(kept) + 1}", real=True)
-            kept.append((said[symbol], shown))
-    return kept, [value.xreplace(said) for value in values]
+def _part(k: int) -> sp.Symbol:
+    return sp.Symbol(f"part_{k}", real=True)
 
 
 def first_order(so_far: Derivation) -> Step:

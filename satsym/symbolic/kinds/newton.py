@@ -84,7 +84,7 @@ class Newton(Particle):
         latex, found = {v.symbol: v.latex for v in self.states}, {}
         for q in self.coordinates:
             found[f"momentum_{q.name}"] = rf"p_{{{latex[q.name]}}}"
-            found[n.acceleration_of(q).name] = rf"\ddot{{{latex[q.name]}}}"
+            found[n.acceleration_of(q).name] = n.accented("ddot", latex[q.name])
         for name in self.directions:
             along = name.partition("_")[2] or name  # e_theta is along theta
             found[name] = rf"\mathbf{{e}}_{{{latex.get(along, along)}}}"

@@ -16,13 +16,17 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from satsym.symbolic.latex.levels import extreme, levels, size
-from satsym.symbolic.latex.products import Product, base, exponent, is_negative, spread, take_apart
+from satsym.symbolic.latex.products import HUNDREDTHS, Product, base, exponent, is_negative, spread, take_apart
 from satsym.symbolic.latex.terms import Piece, Term, joined
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.roots import Root
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""
+
+
+CHOSEN = frozenset("Shorten Stretch Within Clip Max Min".split())
+"""Functions too tall to stand in a fraction."""
 
 
 class Kind(IntEnum):
@@ -62,6 +66,17 @@ class Printer(LatexPrinter):
         return rf"\mathrm{{{_escaped(name)}}}" if known is None else known
 
     # sums
+
+    def normalised(self, expression: sp.Expr) -> sp.Expr:
+        """With the first term of a sum below a fraction line, or squared, positive, where it has whole powers."""
+        return expression.replace(_is_power_of_sum, self._turned)
+
+    def _turned(self, power: sp.Expr) -> sp.Expr:
+        root, exponent = power.as_base_exp()
+        first = min(root.args, key=self._summand_order)
+        if not is_negative(first):
+            return power
+        return sp.Integer(-1) ** exponent * sp.Pow(-root, exponent)
 
     def terms(self, expression: sp.Expr, *, plus_first: bool = True) -> list[Term]:
         """The terms of a sum in order."""
@@ -124,7 +139,7 @@ class Printer(LatexPrinter):
         negative, top = parts.negative, sorted(parts.top, key=self._factor_order)
         sums = [f for f in top if f.is_Add]
         last = Kind.FUNCTION if sums and not parts.bottom else Kind.DIRECTION
-        trailing = [f for f in top if self._rank(base(f))[0] >= last]
+        trailing = [f for f in top if self._rank(base(f))[0] >= last or (parts.bottom and f.func.__name__ in CHOSEN)]
         others = [f for f in top if not f.is_Add and f not in trailing]
         tail = self._product(trailing)
         small_fraction = self._small and (parts.bottom or parts.number_below != 1)
@@ -222,7 +237,7 @@ class Printer(LatexPrinter):
         with self._inside():
             if power == sp.Rational(1, 2):
                 return rf"\sqrt{{{self._print(root)}}}"
-            exponent_tex = self._print(power)
+            exponent_tex = self._print(_decimal(power))
         if root.func.__name__ in ELEMENTARY:
             return self._print_Function(root, exponent_tex)
         tex = self._print(root)
@@ -350,6 +365,20 @@ def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
     if plus is None or not is_negative(first):
         return list(summands)
     return [*_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
+
+
+def _is_power_of_sum(expression: sp.Expr) -> bool:
+    """Whether the sign of a sum in it may be turned."""
+    if not (expression.is_Pow and expression.base.is_Add and expression.exp.is_Integer):
+        return False
+    return bool(expression.exp.is_negative or expression.exp.is_even)
+
+
+def _decimal(number: sp.Expr) -> sp.Expr:
+    """Hundredths and the like as a decimal number."""
+    if isinstance(number, sp.Rational) and number.q in HUNDREDTHS:
+        return sp.Float(str(number.p / number.q))
+    return number
 
 
 def _whole(negative: bool, tex: str) -> Term:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import sympy as sp
 
+HUNDREDTHS = (100, 1000, 10000)
+"""Whole numbers below a fraction line that are better read as a decimal number."""
 MANY = 12
 """Terms of a sum below a fraction line that is looked at as a product, at most."""
 
@@ -51,7 +53,37 @@ def take_apart(expression: sp.Expr) -> Product:
             negative, top[turned] = False, -top[turned]
     if not number.is_Float:
         number, below = sp.fraction(number / below)
-    return Product(negative, abs(number), tuple(top), below, tuple(bottom))
+    if below in HUNDREDTHS and (top or bottom):
+        number, below = sp.Float(str(number.p / below.p)), sp.Integer(1)
+    return Product(negative, abs(number), *_with_roots(top, bottom, below))
+
+
+def _with_roots(
+    top: Sequence[sp.Expr], bottom: Sequence[sp.Expr], below: sp.Integer
+) -> tuple[tuple[sp.Expr, ...], sp.Integer, tuple[sp.Expr, ...]]:
+    """With one root of a product or quotient for several of the same, whose contents are positive, and powers alike."""
+    powers = {f.exp for f in (*top, *bottom) if _is_root(f)}
+    above, under = list(top), list(bottom)
+    for power in sorted(powers, key=sp.default_sort_key):
+        over = [f for f in top if _is_root(f) and f.exp == power]
+        low = [f for f in bottom if _is_root(f) and f.exp == power]
+        if len(over) + len(low) < 2 or not over:
+            continue
+        whole = sp.Mul(*(f.base for f in over), *(1 / f.base for f in low))
+        above = [*(f for f in above if f not in over), sp.Pow(whole, power, evaluate=False)]
+        under = [f for f in under if f not in low]
+    return tuple(above), below, tuple(under)
+
+
+def _is_root(factor: sp.Expr) -> bool:
+    """Whether it is a power that is not whole of a positive number or symbol."""
+    return bool(
+        factor.is_Pow
+        and factor.exp.is_Rational
+        and not factor.exp.is_Integer
+        and (factor.base.is_Symbol or factor.base.is_Number)
+        and factor.base.is_positive
+    )
 
 
 def spread(summand: sp.Expr) -> sp.Expr:
@@ -95,23 +127,6 @@ def _as_product(total: sp.Expr) -> sp.Expr:
     if len(total.args) > MANY or total.has(sp.Float):
         return total
     return min(total, sp.factor(total), key=sp.count_ops)
-
-
-def united(expression: sp.Expr) -> sp.Expr:
-    """The expression with every a sin^2 + a cos^2 in its sums as a."""
-    if not expression.has(sp.cos):
-        return expression
-    return expression.replace(lambda e: e.is_Add and e.has(sp.cos), _united)
-
-
-def _united(total: sp.Expr) -> sp.Expr:
-    terms = list(total.args)
-    for term in total.args:
-        for square in (p for p in sp.Mul.make_args(term) if p.is_Pow and p.exp == 2 and isinstance(p.base, sp.cos)):
-            partner = term / square * sp.sin(square.base.args[0]) ** 2
-            if term in terms and partner in terms:
-                terms = [t for t in terms if t not in (term, partner)] + [term / square]
-    return sp.Add(*terms)
 
 
 def _factors(expression: sp.Expr) -> Iterator[sp.Expr]:

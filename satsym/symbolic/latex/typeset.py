@@ -11,11 +11,14 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.latex.printer import Kind, Printer
-from satsym.symbolic.latex.products import united
+from satsym.symbolic.latex.rewriting import readable
 from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.switching import notation as switching_notation
+
+LAPLACE = "s"
+"""What differentiates what stands after it, unless a variable has that name."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class Typesetter:
 
     def tex(self, expression: Any) -> str:
         """The expression on one line."""
-        return self._printer.doprint(_readable(expression))
+        return self._printer.doprint(self._readable(expression))
 
     def items(self, value: Any) -> list[str]:
         """An expression, or each one of a tuple of them."""
@@ -65,11 +68,25 @@ class Typesetter:
         plus_first
             Whether a term with a plus is moved to the front, if the first one has a minus.
         """
-        return tuple(self._printer.terms(_readable(expression), plus_first=plus_first))
+        return tuple(self._printer.terms(self._readable(expression), plus_first=plus_first))
 
-    def by_powers(self, polynomial: Any) -> list[tuple[Term, ...]]:
-        """The terms of a characteristic polynomial, the highest power first."""
-        return [self.terms(c * LAMBDA**k) for (k,), c in sp.Poly(polynomial, LAMBDA).terms()]
+    def by_powers(self, polynomial: Any) -> list[Term]:
+        """The terms of a polynomial, the highest power first."""
+        return [term for (k,), c in sp.Poly(polynomial, LAMBDA).terms() for term in self.terms(c * LAMBDA**k)]
+
+    def in_laplace(self, polynomial: Any) -> list[Term]:
+        """Likewise of one in the variable of Laplace transforms, with factors drawn out of its coefficients."""
+        s = sp.Symbol(LAPLACE)
+        return [term for (k,), c in sp.Poly(polynomial, s).terms() for term in self.terms(sp.factor(c) * s**k)]
+
+    def ratio_in_laplace(self, ratio: Any) -> tuple[list[Term], list[Term]]:
+        """Numerator and denominator of a ratio of such polynomials, without fractions in them."""
+        above, below = sp.fraction(sp.cancel(sp.together(ratio)))
+        return self.in_laplace(above), self.in_laplace(below)
+
+    def _readable(self, expression: Any) -> Any:
+        found = sp.sympify(expression)
+        return self._printer.normalised(readable(found)) if isinstance(found, sp.Expr) else found
 
     def symbol(self, name: str) -> str:
         """How a name is typeset."""
@@ -106,11 +123,6 @@ def _has_prefix(equation: Equation, prefix: str) -> bool:
     return isinstance(equation.lhs, sp.Symbol) and equation.lhs.name.startswith(f"{prefix}_")
 
 
-def _readable(expression: Any) -> Any:
-    found = sp.sympify(expression)
-    return united(found) if isinstance(found, sp.Expr) else found
-
-
 def _notation(derivation: Derivation, time: str) -> dict[str, str]:
     origins = {v.symbol: v.latex for model in with_origins(derivation.model)[::-1] for v in variables_of(model)}
     notation = origins | dict(derivation.notation)
@@ -142,4 +154,4 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
         (Kind.DIRECTION, model.unit_vectors()),
     ]
     names = [(kind, name) for kind, group in groups for name in group]
-    return {name: (kind, place) for place, (kind, name) in enumerate(names)}
+    return {LAPLACE: (Kind.SUM, -1)} | {name: (kind, place) for place, (kind, name) in enumerate(names)}

@@ -129,7 +129,7 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
     column = rf"\mathbf{{b}}{index}" if port else "B"
     row = rf"\mathbf{{c}}{index}" if port else "C"
     controls = kind == "controllability"
-    mode = f"{'z' if controls else 'v'}_{{{f'{port.latex},' if port else ''}"
+    mode = (r"\chi" if controls else "v") + f"_{{{f'{port.latex},' if port else ''}"
     pencil = rf"(s I - A,\; {column})" if controls else rf"(s I - A;\; {row})"
     return {
         f"{kind}{suffix}": matrix,

@@ -1,6 +1,6 @@
 """The geometry that a model declares, as points and arrows of a picture: nothing in it is assumed.
 
-A particle in a plane has its position, unit vectors and forces; deviations from its reference are arrows along which
+A particle has its position, unit vectors and forces; deviations from its reference are arrows along which
 they move it; bodies that turn about one axis have their angle and the sense of their turns; a body that turns in space
 has its axes, turned from those of the orbit, and the sense of each angle.
 """
@@ -25,6 +25,10 @@ TURNED = 0.25
 """What each angle of a body in space is drawn as."""
 OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))
 """Where axes that are forward, towards the reader and down lie on the page."""
+ASIDE = ((-0.35, -0.5), (1.0, 0.0), (0.0, 1.0))
+"""Where inertial axes lie on the page: towards the reader, to the right and up."""
+SPREAD = (0.7, 1.7, 1.3)
+"""What components of a position in space are drawn as, where they are coordinates."""
 ROUND = tuple(-2.1 + 0.2 * k for k in range(22))
 """Angles of an arrow about an axis."""
 
@@ -72,26 +76,32 @@ def _on_page(vector: Any) -> Place:
 
 
 def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | None:
-    """A particle in a plane, with unit vectors and forces; none in space, where pictures would hide what is behind."""
-    if len(model.position) != 2:
+    """A particle in a plane or in space, with unit vectors and forces."""
+    if len(model.position) not in (2, 3):
         return None
     values = _values(model)
     moving = symbols_of(v for v in model.states if v.positive)
     values |= {s: values[s] * BEYOND for s in moving}
-    place = _at(model.position, values)
+    values |= {
+        s: far for s, far in zip(model.position, SPREAD, strict=False) if len(model.position) == 3 and s.is_Symbol
+    }
+    place, flat = _at(model.position, values), len(model.position) == 2
     if hypot(*place) == 0:
         return None
-    pointing: dict[Place, list[str]] = {}
+    pointing: dict[tuple[float, ...], list[str]] = {}
     for direction, label in _labelled(model, directions):
-        x, y = _at(direction, values)
-        if size := hypot(x, y):
-            pointing.setdefault((round(x / size, 6), round(y / size, 6)), []).append(label)
+        parts = tuple(float(part) for part in sp.Matrix(direction).subs(values))
+        if size := hypot(*parts):
+            pointing.setdefault(tuple(round(part / size, 6) for part in parts), []).append(label)
     size = 0.45 * hypot(*place)
-    arrows = [Arrow((0, 0), place, (_distance(model, values, place),))]
-    arrows += [
-        Arrow(place, (place[0] + size * x, place[1] + size * y), tuple(labels)) for (x, y), labels in pointing.items()
-    ]
-    return Picture("motion", _path(model), tuple(arrows), _angle(model, values, place))
+    arrows = [Arrow((0, 0), place, (_distance(model, values),))]
+    for parts, labels in pointing.items():
+        x, y = parts if flat else _from_aside(parts)
+        arrows.append(Arrow(place, (place[0] + size * x, place[1] + size * y), tuple(labels)))
+    if flat:
+        return Picture("motion", _path(model), tuple(arrows), _angle(model, values, place))
+    below = _at([*model.position[:2], 0], values)
+    return Picture("motion", _path(model), tuple(arrows), axes=ASIDE, guides=((place, below), (below, (0, 0))))
 
 
 def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[tuple[Any, str]]:
@@ -105,9 +115,10 @@ def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[
             yield force, controls[0] if controls else rf"\mathbf{{F}}_{{\text{{{name}}}}}"
 
 
-def _distance(model: Particle, values: Mapping[sp.Symbol, Any], place: Place) -> str:
+def _distance(model: Particle, values: Mapping[sp.Symbol, Any]) -> str:
     """The coordinate that is the distance from the centre, or else the position vector."""
-    lengths = [v for v in model.states if isclose(float(values[symbols_of((v,))[0]]), hypot(*place), rel_tol=1e-9)]
+    far = hypot(*(float(part) for part in model.position.subs(values)))
+    lengths = [v for v in model.states if isclose(float(values[symbols_of((v,))[0]]), far, rel_tol=1e-9)]
     return lengths[0].latex if len(lengths) == 1 else r"\mathbf{r}"
 
 
@@ -127,7 +138,7 @@ def deviations(
     if changes.rows != changes.cols or changes.det() == 0:
         return None
     moves = of.position.jacobian(old).subs(values) * changes.inv()
-    place, heights = _at(of.position, values), of.position[2:]
+    place, heights = _at(of.position[:2], values), of.position[2:]
     if any(sp.sympify(height).subs(about).subs(values) != 0 for height in heights):
         return None  # the reference does not lie in the plane of the picture
     far = 0.45 * hypot(*place)
@@ -145,7 +156,7 @@ def _path(model: Particle, about: Mapping[sp.Symbol, Any] | None = None) -> tupl
     if not curve:
         return ()
     position = model.position.subs(curve).subs(_numbers(model))
-    return tuple(_at(position, {t: time}) for time in CURVE)
+    return tuple(_at(position[:2] if about else position, {t: time}) for time in CURVE)
 
 
 def _numbers(model: Model) -> dict[sp.Symbol, Any]:
@@ -166,5 +177,11 @@ def _values(model: Model) -> dict[sp.Symbol, Any]:
 
 
 def _at(vector: Any, values: Mapping[sp.Symbol, Any]) -> Place:
-    x, y = (float(part) for part in sp.Matrix(vector).subs(values)[:2])
+    """Where it is on the page; what is in space, as it is seen from aside."""
+    parts = [float(part) for part in sp.Matrix(vector).subs(values)]
+    return (parts[0], parts[1]) if len(parts) == 2 else _from_aside(parts)
+
+
+def _from_aside(parts: Iterable[float]) -> Place:
+    x, y = (sum(part * towards[i] for part, towards in zip(parts, ASIDE, strict=True)) for i in range(2))
     return x, y

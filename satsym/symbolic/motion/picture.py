@@ -34,6 +34,10 @@ class Picture:
         Names of concentric bodies.
     turns
         Arrows about axes, each with the name of the angle.
+    axes
+        Where the inertial axes point.
+    guides
+        Lines that show depth, from where to where.
     """
 
     kind: str
@@ -42,3 +46,5 @@ class Picture:
     angle: tuple[float, str] | None = None
     bodies: tuple[str, ...] = ()
     turns: tuple[tuple[tuple[Place, ...], str], ...] = ()
+    axes: tuple[Place, ...] = ((1.0, 0.0), (0.0, 1.0))
+    guides: tuple[tuple[Place, Place], ...] = ()

@@ -30,7 +30,7 @@ def exact_differential(so_far: Derivation) -> Step | None:
     if potential is None:
         return None
     rates = so_far.rhs("first_order").xreplace(definitions_of(so_far.model))
-    gradient = [sp.diff(potential, x) for x in states]
+    gradient = [sp.factor(sp.diff(potential, x)) for x in states]
     change = sum(g * f for g, f in zip(gradient, rates, strict=True))
     reduced = sp.factor(sp.expand(cost.xreplace(definitions_of(so_far.model)) - change))
     costates = [n.costate_of(x) for x in states]

@@ -83,10 +83,13 @@ def product_names(problem: Problem) -> dict[str, str]:
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
     if problem.control_sets or problem.control_set == "box":
         found |= {part_of_law(k).name: f"q_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
+    angles = {v.symbol for part in parts.parts_of(problem) if part.kind == "angle" for v in part.controls}
     for v in problem.model.controls:
         found |= {f"slope_by_{v.symbol}": f"H_{{{v.latex}}}", f"primer_{v.symbol}": f"p_{{{v.latex}}}"}
-        found |= {f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}
-        found |= {f"sine_of_{v.symbol}": f"b_{{{v.latex}}}", f"along_{v.symbol}": f"c_{{{v.latex}}}"}
+        turned = v.symbol in angles
+        for name, of in (("cosine", r"\cos"), ("sine", r"\sin")):
+            found[f"{name}_of_{v.symbol}"] = f"H_{{{of} {v.latex}}}" if turned else f"H_{{{v.latex}{of}}}"
+        found[f"along_{v.symbol}"] = f"c_{{{v.latex}}}"
         found |= {f"across_{v.symbol}": f"s_{{{v.latex}}}", f"norm_weight_{v.symbol}": f"w_{{{v.latex}}}"}
     for part in parts.parts_of(problem):
         squares = " + ".join(f"{v.latex}^2" for v in part.controls)

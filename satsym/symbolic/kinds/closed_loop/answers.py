@@ -30,7 +30,8 @@ def step_response(so_far: Derivation) -> Step:
     special = [Equation(f"where_{symbol.name}", symbol, sp.sympify(value)) for symbol, value in model.where.items()]
     equations = (*special, *(Equation(x.name, n.answer_of(x), value) for x, (_, value) in answers.items()))
     check = _transformed(so_far, {x: (sp.Integer(0), value) for x, (_, value) in answers.items()})
-    return Step("step_response", "back from transforms", equations, ("transfer_function", "critical_damping"), (check,))
+    rule = f"back from transforms{', special case' if special else ''}"
+    return Step("step_response", rule, equations, ("transfer_function", "critical_damping"), (check,))
 
 
 def control_response(so_far: Derivation) -> Step:

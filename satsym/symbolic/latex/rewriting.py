@@ -1,0 +1,76 @@
+"""The same expressions in shorter words, as people write them: known sums of squares, one exponential, one root."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+import sympy as sp
+
+
+def readable(expression: sp.Expr) -> sp.Expr:
+    """The expression with a sin^2 + a cos^2 as a, squares of sums as such, and exponentials multiplied out."""
+    if expression.has(sp.cos):
+        expression = expression.replace(lambda e: e.is_Add and e.has(sp.cos), _united)
+        expression = expression.replace(lambda e: e.is_Mul and e.has(sp.cos), _doubled)
+    if expression.has(sp.exp):
+        expression = expression.replace(lambda e: e.is_Mul and e.has(sp.exp), _one_exponential)
+    return expression.replace(lambda e: e.is_Add and len(e.args) > 2, _squared)
+
+
+def _united(total: sp.Expr) -> sp.Expr:
+    """Every a sin^2 + a cos^2 in it as a."""
+    terms = list(total.args)
+    for term in total.args:
+        for square in (p for p in sp.Mul.make_args(term) if p.is_Pow and p.exp == 2 and isinstance(p.base, sp.cos)):
+            partner = term / square * sp.sin(square.base.args[0]) ** 2
+            if term in terms and partner in terms:
+                terms = [t for t in terms if t not in (term, partner)] + [term / square]
+    return _sum(total, terms)
+
+
+def _doubled(product: sp.Expr) -> sp.Expr:
+    """Every (cos a - sin a) (cos a + sin a) in it as cos 2 a."""
+    for angle in sorted({c.args[0] for c in product.atoms(sp.cos)}, key=sp.default_sort_key):
+        factors, both = list(product.args), sp.cos(angle) + sp.sin(angle)
+        for sign in (1, -1):
+            difference = sign * (sp.cos(angle) - sp.sin(angle))
+            if both in factors and difference in factors:
+                rest = [f for f in factors if f not in (both, difference)]
+                return sp.Mul(sign, *rest, sp.cos(2 * angle))
+    return product
+
+
+def _one_exponential(product: sp.Expr) -> sp.Expr:
+    """Exponentials as one, multiplied into a sum that has such itself if that is shorter."""
+    powers = [f for f in product.args if isinstance(f, sp.exp)]
+    rest = [f for f in product.args if not isinstance(f, sp.exp)]
+    if len(powers) > 1:
+        product = sp.Mul(*rest, sp.exp(sp.factor(sp.Add(*(p.args[0] for p in powers)))))
+    sums = [f for f in rest if f.is_Add and any(t.has(sp.exp) for t in f.args)]
+    if not powers or len(sums) != 1:
+        return product
+    terms = sp.Add(*(_one_exponential(sp.Mul(*powers, t)) for t in sums[0].args))
+    within = sp.Mul(*(f for f in rest if f is not sums[0]), terms, evaluate=False)
+    return within if sp.count_ops(within) < sp.count_ops(product) else product
+
+
+def _squared(total: sp.Expr) -> sp.Expr:
+    """Every a x^2 + 2 a x y + a y^2 in it as a (x + y)^2."""
+    terms = list(total.args)
+    for term, one, other in [(t, *pair) for t in total.args for pair in _pairs(t)]:
+        for sign in (1, -1):
+            a = sign * term / (2 * one * other)
+            squares = [a * one**2, a * other**2]
+            if all(t in terms for t in (term, *squares)):
+                terms = [t for t in terms if t not in (term, *squares)] + [a * (one + sign * other) ** 2]
+    return _sum(total, terms)
+
+
+def _sum(total: sp.Expr, terms: Sequence[sp.Expr]) -> sp.Expr:
+    """The sum as it was if it has these terms, for summing up anew would multiply numbers into sums within it."""
+    return total if len(terms) == len(total.args) else sp.Add(*terms, evaluate=len(terms) == 1)
+
+
+def _pairs(term: sp.Expr) -> Iterator[tuple[sp.Expr, sp.Expr]]:
+    yield from combinations([f for f in sp.Mul.make_args(term) if f.is_Symbol], 2)
