@@ -27,12 +27,16 @@ PROBLEMS = (
 """A model that is derived in no time."""
 
 
+FOLLOWED = ("polar_orbit.py", "clohessy_wiltshire.py", "examples/transfer_fuel.py", "examples/bryson_denham.py")
+"""Of the shipped files one of each make: Newton's law, a linearisation, a throttled vector, path constraints."""
+
+
 def sound() -> list[str]:
-    """Files that users begin with: the template, the page's example, the one that contributors are told to follow."""
+    """Files that users begin with: the template, the page's examples, those that they may follow."""
     page = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")
-    (example, *_) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    examples = [text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "PROBLEMS" in text]
     template = (ROOT / "satsym" / "templates" / "model.py.txt").read_text(encoding="utf-8").replace("$name", "mine")
-    return [template, example, (ROOT / "derivations" / "polar_orbit.py").read_text(encoding="utf-8")]
+    return [template, *examples, *((ROOT / "derivations" / one).read_text(encoding="utf-8") for one in FOLLOWED)]
 
 
 def mutated(text: str, seed: int) -> str:
