@@ -13,6 +13,7 @@ import satsym
 from satsym import instance
 from satsym.report.html.markup import Markup
 from satsym.report.page import answer
+from satsym.report.page.derived import Derived
 from satsym.report.page.motion import SIDE, motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.prose import prose
@@ -23,7 +24,7 @@ from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.symbolic import loader
 from tests.cli.test_cli import Run, case, run
-from tests.support.derived import derived
+from tests.support.derived import derived, stated
 
 __all__ = ["case", "run"]
 
@@ -180,3 +181,26 @@ def test_nothing_of_an_uncontrolled_motion_that_stays_near_is_cut(solution: Solu
     assert path is not None
     places = [float(value) for value in re.findall(r"-?\d+\.\d", path[1])]
     assert 0.0 < min(places) < max(places) < SIDE
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("polar_orbit_ball", "The norm of the control is bounded"),
+        ("return_above", "At all times the motion obeys the path constraint"),
+        ("polar_orbit", "Each control is bounded"),
+    ],
+)
+def test_the_page_states_what_controls_and_motion_obey(name: str, said: str) -> None:
+    page = Derived(derived(stated(name)), load("en"), {}).render()
+    assert said in page
+    assert not re.search(r"\\[a-z]", page), "LaTeX that no browser shows"
+
+
+def test_long_equations_are_broken_into_lines_and_wide_matrices_are_small() -> None:
+    """Paper cannot be scrolled."""
+    page = Derived(derived(stated("shuttle")), load("en"), {}).render()
+    hamiltonian = page[page.index("Hamiltonian") :]
+    assert hamiltonian.index('columnalign="left"') < hamiltonian.index("</details>")
+    (small,) = {int(size) for size in re.findall(r"font-size: (\d+)%", page)}
+    assert 45 <= small < 100

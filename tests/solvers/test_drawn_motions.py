@@ -11,14 +11,14 @@ from scipy.integrate import solve_ivp
 from satsym import instance
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.drawn_motions import STEPS, Bundle, _simulated
+from satsym.solvers.drawn_motions import STEPS, Bundle, simulated
 
 
 def drawn(problem: TwoPoint, size: float, *, backwards: bool) -> tuple[np.ndarray, Bundle]:
     """Extremals from the initial state, or backwards from it, by small costates, and where they begin."""
     costates = size * np.random.default_rng(3).normal(size=(problem.states, 6))
     begun = np.concatenate([np.repeat(problem.initial[:, None], 6, axis=1), costates])
-    return begun, _simulated(problem, begun, backwards=backwards)
+    return begun, simulated(problem, begun, -problem.duration if backwards else problem.duration, STEPS)
 
 
 def unbounded(**changed: object) -> TwoPoint:

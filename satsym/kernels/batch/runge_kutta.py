@@ -34,7 +34,7 @@ WEIGHTS = (1.0, 2.0, 2.0, 1.0)
 SCALES = (2.0, 0.5)
 """By which quotients are tried to be multiplied."""
 
-BLOCK, LEAST_BLOCK, CACHE = 8192, 2048, 2.5e6
+BLOCK, SMALLEST_BLOCK, CACHE = 8192, 2048, 2.5e6
 """Columns at a time, at most and at least, and bytes of rows that are used again and again: few enough to stay in
 the cache, many enough that calls do not count."""
 
@@ -279,7 +279,7 @@ class OnTape:
     def block(self) -> int:
         """Columns that are best taken at a time."""
         rows, found = 2 * (len(self.step.powers) + len(self.step.rows)), BLOCK
-        while found > LEAST_BLOCK and 8 * found * rows > CACHE:
+        while found > SMALLEST_BLOCK and 8 * found * rows > CACHE:
             found //= 2
         return found
 

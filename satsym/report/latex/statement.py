@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from satsym.report.latex import tex
@@ -16,7 +16,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
-from satsym.symbolic.model import Line, variables_of, with_origins
+from satsym.symbolic.model import Line, Problem, variables_of, with_origins
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path.interior import condition, named
@@ -34,7 +34,7 @@ class Part:
 def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     """The whole of it."""
     kinds = (
-        *(_cost, _control_set, _constraints, _path_constraints, _interior),
+        *(_cost, _control_set, _conditions),
         *(_figure, _quantities, _assumed, _definitions),
         *(_motion, _outputs),
     )
@@ -79,12 +79,11 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 
 
 def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    problem = derivation.problem
-    if problem is None:
+    if derivation.problem is None:
         return Part()
-    shown = [line for part in parts_of(problem) for line in _limited(part)]
+    said, shown = admissible(derivation.problem, texts)
     if not shown:
-        return Part((texts.get("statement", "free" if len(problem.model.controls) > 1 else "free_one"),))
+        return Part((said,))
     in_a_line = r", \qquad ".join(shown)
     body = (
         in_a_line
@@ -92,10 +91,17 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
         else "\\begin{gathered}\n  " + " \\\\\n  ".join(shown) + "\n  \\end{gathered}"
     )
     address = tex.label(_address(derivation, "control_set"))
-    equation = f"\\begin{{equation}}\n  {body} \\label{{{address}}}\n\\end{{equation}}"
+    return Part((f"{said}\n\\begin{{equation}}\n  {body} \\label{{{address}}}\n\\end{{equation}}",))
+
+
+def admissible(problem: Problem, texts: Texts) -> tuple[str, list[str]]:
+    """What is said of the control set, and the inequalities that controls obey; none where they are free."""
+    shown = [line for part in parts_of(problem) for line in _limited(part)]
+    if not shown:
+        return texts.get("statement", "free" if len(problem.model.controls) > 1 else "free_one"), []
     kind: str = PRODUCT if problem.control_sets else problem.control_set
     kind += "_one" if kind == "box" and len(shown) == 1 else ""
-    return Part((f"{texts.get('statement', kind)}\n{equation}",))
+    return texts.get("statement", kind), shown
 
 
 def _limited(part: ControlPart) -> list[str]:
@@ -111,49 +117,48 @@ def _limited(part: ControlPart) -> list[str]:
     return []
 
 
-def _constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+def _conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    return Part(tuple(f"{said}\n{display(rows)}" for said, rows in conditions(derivation, texts, typeset)))
+
+
+def conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Iterator[tuple[str, list[Row]]]:
+    """What the motion must meet at its end, all the way, and on the way: a sentence and its equations each."""
     problem = derivation.problem
-    if problem is None or not problem.end_conditions:
-        return Part()
+    if problem is None:
+        return
     end, equalities = typeset.at("t_f"), len(problem.terminal_constraints)
-    rows = [
+    at_end = [
         Row(
             _address(derivation, f"psi_{k}"),
             plain(rf"\psi_{{{k}}}"),
-            end.terms(condition),
+            end.terms(one),
             end="= 0" if k <= equalities else r"\le 0",
         )
-        for k, condition in enumerate(problem.end_conditions, 1)
+        for k, one in enumerate(problem.end_conditions, 1)
     ]
-    parts = {"constraints": rows[:equalities], "terminal_inequalities": rows[equalities:]}
-    return Part(
-        tuple(f"{texts.get('statement', _one(key, some))}\n{display(some)}" for key, some in parts.items() if some)
-    )
-
-
-def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    if derivation.problem is None or not derivation.problem.path_constraints:
-        return Part()
-    rows = [
+    along = [
         Row(_address(derivation, name), typeset.terms(rate(name, 0)), typeset.terms(constraint), end=r"\le 0")
-        for name, constraint in derivation.problem.path_constraints.items()
+        for name, constraint in (problem.path_constraints or {}).items()
     ]
-    return Part((f"{texts.get('statement', _one('path_constraints', rows))}\n{display(rows)}",))
+    on_the_way = [
+        Row(_address(derivation, name), typeset.terms(condition(name)), typeset.terms(stated), end="= 0")
+        for name, stated in (named(problem) if problem.interior else {}).items()
+    ]
+    stated_by_kind = {
+        "constraints": at_end[:equalities],
+        "terminal_inequalities": at_end[equalities:],
+        "path_constraints": along,
+    }
+    for key, rows in stated_by_kind.items():
+        if rows:
+            yield texts.get("statement", _one(key, rows)), rows
+    if on_the_way:
+        yield texts.get("statement", "interior"), on_the_way
 
 
 def _one(key: str, rows: Sequence[Row]) -> str:
     """The text about a single one, where there is one row."""
     return key if len(rows) > 1 else f"{key}_one"
-
-
-def _interior(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    if derivation.problem is None or not derivation.problem.interior:
-        return Part()
-    rows = [
-        Row(_address(derivation, name), typeset.terms(condition(name)), typeset.terms(stated), end="= 0")
-        for name, stated in named(derivation.problem).items()
-    ]
-    return Part((f"{texts.get('statement', 'interior')}\n{display(rows)}",))
 
 
 def _figure(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.display import unit_text
@@ -11,16 +12,29 @@ from satsym.report.html.mathml import math
 from satsym.report.latex import tex
 from satsym.report.latex.checks import checked
 from satsym.report.latex.document import SECTION_FROM, in_language
+from satsym.report.latex.equations import broken
+from satsym.report.latex.statement import admissible, conditions
 from satsym.report.latex.steps import Context, conclusion, listed_sources, rule
+from satsym.report.latex.width import width
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.said import decimal
 from satsym.report.terminal.table import figure
 from satsym.report.texts import PHRASES, Texts
 from satsym.spec import Variable
+from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.latex.typeset import Typesetter, matrices
 
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step
+
+ROOM = 44.0
+"""Width in em that an equation may take, on paper too, which cannot be scrolled."""
+
+BETWEEN, FRACTIONS, SMALLEST = 1.0, 0.75, 0.45
+"""Space between columns of a matrix, in em; the size of letters in its fractions, and of those of a wide one at least.
+"""
+
+_SIZED = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")
 
 OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
 """Steps that are shown from the start."""
@@ -70,6 +84,12 @@ class Derived:
             yield scrolled(math(f"L = {typeset.tex(problem.running_cost)}", block=True))
             if terminal:
                 yield scrolled(math(f"S = {typeset.tex(problem.terminal_cost)}", block=True))
+            sentence, limits = admissible(problem, texts)
+            yield tag("p", prose(sentence, {}))
+            yield from (scrolled(math(line, block=True)) for line in limits)
+            for sentence, rows in conditions(self._derivation, texts, typeset):
+                yield tag("p", prose(sentence, {}))
+                yield from (scrolled(math(in_lines(row.left_tex, row.right, row.end), block=True)) for row in rows)
         for said in self._derivation.model.statement():
             fill = {"name": said.of.name, "title": texts.phrase(said.of.title)} if said.of else {}
             yield tag("p", prose(texts.get("statement", said.sentence, **fill), {}))
@@ -107,7 +127,7 @@ class Derived:
         title = texts.get("titles", step.name)
         stated = prose(rule(self._context, step, self._sources(step)), self._numbers)
         self._numbers[label] = str(number)
-        equations = [self._equation(address, line) for address, line in self._lines(step)]
+        equations = [self._equation(*line) for line in self._lines(step)]
         said = [tag("p", prose(conclusion(self._context, one), self._numbers)) for one in step.conclusions]
         checks = [tag("li", prose(checked(texts, check), {})) for check in step.checks]
         return tag(
@@ -122,25 +142,29 @@ class Derived:
             open=step.name in OPEN,
         )
 
-    def _equation(self, address: str, line: str) -> Markup:
+    def _equation(self, address: str, line: str, room: float) -> Markup:
         label = tex.label(address)
+        small = room > ROOM and f"font-size: {max(SMALLEST, ROOM / room):.0%}"
         self._numbers[label] = f"({sum(name.startswith('(') for name in self._numbers.values()) + 1})"
         name = address.partition(":")[0]
         step = tex.label(f"{name}:{address.partition(':')[2].partition('.')[0]}")
         first, _ = self._ends.get(step, (label, label))
         self._ends[step] = (first, label)
         number = tag("a", self._numbers[label], href=f"#{label}", title=address)
-        return tag("div", scrolled(math(line, block=True)), number, class_="equation", id=label)
+        written = tag("div", scrolled(math(line, block=True)), style=small)
+        return tag("div", written, number, class_="equation", id=label)
 
-    def _lines(self, step: Step) -> Iterator[tuple[str, str]]:
-        """Address and LaTeX of each equation; a matrix comes in place of the equations that are its entries."""
+    def _lines(self, step: Step) -> Iterator[tuple[str, str, float]]:
+        """Address, LaTeX and width of each equation; a matrix comes in place of the equations that are its entries."""
         named = matrices(self._derivation, step)
         entries = [e for one in named for e in one.equations]
         address, plain = self._context.address(step), self._context.typeset
         start, end = plain.at("t_0"), plain.at("t_f")
         states = {v.symbol for v in self._derivation.model.states}
         for one in named:
-            yield f"{address}.{one.prefix}", f"{one.prefix} = {plain.tex(one.matrix)}"
+            columns = [[width(plain.tex(entry)) for entry in one.matrix.col(k)] for k in range(one.matrix.cols)]
+            across = sum(FRACTIONS * max(column) + BETWEEN for column in columns)
+            yield f"{address}.{one.prefix}", f"{one.prefix} = {plain.tex(one.matrix)}", across
         for e in step.equations:
             if e not in entries:
                 given = step.name == "boundary_conditions" and e.name in states
@@ -148,7 +172,9 @@ class Derived:
                 left = typeset.tex(e.lhs)
                 if typeset.is_zero(e.lhs) and step.name.endswith("stationarity"):
                     left = rf"0 = \frac{{\partial H}}{{\partial {typeset.symbol(e.name)}}}"
-                yield f"{address}.{e.name}", f"{left} = {typeset.tex(e.rhs)}"
+                written = f"{left} = {typeset.tex(e.rhs)}"
+                long = width(written) > ROOM and not e.rhs.is_Matrix
+                yield f"{address}.{e.name}", in_lines(left, typeset.terms(e.rhs)) if long else written, 0.0
 
     def _sources(self, step: Step) -> str:
         return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})
@@ -159,3 +185,13 @@ class Derived:
             first, last = self._ends[label]
             return self._texts.get("references", "one" if first == last else "many", first=first, last=last, step=label)
         return self._texts.find("declared", name) or ""
+
+
+def in_lines(left: str, terms: Sequence[Term], end: str = "") -> str:
+    """An equation on as many lines as its width asks for."""
+    first, *others = broken(terms, ROOM - min(width(left), ROOM / 2.0))
+    if not others:
+        return f"{left} = {first} {end}".rstrip()
+    lines = " \\\\ ".join([rf"{left} &= {first}", *(f"& {line}" for line in others)])
+    unsized = _SIZED.sub("", lines)  # which may open on one line and close on another
+    return rf"\begin{{split}} {unsized} {end} \end{{split}}"

@@ -39,4 +39,5 @@ def scrolled(*inside: Markup) -> Markup:
 
 
 def _plain(text: str) -> str:
+    text = text.replace(r"\mbox{--}", "--")  # which keeps both ends on one line there
     return text.replace("~", "\N{NO-BREAK SPACE}").replace("--", "\N{EN DASH}").replace(r"\,", "\N{THIN SPACE}")

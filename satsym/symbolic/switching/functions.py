@@ -71,7 +71,8 @@ def refuse_magnitudes(so_far: Derivation) -> None:
         Where there is one.
     """
     magnitudes, rates = s.magnitudes(symbols_of(so_far.model.controls)), so_far.rhs("first_order")
-    if magnitude := next((a for a in magnitudes if any(rate.has(a) for rate in rates)), None):
+    stated = (a for a in magnitudes if isinstance(a, sp.Abs))  # that of a positive control is the control itself
+    if magnitude := next((a for a in stated if any(rate.has(a) for rate in rates)), None):
         raise DerivationError(
             f"{so_far.name}: {magnitude} in the equations of motion is not supported, only in the cost; state a "
             "control for each sign, both from 0 on, with their difference in its place and their sum for its magnitude"

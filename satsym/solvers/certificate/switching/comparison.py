@@ -10,7 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.comparison import COST_MARGIN, margin
+from satsym.solvers.certificate.comparison import COST_MARGIN, UNCOMPARED, margin
 from satsym.solvers.certificate.switching import competitors as switching_competitors
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.iteration import Limits
@@ -72,7 +72,10 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     if limits.late:
         checks += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in missing]
     competitors = tuple(found[kind] for kind in kinds if kind in found)
-    return Comparison(tuple(checks), competitors, missing + _unsolved(solution.instance, competitors))
+    unsolved = _unsolved(solution.instance, competitors)
+    if unsolved and len(unsolved) == len(competitors):
+        checks.append(Check(UNCOMPARED, 1.0, 0.0))
+    return Comparison(tuple(checks), competitors, missing + unsolved)
 
 
 def _unsolved(instance: Instance, competitors: Iterable[Competitors]) -> tuple[Kind, ...]:
