@@ -18,10 +18,12 @@ from sympy import Rational, sqrt
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.solution import Solution
+from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.comparison import UNCOMPARED
 from satsym.solvers.certificate.reintegration.flow import typical
+from satsym.solvers.certificate.switching import comparison
 from satsym.solvers.certificate.switching.arc_lengths import quadratic
 from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
@@ -414,3 +416,18 @@ def test_the_form_in_the_lengths_of_arcs_is_that_of_differences(tmp_path: Path):
     form, _, cost = quadratic(found, again, by, 20)
     in_lengths = 2.0 * cost * form[: len(lengths), : len(lengths)] / 4.0**2
     assert in_lengths == pytest.approx(np.array(hessian), rel=1e-4, abs=1e-4)
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.parametrize("arrived", [0, 1])
+def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
+    arrived: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = shipped("transfer-fuel")
+    cheapest = found.objective if arrived else math.nan
+    monkeypatch.setattr(comparison, "_drawn", lambda *_: Competitors(Kind.STARTS, 2, arrived, cheapest))
+    again = certify(found)
+    assert again is not None
+    assert [check.name for check in again.checks if not check.passed] == ([] if arrived else [UNCOMPARED])
+    assert again.verdict is (Verdict.CERTIFIED if arrived else Verdict.EXTREMAL_ONLY)
+    assert (Kind.STARTS in again.not_checked) is not bool(arrived)
