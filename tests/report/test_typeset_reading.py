@@ -179,7 +179,7 @@ def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
 
 def test_laws_list_what_they_are_made_of_and_no_more() -> None:
     angle, thrust, parts = (render(shipped(name)) for name in ("transfer_time", "transfer_fuel", "shuttle"))
-    assert r"minimised by the direction of $(-H_{\cos\beta}, -H_{\sin\beta})$:" in angle
+    assert r"minimised by the direction of $(-H_{\cos\beta},$ $-H_{\sin\beta})$:" in angle
     assert "switching function" not in angle
     assert r"switching function $|\mathbf{p}| - w$" in thrust
     assert r"T^{\max}" in thrust

@@ -12,7 +12,7 @@ from satsym.analysis.orbits import kepler
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
 from satsym.kernels.batch.factored import INVERSE, UNIT, Arithmetic, Factored, Unsuited
-from satsym.kernels.batch.runge_kutta import LEAST_BLOCK, OnTape, fewest
+from satsym.kernels.batch.runge_kutta import SMALLEST_BLOCK, OnTape, fewest
 from satsym.kernels.batch.tape import Buffers, Tape, bound
 from satsym.kernels.blocks import block_step
 from satsym.solvers.simulation import batch
@@ -258,7 +258,7 @@ def test_a_tape_makes_equal_operations_once_and_refuses_what_is_no_line_of_them(
 def test_of_models_with_many_states_fewer_columns_are_taken_at_a_time() -> None:
     blocks = [OnTape(load(name)).block for name in ("polar_orbit", "reorientation", "roll_yaw")]
     assert blocks == sorted(blocks, reverse=True)
-    assert blocks[0] == batch.BLOCK > blocks[-1] >= LEAST_BLOCK
+    assert blocks[0] == batch.BLOCK > blocks[-1] >= SMALLEST_BLOCK
     kernels = load("roll_yaw")
     x0 = np.random.default_rng(2).uniform(-0.1, 0.1, (len(kernels.spec.states), blocks[-1] + 3))
     p = [1.0 if one.default is None else one.default for one in kernels.spec.parameters]
