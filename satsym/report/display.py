@@ -96,6 +96,14 @@ def engineering(unit: str, size: float) -> Scale:
     return Scale(exponent, units.expression({name if one == first else one: n for one, n in factors.items()}))
 
 
+def together(sizes: Iterable[tuple[str, float]]) -> dict[str, Scale]:
+    """Of each unit the one with the prefix for the largest size there is: the components of a vector have one."""
+    largest: dict[str, float] = {}
+    for unit, size in sizes:
+        largest[unit] = max(largest.get(unit, 0.0), size)
+    return {unit: engineering(unit, size) for unit, size in largest.items()}
+
+
 def number(value: float, digits: int = 6) -> str:
     """A number in a sentence, such as 42164.2 or 1.6 × 10⁻⁸."""
     mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
@@ -146,10 +154,3 @@ def length_scale(unit: str, size: float) -> tuple[float, str]:
     if metres is None or not math.isfinite(size) or size * metres < 0.1 * ASTRONOMICAL_UNIT:
         return 1.0, unit
     return ASTRONOMICAL_UNIT / metres, "AU"
-
-
-def shortened(text: str, limit: int) -> str:
-    """The text, cut at a word so that it has at most ``limit`` characters."""
-    if len(text) <= limit:
-        return text
-    return text[: limit - 1].rsplit(" ", 1)[0].rstrip(" ,;:") + "\N{HORIZONTAL ELLIPSIS}"

@@ -7,7 +7,8 @@ import pytest
 
 from satsym import instance
 from satsym.report import display
-from satsym.report.plots import pages, style
+from satsym.report.plots import style
+from satsym.report.plots.convergence import convergence
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
 from satsym.solvers import solve
@@ -21,7 +22,7 @@ SWITCHING = ["double-integrator-fuel", "goddard"]
 def title(solution: Solution) -> str:
     """What stands above the costs."""
     with style.applied():
-        page = pages.convergence(Scene.of(solution))
+        page = convergence(Scene.of(solution))
     assert page is not None
     return str(page.axes[0].get_title("left"))
 

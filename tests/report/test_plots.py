@@ -23,7 +23,8 @@ from satsym.report import display
 from satsym.report.look import SIZES, Look
 from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
-from satsym.report.plots.reading import read
+from satsym.report.plots.reading import Reading
+from satsym.report.plots.reading import read as read_all
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
 from satsym.report.terminal.solution import solution_text
@@ -35,6 +36,11 @@ from satsym.status import Status
 SOLVED = ["overview", "orbit", "states", "controls", "costates", "invariants", "convergence"]
 NODES = 61
 MICRO = "\N{MICRO SIGN}"
+
+
+def read(one: Series) -> Reading:
+    """A quantity that is alone."""
+    return read_all([one])[0]
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +89,7 @@ def model(states: int, controls: int = 0, kind: str = "free", position: int = 0,
         "dynamics_batch": rates,
         "forward": forward,
         "hamiltonian_batch": lambda t, x, u, lam, p, out=None: (lam * rates(t, x, u, p)).sum(axis=0),
+        "running_cost_batch": lambda t, x, u, p, out=None: (u**2).sum(axis=0),
         "position_batch": lambda t, x, p, out=None: np.array(x[:position]),
         "reference_batch": lambda t, p, out=None: np.array([np.cos(t + i) for i in range(states)]),
         "invariants_batch": lambda t, x, p, out=None: np.array([x[0] ** 2]),
@@ -219,7 +226,7 @@ def test_a_simulation_without_control_has_no_pictures_of_controls(tmp_path: Path
 
 
 def test_a_simulation_with_feedback_shows_its_controls(tmp_path: Path) -> None:
-    assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "states", "controls"]
+    assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "phase", "states", "controls"]
 
 
 @pytest.mark.slow(in_turn=True)
@@ -303,9 +310,10 @@ def test_without_a_trajectory_there_is_nothing_but_convergence(nodes: int, tmp_p
     assert pictures(unheard) == {}
 
 
-def test_iterations_without_a_finite_number_can_be_drawn(tmp_path: Path) -> None:
-    history = tuple(Iteration(k, math.nan, math.inf) for k in range(3))
-    assert "convergence" in stems(save(solution(case(model(1)), history=history), tmp_path))
+@pytest.mark.parametrize("residual", [math.inf, math.nan, 0.0])
+def test_iterations_without_a_number_that_can_be_drawn_have_no_picture(residual: float, tmp_path: Path) -> None:
+    history = tuple(Iteration(k, math.nan, residual) for k in range(3))
+    assert "convergence" not in stems(save(solution(case(model(1)), history=history), tmp_path))
 
 
 @pytest.mark.slow(in_turn=True)
@@ -332,10 +340,10 @@ assert not sys.modules.keys() & {"matplotlib.pyplot", "scipy", "sympy", "tkinter
     + [("ball", name) for name in ("overview", "orbit", "controls")],
 )
 def test_no_text_leaves_the_page_or_covers_another(which: str, name: str, request: pytest.FixtureRequest) -> None:
-    from satsym.report.plots import pages, style
+    from satsym.report.plots import convergence, pages, style
 
     found = request.getfixturevalue(which)
-    draw = {"overview": pages.overview, "convergence": pages.convergence}.get(name) or getattr(pages, name)
+    draw = convergence.convergence if name == "convergence" else getattr(pages, name)
     with style.applied():
         page = draw(Scene.of(found))
         style.rendered(page, "png")
@@ -575,10 +583,15 @@ def test_a_formula_that_cannot_be_set_is_replaced_by_the_name() -> None:
     assert display.formula("x$y", "x") == "x"
 
 
-def test_long_texts_are_cut_at_a_word() -> None:
-    assert display.shortened("distance from the centre", 15) == "distance from…"
-    assert display.shortened("short", 15) == "short"
-    assert len(display.shortened("x" * 99, 15)) <= 15
+def test_long_texts_are_broken_at_words_and_cut_only_after_the_last_line() -> None:
+    text = "distance from the centre of force, along the reference orbit"
+    wide = style.length("distance from the centre", style.TITLE)
+    assert style.broken(text, 9.0) == text
+    assert style.broken(text, wide).replace("\n", " ") == text
+    lines = style.broken(text, wide, most=2).splitlines()
+    assert len(lines) == 2
+    assert lines[1].endswith("\N{HORIZONTAL ELLIPSIS}")
+    assert max(style.length(line, style.TITLE) for line in lines) <= 1.25 * wide
 
 
 def test_times_go_on_through_the_nodes(soft_return: Solution) -> None:

@@ -49,8 +49,8 @@ def test_units_on_axes_are_spelled_as_people_write_them() -> None:
 def test_a_duration_that_is_the_objective_is_drawn_once() -> None:
     times = RNG.uniform(1.0, 2.0, 50)
     columns = {"objective [s]": times, "t_final [s]": times * (1.0 + 1e-13), "x_final.r": RNG.uniform(size=50)}
-    assert list(distinguishing(columns)) == ["objective [s]", "x_final.r"]
-    assert list(distinguishing({**columns, "t_final [s]": times * (1.0 + 1e-6)})) == list(columns)
+    assert list(distinguishing(columns, {})) == ["objective [s]", "x_final.r"]
+    assert list(distinguishing({**columns, "t_final [s]": times * (1.0 + 1e-6)}, {})) == list(columns)
 
 
 def test_only_the_side_that_is_far_out_is_said() -> None:

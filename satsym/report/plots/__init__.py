@@ -30,8 +30,9 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     -------
     dict
         Name -> content of each file, the overview first. A picture that would show nothing is left out: ``orbit`` where
-        the model has no position vector, ``controls`` where a simulation has none, ``constraints`` where the model has
-        no path constraints, ``costates`` for a simulation, ``invariants`` where
+        the model has no position vector, ``path`` where no states are its components or there is an ``orbit``,
+        ``phase`` where there is either of these or no state with its rate, ``controls`` where a simulation has none,
+        ``constraints`` where the model has no path constraints, ``costates`` for a simulation, ``invariants`` where
         the model has none, ``convergence`` for fewer than three iterations, and all but that where there is no
         trajectory.
     """
@@ -54,11 +55,13 @@ def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Fig
 
 def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots import pages
+    from satsym.report.plots.convergence import convergence
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
-    motion = (pages.orbit, pages.states, pages.controls, pages.constraints, pages.costates, pages.invariants)
-    for picture in (pages.overview, *motion, pages.convergence):
+    planes, over_time = (pages.orbit, pages.path, pages.phase), (pages.states, pages.controls, pages.constraints)
+    motion = (*planes, *over_time, pages.costates, pages.invariants)
+    for picture in (pages.overview, *motion, convergence):
         page = picture(scene)
         if page is not None:
             yield picture.__name__, page

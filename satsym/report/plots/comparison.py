@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -56,12 +56,13 @@ def page(cases: Sequence[Case]) -> Figure | None:
     title = cases[0].instance.title if driven else ", ".join(case.instance.name for case in cases)
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, columns)
+    measures = _measures(answered, panels)
     for k, (variable, apart) in enumerate(panels):
         last = k == len(panels) - 1 and k % columns == 0
         place = grid[k // columns, :] if last else grid[k // columns, k % columns]
-        _over_time(figure.add_subplot(place), answered, variable, apart)
+        _over_time(figure.add_subplot(place), answered, variable, apart, measures[k])
     totals = [figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)]
-    _totals(totals, answered, style.characters(figure, columns))
+    _totals(totals, answered, style.room(figure, columns))
     if law is not None:
         _range([figure.add_subplot(grid[below + pairs + k // columns, k % columns]) for k in range(2)], law)
     entries = [
@@ -100,14 +101,34 @@ def _differences(cases: Sequence[Case], variable: Variable) -> dict[int, Array]:
     return found
 
 
-def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array]) -> None:
+def _drawn(cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array]) -> Mapping[int, Array]:
+    """What some have more than the first, or the variable itself, by the number of the case."""
+    return apart or {k: case.signal(variable.symbol) for k, case in enumerate(cases)}
+
+
+def _measures(cases: Sequence[Case], panels: Sequence[tuple[Variable, Mapping[int, Array]]]) -> list[display.Scale]:
+    """The unit of each panel: values have one, and so have differences."""
+    sizes = [_largest(_drawn(cases, *panel).values()) for panel in panels]
+    found = [
+        display.together((v.unit, size) for (v, apart), size in zip(panels, sizes, strict=True) if bool(apart) is kind)
+        for kind in (False, True)
+    ]
+    return [found[bool(apart)][v.unit] for v, apart in panels]
+
+
+def _largest(rows: Iterable[Array]) -> float:
+    return max(float(np.nanmax(np.abs(values))) for values in rows)
+
+
+def _over_time(
+    axes: Axes, cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array], measure: display.Scale
+) -> None:
     """A variable of all cases, or where there is any what some have more than the first."""
     end = SHOWN * max(_until(case) for case in cases)
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
-    drawn = apart or {k: case.signal(variable.symbol) for k, case in enumerate(cases)}
-    most = max(float(np.nanmax(np.abs(values))) for values in drawn.values())
-    measure = display.engineering(variable.unit, most)
+    drawn = _drawn(cases, variable, apart)
+    most = _largest(drawn.values())
     for k, values in drawn.items():
         axes.plot(
             (cases[k].times - cases[k].times[0]) / factor,
@@ -123,7 +144,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable, apart: Map
             axes.axhline(edge / measure.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
-    meaning = display.shortened(say(variable.meaning), 62)
+    meaning = display.plain(say(variable.meaning))
     axes.set_title(say("difference from <name>", name=cases[0].instance.name) if apart else meaning)
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
     if not apart and variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
@@ -156,8 +177,8 @@ def _until(case: Case) -> float:
     return min(found, whole) if np.isfinite(found) else whole
 
 
-def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: int) -> None:
-    """Bars, with their sizes beside them; ``room`` is how many characters an axis is long."""
+def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
+    """Bars, with their sizes beside them; ``room`` is how many inches an axis is long."""
     from satsym.analysis.classical.performance import SETTLED
 
     controls = cases[0].instance.model.spec.controls
@@ -180,7 +201,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: int) -> None:
                 settled = say("<time>, until within <share>", time=said, share=f"{SETTLED:.0%}")
                 said = settled if np.isfinite(value) else say("not settled")
             # the text beside a bar is inside the axes, too
-            far.append(float(np.nan_to_num(value)) / (1.0 - min(0.7, (len(said) + 2) / room)))
+            far.append(float(np.nan_to_num(value)) / (1.0 - min(0.7, (style.length(said, 9.0) + 0.15) / room)))
             axes.text(
                 np.nan_to_num(value),
                 place,

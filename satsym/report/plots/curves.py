@@ -9,11 +9,14 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.kernels import Kernels
+from satsym.spec import ProblemSpec
 
 LARGEST = 1e100
 """Beyond it a number is the debris of a failed run, and too large for arithmetic on axes."""
 _COMPLEX_STEP = 1e-30
 _REAL_STEP = 1e-5
+_ALIKE = 1e-9
+"""Relative to the largest rate: what differs by less is the same motion."""
 
 
 def clean(values: Array) -> Array:
@@ -56,6 +59,43 @@ def uncontrolled(model: Kernels, times: Array, x0: Sequence[float], p: Sequence[
     return states(model, x[:, ::parts])
 
 
+def angles(spec: ProblemSpec) -> frozenset[str]:
+    """States and controls that are angles: as they are declared, or as the control sets have it."""
+    declared = {v.symbol for v in (*spec.states, *spec.controls) if v.kind == "angle"}
+    return frozenset(declared | {name for part in spec.control_parts if part.kind == "angle" for name in part.controls})
+
+
+def rests(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> bool:
+    """Whether controls that are zero do nothing: no angle then turns a part of the motion."""
+    if not _angles(model):
+        return True
+    with np.errstate(all="ignore"):
+        one, *others = (model.dynamics_batch(times, x, u, p) for u in _opposite(model, x.shape[1]))
+    size = np.nanmax(np.abs(one), axis=1, initial=0.0)[:, None]
+    return all(bool((np.abs(other - one) <= _ALIKE * size).all()) for other in others)
+
+
+def _angles(model: Kernels) -> list[int]:
+    return [i for i, control in enumerate(model.spec.controls) if control.symbol in angles(model.spec)]
+
+
+def _opposite(model: Kernels, count: int) -> list[Array]:
+    """Controls of zero, and those with some of the angles turned by half a turn, shape (m, count) each."""
+    controls = model.spec.controls
+    found: list[Array] = [np.zeros((len(controls), count))]
+    for i in _angles(model):
+        turned = [u.copy() for u in found]
+        for u in turned:
+            u[i] = 180.0 if controls[i].unit.startswith("deg") else np.pi
+        found += turned
+    return found
+
+
+def _drift(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> Array:
+    """The dynamics without what the controls do, shape (n, N+1): what an angle turns cancels over half a turn."""
+    return np.mean([model.dynamics_batch(times, x, u, p) for u in _opposite(model, x.shape[1])], axis=0)
+
+
 def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> Array:
     """What the controls do to the motion in space, shape (2 or 3, N+1): the acceleration they add.
 
@@ -64,8 +104,7 @@ def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float])
     the acceleration that they add. Where the controls act on the velocity itself, that is what is returned.
     """
     with np.errstate(all="ignore"):
-        coasting = model.dynamics_batch(times, x, np.zeros_like(u), p)
-        added = model.dynamics_batch(times, x, u, p) - coasting
+        added = model.dynamics_batch(times, x, u, p) - _drift(model, times, x, p)
 
         def velocity(states: Array, rates: Array) -> Array:
             return model.position_batch(times, states + 1j * _COMPLEX_STEP * rates, p).imag / _COMPLEX_STEP
@@ -78,7 +117,7 @@ def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float])
             return np.zeros_like(direct)
         step = _REAL_STEP / size
         ahead, behind = x + step * added, x - step * added
-        ahead_rates, behind_rates = (model.dynamics_batch(times, y, np.zeros_like(u), p) for y in (ahead, behind))
+        ahead_rates, behind_rates = (_drift(model, times, y, p) for y in (ahead, behind))
         return clean((velocity(ahead, ahead_rates) - velocity(behind, behind_rates)) / (2.0 * step))
 
 

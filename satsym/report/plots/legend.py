@@ -39,7 +39,7 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
     from matplotlib.patches import Patch
 
     quantities, found = list(quantities), []
-    if any(read(q).deviation for q in quantities):
+    if any(each.deviation for each in read(quantities)):
         found.append((line(linestyle="none"), say(r"$\Delta$: minus reference")))
     if any(q.target is not None for q in quantities):
         found.append((line(**style.TARGET), say("final condition")))
@@ -65,7 +65,7 @@ def below(page: Figure, entries: list[Entry]) -> None:
     entries = list({label: (handle, label) for handle, label in entries}.values())
     if len(entries) > 1:
         handles, labels = zip(*entries, strict=True)
-        width = page.get_figwidth() / style.sheet().letters
+        width = style.on_screen(page)
         most = -(-len(entries) // math.ceil(len(entries) / (PER_INCH * width)))
         across = next((n for n in range(most, 1, -1) if _width(labels, n) <= width), 1)
         room = int((width - HANDLE) / CHARACTER)

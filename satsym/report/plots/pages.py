@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.display import labelled, number, unit_text
-from satsym.report.plots import legend, series, style
-from satsym.report.plots.curves import clean
+from satsym.report.display import number, unit_text
+from satsym.report.plots import legend, phase_planes, series, style
 from satsym.report.plots.orbits import scenes as space
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
@@ -22,15 +21,26 @@ from satsym.solution import Solution
 from satsym.status import Status
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
+
+
+ROW, PLANE = 2.2, 4.4
+"""Height of a row of panels, and of phase planes, in inches on a screen."""
 
 
 def orbit(scene: Scene) -> Figure | None:
     """The path in space; beside it, where it stays near the reference, the path seen from there."""
     shown = space.Orbit.of(scene)
-    if shown is None:
-        return None
+    return None if shown is None or shown.by_states else _in_space(scene, shown)
+
+
+def path(scene: Scene) -> Figure | None:
+    """The path where states are its coordinates, of a model that has no position vector."""
+    shown = space.Orbit.of(scene)
+    return None if shown is None or not shown.by_states else _in_space(scene, shown)
+
+
+def _in_space(scene: Scene, shown: space.Orbit) -> Figure:
     views = shown.views
     panels = len(views) + (shown.relative is not None)
     columns = style.across(min(panels, 2))
@@ -46,6 +56,22 @@ def orbit(scene: Scene) -> Figure | None:
         beside.set_box_aspect(1.0)
         space.from_reference(beside, shown)
     legend.below(page, legend.motion(scene, style.STATE) + space.entries(shown))
+    return page
+
+
+def phase(scene: Scene) -> Figure | None:
+    """The phase planes of a motion that is in no plane and in no space."""
+    drawn = phase_planes.of(scene)
+    if not drawn or space.Orbit.of(scene) is not None:
+        return None
+    wide = 1 if len(drawn) == 1 else 2
+    columns = style.columns(len(drawn), wide, PLANE)
+    rows = -(-len(drawn) // columns)
+    page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.72 * style.WIDTH, 1.2 + PLANE * rows)
+    grid = page.add_gridspec(rows, columns)
+    for i, pair in enumerate(drawn):
+        phase_planes.draw(page.add_subplot(grid[i]), pair)
+    legend.below(page, legend.motion(scene, style.STATE) + phase_planes.entries(drawn))
     return page
 
 
@@ -77,11 +103,12 @@ def invariants(scene: Scene) -> Figure | None:
 def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns: int = 2) -> Figure | None:
     if not quantities or not scene.drawable:
         return None
-    columns = style.across(1 if len(quantities) <= 2 else columns if len(quantities) <= 8 else 3)
+    wanted = 1 if len(quantities) <= 2 else columns if len(quantities) <= 8 else 3
+    columns = style.columns(len(quantities), wanted, ROW)
     rows = -(-len(quantities) // columns)
-    page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 1.2 + 2.2 * rows)
+    page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 1.2 + ROW * rows)
     small_multiples(
-        page, scene, [(quantity, colour) for quantity in quantities], columns, title=style.characters(page, columns)
+        page, scene, [(quantity, colour) for quantity in quantities], columns, title=style.room(page, columns)
     )
     beside = any(q.free is not None or q.reference is not None for q in quantities)
     entries = legend.motion(scene, colour) if beside else []
@@ -143,7 +170,7 @@ class _Heading:
 
     @classmethod
     def of(cls, page: Figure, scene: Scene) -> _Heading:
-        fit = page.get_figwidth() / style.sheet().letters / style.WIDTH
+        fit = style.on_screen(page) / style.WIDTH
         title = textwrap.fill(scene.title, int(86 * fit), max_lines=3, placeholder="\N{HORIZONTAL ELLIPSIS}")
         first, *others = _facts(scene)
         facts = [first]
@@ -181,61 +208,3 @@ def _facts(scene: Scene) -> list[str]:
     if np.isfinite(scene.times[-1]):
         found.append(f"$t_f$ = {decimal(number(float(scene.times[-1])))} {unit_text(scene.time_unit)}".rstrip())
     return found
-
-
-ANEW = 100.0
-"""A residual this many times the one before begins another phase."""
-
-
-def convergence(scene: Scene) -> Figure | None:
-    """Distance of the cost from the answer's, and the residual, over the iterations; nothing for fewer than three."""
-    history = scene.history
-    if len(history) < 3:
-        return None
-    columns = style.across(2)
-    page = style.titled(scene.title, style.WIDTH, 4.1 if columns == 2 else 6.6)
-    left, right = page.subplots(2 // columns, columns)
-    at = np.array([entry.number for entry in history], dtype=float)
-    costs = clean(np.array([scene.spec.objective(entry.objective) for entry in history]))
-    residuals = clean(np.array([entry.residual for entry in history]))
-    assert isinstance(scene.result, Solution)  # nothing else has a history
-    last = scene.spec.objective(scene.result.objective)
-    # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
-    begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
-    unit, status = scene.spec.objective_unit or "1", message(scene.result.status.value)
-    final = f"{decimal(number(last, 10))} {unit_text(unit)}".rstrip()
-    if scene.spec.maximise:
-        title, nothing = say("final objective <value>", value=final), say("no objective: <status>", status=status)
-    else:
-        title, nothing = say("final cost <value>", value=final), say("no cost: <status>", status=status)
-    if scene.result.status.answered:
-        left.set_title(title)
-        _decades(left, at, np.abs(costs - last), begun, style.PURPLE)
-    else:
-        left.set_title(nothing)
-        left.set_axis_off()
-    left.set_ylabel(labelled(say(r"$|J - J_{\mathrm{last}}|$"), unit))
-    _decades(right, at, np.abs(residuals), begun, style.GREEN)
-    right.set_ylabel(say("residual"))
-    whole, parts = "residual of the optimality conditions", "residual of the optimality conditions, phase by phase"
-    right.set_title(say(parts if begun.size else whole))
-    return page
-
-
-def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, begun: np.ndarray, colour: str) -> None:
-    """Positive values on a logarithmic axis, joined within a phase; zeros and what is not finite are left out."""
-    from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
-
-    positive = np.where(values > 0.0, values, np.nan)
-    if np.isfinite(positive).any():
-        low, high = np.nanmin(positive), np.nanmax(positive)
-        axes.set_yscale("log")
-        axes.set_ylim(low / 3.0, high * 3.0)
-        axes.yaxis.set_major_locator(LogLocator(numticks=6))
-        axes.yaxis.set_minor_locator(NullLocator())
-    axes.set_xlim(at[0] - 0.3, at[-1] + 0.3)
-    axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    for steps, phase in zip(np.split(at, begun), np.split(positive, begun), strict=True):
-        drawn = np.isfinite(phase)
-        axes.plot(steps[drawn], phase[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
-    axes.set_xlabel(say("iteration"))

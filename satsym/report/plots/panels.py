@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.report.display import labelled, number, shortened, unit_text
+from satsym.report.display import labelled, number, unit_text
 from satsym.report.plots import style
 from satsym.report.plots.reading import ROUNDING, Reading, read
 from satsym.report.plots.scene import Scene
@@ -18,11 +18,10 @@ from satsym.report.said import decimal, numbers, say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure, SubFigure
 
 MOST_TIMES = 4
-SHORTEST = 12
-"""Characters of a title that are shown at least."""
 ROUND = [1, 2, 5, 10]
 """Leading digits of the distance between ticks."""
 
@@ -32,33 +31,46 @@ def small_multiples(
     scene: Scene,
     quantities: Sequence[tuple[Series, str]],
     columns: int,
-    title: int = 0,
+    title: float = 0.0,
 ) -> None:
     """Draw quantities, each in its colour, in rows over a common time; a last one that is alone fills its row."""
     rows = -(-len(quantities) // columns)
-    wide_end = columns > 1 and len(quantities) % columns == 1
     grid = part.add_gridspec(rows, columns)
+    shown = _read(quantities)
     for i, (quantity, colour) in enumerate(quantities):
         row, column = divmod(i, columns)
         alone = i == len(quantities) - 1 and column == 0
         axes = part.add_subplot(grid[row, :] if alone else grid[row, column])
-        against_time(axes, scene, quantity, colour, title)
+        against_time(axes, scene, quantity, shown[i], colour, title)
         if row == rows - 1:
             axes.set_xlabel(labelled("$t$", scene.time_unit))
-        elif row < rows - 2 or not wide_end:  # the axes below have the same ticks at the same places
-            axes.tick_params(labelbottom=False)
+        elif i + columns < len(quantities) and (row < rows - 2 or len(quantities) % columns != 1 or columns == 1):
+            axes.tick_params(labelbottom=False)  # the axes below have the same ticks at the same places
     part.align_ylabels()
 
 
-def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: int = 0) -> None:
+def _read(quantities: Sequence[tuple[Series, str]]) -> list[Reading]:
+    """Those of each colour have one unit, where they can."""
+    shown: dict[int, Reading] = {}
+    for colour in dict.fromkeys(colour for _, colour in quantities):
+        places = [i for i, (_, own) in enumerate(quantities) if own == colour]
+        shown |= dict(zip(places, read([quantities[i][0] for i in places]), strict=True))
+    return [shown[i] for i in range(len(quantities))]
+
+
+def against_time(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: str, title: float = 0.0) -> None:
     """Draw a quantity.
 
     Parameters
     ----------
+    shown
+        The quantity as it is shown.
     title
-        Characters that its meaning and a remark beside it may have above the axes; 0 leaves them out.
+        Inches on a screen that its meaning and a remark beside it have above the axes; 0 leaves them out.
     """
-    shown, times = read(series), scene.times
+    from matplotlib.ticker import MaxNLocator
+
+    times = scene.times
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim(shown.low, shown.high)
     _bounds(axes, scene, series, shown, colour)
@@ -70,26 +82,28 @@ def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: i
     if shown.target is not None:
         axes.plot(times[-1:], [shown.target], **style.TARGET)
     axes.set_ylabel(shown.label, fontsize="large" if series.unit == "1" else None)
-    ticks(axes, shown, scene.time_unit == "h")
+    hours = scene.time_unit == "h"
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 3, 6, 10] if hours else ROUND))
+    ticks(axes.yaxis, shown)
     if title:
         remark = _remark(scene, series, shown)
-        axes.set_title(shortened(series.meaning, max(SHORTEST, title - len(remark) - 2)))
+        room = max(style.SHORTEST, title - style.length(f"{remark}  ", style.TITLE))
+        axes.set_title(style.broken(series.meaning, room, most=2))
         axes.set_title(remark, loc="right")
 
 
-def ticks(axes: Axes, shown: Reading, hours: bool) -> None:
+def ticks(axis: Axis, shown: Reading) -> None:
     """Few, round ticks; multiples of pi for an angle that turns."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 3, 6, 10] if hours else ROUND))
     if not shown.turns:
-        axes.yaxis.set_major_locator(MaxNLocator(5, steps=ROUND, min_n_ticks=3))
+        axis.set_major_locator(MaxNLocator(5, steps=ROUND, min_n_ticks=3))
         return
     step = 0.25
     while (shown.high - shown.low) / (step * math.pi) > 5.0:
         step *= 2.0
-    axes.yaxis.set_major_locator(MultipleLocator(step * math.pi))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: _of_pi(value / math.pi)))
+    axis.set_major_locator(MultipleLocator(step * math.pi))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _of_pi(value / math.pi)))
 
 
 def _remark(scene: Scene, series: Series, shown: Reading) -> str:

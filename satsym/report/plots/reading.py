@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.display import Scale, engineering, labelled
+from satsym.report.display import Scale, labelled, together
 from satsym.report.plots.series import Series
 
 SMALL = 0.02
@@ -45,41 +46,83 @@ class Reading:
     """Whether to mark multiples of pi."""
 
 
-def read(series: Series) -> Reading:
-    """Choose what to show: the deviation where the value hides it, its unit, and the ends of the axis."""
-    size = max(_size(series.values), series.size)
-    datum, deviation = _datum(series, size)
-    symbol, unit, factor = series.symbol, series.unit, 1.0
-    if deviation:
-        symbol = rf"$\Delta${symbol}"
-    elif np.any(datum):
-        symbol = rf"{symbol}$\,-\,${symbol}$(t_0)$"
-    radians = series.angle and unit == "rad"
-    if radians and deviation:
-        unit, factor = "deg", 180.0 / math.pi
-    turns = radians and not deviation and _width(series.values - datum) > 0.5 * math.pi
-    shown = (series.values - datum) * factor
-    low, high = _ends(series, shown, datum, factor, size * factor)
-    measure = Scale(0, unit) if turns else engineering(unit, max(abs(low), abs(high)))
-    scale = 1.0 / measure.divisor
+@dataclass(frozen=True, eq=False)
+class _Counted:
+    """A quantity in the unit of its series or in degrees, counted from its datum."""
 
-    def placed(values: Array | None) -> Array | None:
-        return None if values is None else (values - datum) * factor * scale
+    series: Series
+    symbol: str
+    unit: str
+    factor: float
+    """From the unit of the series."""
+    datum: Array | float
+    low: float
+    high: float
+    deviation: bool
+    turns: bool
 
-    last = datum if isinstance(datum, float) else float(datum[-1])
-    return Reading(
-        label=labelled(symbol, measure.unit),
-        values=shown * scale,
-        reference=placed(series.reference),
-        free=placed(series.free),
-        target=None if series.target is None else (series.target - last) * factor * scale,
-        lower=series.lower * scale,
-        upper=series.upper * scale,
-        low=low * scale,
-        high=high * scale,
-        deviation=deviation,
-        turns=turns,
-    )
+    @classmethod
+    def of(cls, series: Series) -> _Counted:
+        size = max(_size(series.values), series.size)
+        datum, deviation = _datum(series, size)
+        symbol, unit, factor = series.symbol, series.unit, 1.0
+        if deviation:
+            symbol = rf"$\Delta${symbol}"
+        elif np.any(datum):
+            symbol = rf"{symbol}$\,-\,${symbol}$(t_0)$"
+        radians = series.angle and unit == "rad"
+        if radians and deviation:
+            unit, factor = "deg", 180.0 / math.pi
+        turns = radians and not deviation and _width(series.values - datum) > 0.5 * math.pi
+        shown = (series.values - datum) * factor
+        low, high = _ends(series, shown, datum, factor, size * factor)
+        return cls(series, symbol, unit, factor, datum, low, high, deviation, turns)
+
+    @property
+    def from_datum(self) -> bool:
+        """Whether it is counted from something else than zero."""
+        return self.deviation or bool(np.any(self.datum))
+
+    @property
+    def furthest(self) -> float:
+        """The end of the axis that is further from zero; none of a quantity that is nothing but rounding errors."""
+        series = self.series
+        flat = _size((series.values - self.datum) * self.factor) <= ROUNDING * series.size * self.factor
+        return 0.0 if flat else max(abs(self.low), abs(self.high))
+
+    def shown(self, measure: Scale) -> Reading:
+        """As it is shown, in a unit."""
+        scale, series, datum = 1.0 / measure.divisor, self.series, self.datum
+
+        def placed(values: Array | None) -> Array | None:
+            return None if values is None else (values - datum) * self.factor * scale
+
+        last = datum if isinstance(datum, float) else float(datum[-1])
+        return Reading(
+            label=labelled(self.symbol, measure.unit),
+            values=(series.values - datum) * self.factor * scale,
+            reference=placed(series.reference),
+            free=placed(series.free),
+            target=None if series.target is None else (series.target - last) * self.factor * scale,
+            lower=series.lower * scale,
+            upper=series.upper * scale,
+            low=self.low * scale,
+            high=self.high * scale,
+            deviation=self.deviation,
+            turns=self.turns,
+        )
+
+
+def read(quantities: Sequence[Series]) -> list[Reading]:
+    """Choose what to show: the deviation where the value hides it, its unit, and the ends of the axis.
+
+    Those with one unit keep one, so that the components of a vector can be compared.
+    """
+    counted = [_Counted.of(each) for each in quantities]
+    measures = [
+        together((each.unit, each.furthest) for each in counted if each.from_datum is apart) for apart in (False, True)
+    ]
+    return [each.shown(Scale(0, each.unit) if each.turns else measures[each.from_datum][each.unit]) for each in counted]
 
 
 def within_reach(excess: float, width: float) -> float:
@@ -127,7 +170,7 @@ def _ends(series: Series, shown: Array, datum: Array | float, factor: float, siz
     for bound in (series.lower, series.upper):
         if math.isfinite(bound) and low - IN_SIGHT * reach <= bound <= high + IN_SIGHT * reach:
             low, high = min(low, bound), max(high, bound)
-    if high - low <= ROUNDING * size or high == low:
+    if high - low <= max(ROUNDING, series.steady) * size or high == low:
         room = 0.1 * max(abs(low), size) or 1.0
     else:
         room = 0.07 * (high - low)

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
 NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 3.2}
+SMALL_ROW = 1.7
+"""Height of a row of panels on a page that cannot grow downwards, in inches on a screen."""
 BEYOND = 1.5
 """How far beyond the linear response a nonlinear one is shown, relative to its width."""
 
@@ -43,6 +45,17 @@ class Curve:
     """Under which law it is."""
     prefix: str = ""
     """Of its symbol."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Of its axis without a margin: zero, all of the linear response, and of the exact one what is near that."""
+        low, high = min(float(self.linear.min()), 0.0), max(float(self.linear.max()), 0.0)
+        width = high - low or 1.0
+        exact = np.zeros(1) if self.exact is None else curves.clean(self.exact)
+        if np.isfinite(exact).any():
+            low = max(min(low, float(np.nanmin(exact))), low - BEYOND * width)
+            high = min(max(high, float(np.nanmax(exact))), high + BEYOND * width)
+        return low, high
 
     @property
     def apart(self) -> Array | None:
@@ -100,33 +113,59 @@ class Responded:
 def page(design: Design, seen: Responded) -> Figure:
     """Each state without control and with the gain, side by side; below them the inputs, and what they cost."""
     n, m = len(seen.free), len(seen.inputs)
+    if style.sheet().highest < style.HIGHEST:
+        return _beside(design, seen)
     wide = style.across(2) == 2
     figure = style.titled(design.title, style.WIDTH, 1.4 + 1.6 * (n + m) * (1 if wide else 2))
     grid = figure.add_gridspec(n + m, 2) if wide else figure.add_gridspec(2 * (n + m), 1)
     for j, column in enumerate((seen.free, seen.steered)):
-        for i, curve in enumerate(column):
+        for i, (curve, measure) in enumerate(zip(column, _measures(column), strict=True)):
             axes = figure.add_subplot(grid[i, j] if wide else grid[(n + m) * j + i, 0])
-            _draw(axes, seen.times, curve)
+            _draw(axes, seen.times, curve, measure)
             axes.tick_params(labelbottom=False)
             if i == 0:
                 axes.set_title(curve.title)
-    for i, curve in enumerate(seen.inputs):
+    for i, (curve, measure) in enumerate(zip(seen.inputs, _measures(seen.inputs), strict=True)):
         axes = figure.add_subplot(grid[n + i, 1] if wide else grid[2 * n + m + i, 0])
-        _draw(axes, seen.times, curve)
+        _draw(axes, seen.times, curve, measure)
         axes.tick_params(labelbottom=i == m - 1)
     axes.set_xlabel(display.labelled("$t$", seen.unit))
     axes = figure.add_subplot(grid[n:, 0] if wide else grid[n : n + m, 0])
-    _draw(axes, seen.times, seen.cost)
+    _draw(axes, seen.times, seen.cost, _measures([seen.cost])[0])
     axes.set_title(seen.cost.title)
     axes.set_xlabel(display.labelled("$t$", seen.unit))
     figure.align_ylabels()
+    _told_apart(figure, seen)
+    return figure
+
+
+def _beside(design: Design, seen: Responded) -> Figure:
+    """The same on a page that cannot grow downwards: all in one order, with as many side by side as it takes."""
+    shown = [*seen.free, *seen.steered, *seen.inputs, seen.cost]
+    columns = style.columns(len(shown), 2, SMALL_ROW, 1.4)
+    rows = -(-len(shown) // columns)
+    figure = style.titled(design.title, style.WIDTH, 1.4 + SMALL_ROW * rows)
+    grid = figure.add_gridspec(rows, columns)
+    for k, (curve, measure) in enumerate(zip(shown, _measures(shown), strict=True)):
+        axes = figure.add_subplot(grid[k])
+        _draw(axes, seen.times, curve, measure)
+        axes.set_title(curve.title)
+        axes.tick_params(labelbottom=k + columns >= len(shown))
+        if k + columns >= len(shown):
+            axes.set_xlabel(display.labelled("$t$", seen.unit))
+    figure.align_ylabels()
+    _told_apart(figure, seen)
+    return figure
+
+
+def _told_apart(figure: Figure, seen: Responded) -> None:
+    """A legend, where there is more than the linear response."""
     if seen.cost.exact is not None:
         entries = [
             (legend.line(color=style.SOFT, **LINEAR), say("linear")),
             (legend.line(**NONLINEAR), say("nonlinear")),
         ]
         legend.below(figure, entries)
-    return figure
 
 
 def differences(design: Design, seen: Responded) -> Figure | None:
@@ -140,9 +179,10 @@ def differences(design: Design, seen: Responded) -> Figure | None:
     figure = style.titled(design.title, style.WIDTH, 1.2 + 1.9 * rows)
     grid = figure.add_gridspec(rows, len(columns))
     for j, column in enumerate(columns):
-        for i, (one, apart) in enumerate(column):
+        differing = [replace(one, linear=apart, exact=None) for one, apart in column]
+        for i, (one, measure) in enumerate(zip(differing, _measures(differing), strict=True)):
             axes = figure.add_subplot(grid[i, j])
-            _draw(axes, seen.times, replace(one, linear=apart, exact=None), apart=True)
+            _draw(axes, seen.times, one, measure, apart=True)
             axes.set_title(f"{say('nonlinear minus linear')}: {one.title}")
             axes.tick_params(labelbottom=i == len(column) - 1)
         axes.set_xlabel(display.labelled("$t$", seen.unit))
@@ -150,22 +190,26 @@ def differences(design: Design, seen: Responded) -> Figure | None:
     return figure
 
 
-def _draw(axes: Axes, times: Array, curve: Curve, apart: bool = False) -> None:
+def _measures(shown: Sequence[Curve]) -> list[display.Scale]:
+    """Of each curve: those of one colour, which are states or inputs, have one unit."""
+    found: dict[int, display.Scale] = {}
+    for colour in dict.fromkeys(curve.colour for curve in shown):
+        own = [k for k, curve in enumerate(shown) if curve.colour == colour]
+        units = display.together((shown[k].what.unit, max(map(abs, shown[k].ends))) for k in own)
+        found |= {k: units[shown[k].what.unit] for k in own}
+    return [found[k] for k in range(len(shown))]
+
+
+def _draw(axes: Axes, times: Array, curve: Curve, measure: display.Scale, apart: bool = False) -> None:
     """A quantity by the linear system, and by the exact motion as far as it is near that; or one minus the other."""
-    what, linear = curve.what, curve.linear
-    low, high = min(float(linear.min()), 0.0), max(float(linear.max()), 0.0)
-    width = high - low or 1.0
+    what, (low, high) = curve.what, curve.ends
     exact = None if curve.exact is None else curves.clean(curve.exact)
-    if exact is not None and np.isfinite(exact).any():
-        low = max(min(low, float(np.nanmin(exact))), low - BEYOND * width)
-        high = min(max(high, float(np.nanmax(exact))), high + BEYOND * width)
-    measure = display.engineering(what.unit, max(abs(low), abs(high)))
     scale = measure.divisor
     margin = 0.06 * (high - low or 1.0)
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim((low - margin) / scale, (high + margin) / scale)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.plot(times, linear / scale, color=curve.colour, **LINEAR)
+    axes.plot(times, curve.linear / scale, color=curve.colour, **LINEAR)
     if exact is not None:
         axes.plot(times, exact / scale, **NONLINEAR)
     symbol = display.formula(curve.prefix + what.latex, what.symbol)

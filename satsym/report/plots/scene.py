@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
-from satsym.report.plots import curves
+from satsym.report.plots import coordinates, curves
 from satsym.report.said import message, say
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
+
+ROUNDING = 1e-9
+"""Relative to the reference: what is nearer to it is on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +39,7 @@ class Scene:
     reference: Array | None
     free: Array | None
     """States of the reference curve and of the motion without control at the nodes; ``None`` where there is none or,
-    for the latter, where it is the motion itself."""
+    for the latter, where it is the motion itself or on the reference."""
 
     @classmethod
     def of(cls, result: Solution | Simulation) -> Scene:
@@ -44,17 +48,20 @@ class Scene:
         spec, p = instance.model.spec, instance.parameters
         variables = (*spec.states, *spec.controls, *spec.parameters)
         factor, unit = display.time_scale((v.unit for v in variables), float(np.ptp(nodes)) if len(nodes) else 0.0)
+        x, reference = curves.states(instance.model, result.x), None
+        if spec.has_reference:
+            reference = curves.reference(instance.model, nodes, p)
         return cls(
             result=result,
             name=_name(result),
             times=nodes / factor,
             time_unit=unit,
             time_factor=factor,
-            x=curves.states(instance.model, result.x),
+            x=x,
             u=curves.clean(result.u),
             lam=curves.clean(result.lam) if isinstance(result, Solution) and spec.has_cost else None,
-            reference=curves.reference(instance.model, nodes, p) if spec.has_reference else None,
-            free=None if _coasts(result) else curves.uncontrolled(instance.model, nodes, instance.initial, p),
+            reference=reference,
+            free=_free(result, nodes, x, reference),
         )
 
     @property
@@ -85,6 +92,11 @@ class Scene:
         """Whether there is any trajectory to see."""
         return len(self.times) > 1 and int(np.isfinite(self.x).all(axis=0).sum()) > 1
 
+    @cached_property
+    def rated(self) -> list[tuple[int, int]]:
+        """Places of states, and of those that are their rates."""
+        return coordinates.pairs(self.instance.model, self.nodes, self.x, self.u, self.instance.parameters)
+
     @property
     def history(self) -> tuple[Iteration, ...]:
         return self.result.history if isinstance(self.result, Solution) else ()
@@ -96,6 +108,21 @@ def _name(result: Solution | Simulation) -> str:
     if result.feedback != "none":
         return say("with <law>", law=message(result.feedback))
     return say("uncontrolled" if _coasts(result) else "trajectory")
+
+
+def _free(result: Solution | Simulation, nodes: Array, x: Array, reference: Array | None) -> Array | None:
+    """States of the motion without control, where there is one that is not drawn already."""
+    model, p = result.instance.model, result.instance.parameters
+    if _coasts(result) or not curves.rests(model, nodes, x, p):
+        return None
+    found = curves.uncontrolled(model, nodes, result.instance.initial, p)
+    if reference is not None and np.allclose(found, reference, rtol=ROUNDING, atol=ROUNDING * _size(reference)):
+        return None
+    return found
+
+
+def _size(values: Array) -> float:
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
 
 
 def _coasts(result: Solution | Simulation) -> bool:

@@ -16,11 +16,17 @@ from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.said import say
 from satsym.solution import Simulation
-from satsym.spec import PRODUCT
+from satsym.spec import PRODUCT, ProblemSpec, Variable
 
 ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
 
+
+STEADY = 1e-6
+"""A Hamiltonian that ought to be constant varies by less, relative to its terms, or by something to be seen."""
+
+STEP = 1e-30
+"""Of complex steps, relative."""
 
 SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
 """What is said of times of a quantity, in English."""
@@ -56,6 +62,8 @@ class Series:
     """What is said of these, in English."""
     size: float = 0.0
     """What counts as large for it, where its values may be nothing but rounding errors."""
+    steady: float = 0.0
+    """Variation below this fraction of the size is none that matters."""
     from_first: bool = False
     """Whether to count from its first value."""
     from_zero: bool = False
@@ -66,6 +74,11 @@ class Series:
         return formula(self.latex, self.name)
 
 
+def unit_of(variable: Variable, spec: ProblemSpec) -> str:
+    """The unit on an axis: an angle that is stated without one is in radians."""
+    return "rad" if variable.unit == "1" and variable.symbol in curves.angles(spec) else variable.unit
+
+
 def states(scene: Scene) -> list[Series]:
     """The states, with the reference, the motion without control, and when points on the way are passed."""
     events = getattr(scene.result, "events", ())
@@ -74,7 +87,7 @@ def states(scene: Scene) -> list[Series]:
         Series(
             v.latex,
             v.symbol,
-            v.unit,
+            unit_of(v, scene.spec),
             plain(say(v.meaning)),
             scene.x[i],
             reference=None if scene.reference is None else scene.reference[i],
@@ -99,9 +112,10 @@ def controls(scene: Scene) -> list[Series]:
         Series(
             v.latex,
             v.symbol,
-            v.unit,
+            unit_of(v, scene.spec),
             plain(say(v.meaning)),
             scene.u[i],
+            angle=v.symbol in curves.angles(spec),
             lower=instance.lower[i] if box else -math.inf,
             upper=instance.upper[i] if box else math.inf,
             active=_active(scene.u[i], instance.lower[i], instance.upper[i]) if box else None,
@@ -182,7 +196,8 @@ def costates(scene: Scene) -> list[Series]:
     meaning = say("Hamiltonian (constant)" if scene.spec.autonomous else "Hamiltonian")
     time = time_unit(scene.spec)
     rate = cost_per(time, scene.spec) if time else "1"
-    return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]
+    steady = STEADY if scene.spec.autonomous else 0.0
+    return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)), steady=steady)]
 
 
 def invariants(scene: Scene) -> list[Series]:
@@ -196,6 +211,7 @@ def invariants(scene: Scene) -> list[Series]:
         reference = (
             None if scene.reference is None else curves.clean(model.invariants_batch(scene.nodes, scene.reference, p))
         )
+    sizes = _terms(scene)
     return [
         Series(
             v.latex,
@@ -205,11 +221,24 @@ def invariants(scene: Scene) -> list[Series]:
             rows[i],
             reference=None if reference is None else reference[i],
             free=None if free is None else free[i],
-            size=_largest(rows[i]),
+            size=max(_largest(rows[i]), sizes[i]),
             from_first=scene.coasting,
         )
         for i, v in enumerate(scene.spec.invariants)
     ]
+
+
+def _terms(scene: Scene) -> list[float]:
+    """How large each invariant would be if the parts that depend on one state did not cancel others."""
+    model, p, known = scene.instance.model, scene.instance.parameters, np.isfinite(scene.x).all(axis=0)
+    times, x, found = scene.nodes[known], scene.x[:, known], [0.0] * len(scene.spec.invariants)
+    for k in range(len(x)):
+        beside = x.astype(complex)
+        beside[k] += 1j * STEP * x[k]
+        with np.errstate(all="ignore"):
+            rows = curves.clean(np.imag(model.invariants_batch(times, beside, p)) / STEP)
+        found = [max(size, _largest(row)) for size, row in zip(found, rows, strict=True)]
+    return found
 
 
 def target(scene: Scene, i: int) -> float | None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.report import display
+from satsym.report.columns import on_axis
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
@@ -16,12 +19,17 @@ from satsym.report.results.studies import Numbers
 from satsym.report.said import decimal, message, say
 from satsym.report.said import numbers as numbers_said
 from satsym.status import Status
-from satsym.studies.rows import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+PANEL = 3.6
+"""Height of a panel, in inches on a screen."""
+SHORT = 1e3
+"""Last value by first value up to which a logarithmic axis has plain numbers."""
+GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
+"""Of cells without a number, a grey for each way to end."""
 OUTER = (0.01, 0.99)
 """Quantiles beyond which rows may lie far out."""
 
@@ -49,23 +57,40 @@ def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
 
 def _overview(numbers: Numbers) -> Figure:
     named = numbers.quantities
-    page = style.titled(numbers.title, style.WIDTH, 0.36 * style.WIDTH * max(1, len(named)) + 0.5)
-    rows = page.subplots(max(1, len(named)), 1, squeeze=False)[:, 0]
+    count = max(1, len(named))
+    columns = style.columns(count, 1, PANEL, 0.5)
+    rows = -(-count // columns)
+    page = style.titled(numbers.title, style.WIDTH, PANEL * rows + 0.5)
+    places = page.subplots(rows, columns, squeeze=False).flat
     axes = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)[:1]
-    for place, (name, values) in zip(rows, named.items(), strict=False):
+    lacking: list[legend.Entry] = []
+    for place, (name, values) in zip(places, named.items(), strict=False):
         if numbers.shape is not None and len(axes) == 1:
             _curve(place, numbers.varied[axes[0]], values, numbers.branch)
-            place.set_xlabel(_label(axes[0]))
-            place.set_ylabel(_label(name))
+            _scale(place, "x", numbers.varied[axes[0]])
+            place.set_xlabel(on_axis(axes[0]))
+            place.set_ylabel(on_axis(name))
         elif numbers.shape is not None:
-            _map(page, place, numbers, name, values)
+            lacking = _map(page, place, numbers, name, values)
         else:
             _histogram(place, name, values)
+    for place in list(places)[len(named) :]:
+        place.set_axis_off()
+    _noted(page, lacking)
     return page
 
 
-def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) -> None:
-    """Over the first two axes that vary; further ones are left at their middle values, which is said."""
+def _noted(page: Figure, entries: Sequence[legend.Entry]) -> None:
+    """Say what cells without a number are, also where there is but one kind of them."""
+    if entries:
+        page.legend(*zip(*entries, strict=True), loc="outside lower center", ncols=style.across(3))
+
+
+def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) -> list[legend.Entry]:
+    """Over the first two axes that vary; further ones are left at their middle values, which is said.
+
+    What is given back says how the rows ended whose cells have no number.
+    """
     assert numbers.shape is not None
     varying = [k for k, count in enumerate(numbers.shape) if count > 1][:2]
     labels = list(numbers.varied)
@@ -74,20 +99,50 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
     fixed = tuple(slice(None) if k in varying else count // 2 for k, count in enumerate(numbers.shape))
     x, y = grids[0][fixed], grids[1][fixed]
     drawn = place.pcolormesh(x, y, np.ma.masked_invalid(table[fixed]), shading="nearest", cmap="viridis")
+    status = np.array(numbers.status).reshape(numbers.shape)[fixed]
+    lacking = _without_numbers(place, x, y, np.where(np.isfinite(table[fixed]), Status.CONVERGED.value, status))
     for axis, k, low in (("x", varying[0], x), ("y", varying[1], y)):
-        if _logarithmic(low):
-            getattr(place, f"set_{axis}scale")("log")
-        getattr(place, f"set_{axis}label")(_label(labels[k]))
+        _scale(place, axis, low)
+        getattr(place, f"set_{axis}label")(on_axis(labels[k]))
     if numbers.branch is not None:
         _borders(place, x, y, numbers.branch.reshape(numbers.shape)[fixed])
-    page.colorbar(drawn, ax=place, label=_label(name))
+    page.colorbar(drawn, ax=place, label=on_axis(name))
     values_of = [values.reshape(numbers.shape)[fixed].flat[0] for values in numbers.varied.values()]
     others = [
-        f"{_label(labels[k])} = {display.number(float(values_of[k]))}"
+        f"{on_axis(labels[k])} = {decimal(display.number(float(values_of[k])))}"
         for k, count in enumerate(numbers.shape)
         if k not in varying and count > 1
     ]
     place.set_title(", ".join(others))
+    return lacking
+
+
+def _without_numbers(place: Axes, x: Array, y: Array, status: NDArray[np.str_]) -> list[legend.Entry]:
+    """Fill the cells of rows without an answer, in a grey for each way to end, and say which it is."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    found: list[legend.Entry] = []
+    for kind, grey in zip(sorted(set(status.flat) - {Status.CONVERGED.value}), GREYS, strict=False):
+        own = status == kind
+        cells = np.ma.masked_array(np.ones(own.shape), ~own)
+        place.pcolormesh(x, y, cells, shading="nearest", cmap=ListedColormap([grey]))
+        found.append((Patch(color=grey), f"{message(str(kind))}: {int(own.sum())}"))
+    return found
+
+
+def _scale(place: Axes, axis: str, values: Array) -> None:
+    """A logarithmic axis for values of equal ratio, with plain numbers where it is short."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    if not _logarithmic(values):
+        return
+    getattr(place, f"set_{axis}scale")("log")
+    own = getattr(place, f"{axis}axis")
+    if values.max() < SHORT * values.min():
+        own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        own.set_major_formatter(FuncFormatter(lambda value, _: decimal(display.number(value, 4))))
+        own.set_minor_formatter(NullFormatter())
 
 
 def _curve(place: Axes, x: Array, values: Array, branch: Array | None) -> None:
@@ -107,13 +162,6 @@ def _borders(place: Axes, x: Array, y: Array, branch: Array) -> None:
         place.plot(*between, "x", color="white", markersize=4.0, markeredgewidth=1.2)
 
 
-def _label(column: str) -> str:
-    """A column of the table as an axis has it: its unit as people write it."""
-    name, bracket, unit = column.partition(" [")
-    name = say("objective") if name == Column.OBJECTIVE else name
-    return display.plain(display.labelled(name, unit.removesuffix("]")) if bracket else name)
-
-
 def _logarithmic(values: Array) -> bool:
     """Whether values are spaced evenly in their logarithms rather than evenly."""
     own = np.unique(values)
@@ -126,7 +174,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
     finite = values[np.isfinite(values)]
     shown = _without_outliers(finite)
     place.hist(shown, bins=min(60, max(5, int(np.sqrt(len(shown))))), color=style.BLUE)
-    place.set_xlabel(_label(name))
+    place.set_xlabel(on_axis(name))
     place.set_ylabel(say("rows"))
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
@@ -172,9 +220,9 @@ def _failures(numbers: Numbers) -> Figure:
         if own.any():
             place.plot(x[own], y[own], linestyle="none", **look)
             seen.append((legend.line(linestyle="none", **look), f"{message(kind)}: {int(own.sum())}"))
-    place.set_xlabel(_label(labels[0]))
+    place.set_xlabel(on_axis(labels[0]))
     if len(labels) > 1:
-        place.set_ylabel(_label(labels[1]))
+        place.set_ylabel(on_axis(labels[1]))
     else:
         place.set_yticks([])
     legend.below(page, seen)

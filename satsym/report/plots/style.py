@@ -9,10 +9,11 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from satsym.report.look import SCREEN, Look
+from satsym.report.plots.sheets import HIGHEST, SHEETS, WIDTH, Sheet
 from satsym.report.results import files
 from satsym.report.said import say
 
@@ -64,14 +65,18 @@ ARROW: dict[str, Any] = {
     "zorder": 2.6,
 }
 
-MARGIN, CHARACTER = 1.3, 0.08
-"""Inches on a screen: beside a panel, for its ticks and its label; and of a character of a title, on average."""
-SMALLER = 0.75
-"""How many of a label there is room for where so many of a title fit."""
-WIDTH = 10.0
-"""Of a page, in inches."""
+MARGIN = 1.3
+"""Inches on a screen beside a panel, for its ticks and its label."""
+TITLE = 9.5
+"""Of the title of a panel, in points on a screen."""
+NARROWEST = 3.0
+"""Of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
+FEWEST = 12
+"""Letters of a line."""
+SHORTEST = 0.8
+"""Of the room above a panel, in inches on a screen."""
 DPI = 160
-_SCALED = tuple(
+_SCALED: tuple[Any, ...] = tuple(
     "font.size axes.labelsize axes.titlesize axes.titlepad xtick.labelsize ytick.labelsize legend.fontsize".split()
 )
 """Of what follows, what is in points."""
@@ -80,7 +85,7 @@ _RC: dict[Any, Any] = {
     "font.size": 10.5,
     "mathtext.fontset": "cm",
     "axes.labelsize": 11.0,
-    "axes.titlesize": 9.5,
+    "axes.titlesize": TITLE,
     "axes.titlecolor": "#555555",
     "axes.titlelocation": "left",
     "axes.titlepad": 5.0,
@@ -119,28 +124,12 @@ _RC: dict[Any, Any] = {
 }
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """What a size of pages means."""
-
-    width: float
-    """Of the widest page, in inches."""
-    letters: float
-    """Letters and lines, and heights, relative to those on a screen."""
-    across: int = 3
-    """Panels side by side, at most."""
-    highest: float = 40.0
-    """In inches."""
-
-
-_SHEETS = {
-    "screen": Sheet(WIDTH, 1.0),
-    "page": Sheet(7.0, 0.74),
-    "column": Sheet(3.5, 0.68, across=1),
-    "slide": Sheet(13.33, 1.3, highest=7.5),
-}
 _LOOK: ContextVar[Look] = ContextVar("look", default=SCREEN)
 """While a style is applied."""
+_LETTERS: ContextVar[float] = ContextVar("letters", default=1.0)
+"""Of the page that was begun last."""
+_BEGUN: WeakKeyDictionary[Figure, float] = WeakKeyDictionary()
+"""The letters of each page."""
 
 
 @contextmanager
@@ -155,7 +144,7 @@ def applied(look: Look = SCREEN) -> Iterator[None]:
 
     with matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC | {name: _RC[name] * _SHEETS[look.size].letters for name in _SCALED})
+        matplotlib.rcParams.update(_RC)
         # a title may be in any script; a box in its place is no news to whoever reads it
         warnings.filterwarnings("ignore", "Glyph .* missing from")
         before = _LOOK.set(look)
@@ -172,7 +161,7 @@ def with_titles() -> bool:
 
 def sheet() -> Sheet:
     """What the size of pages means that is asked for."""
-    return _SHEETS[_LOOK.get().size]
+    return SHEETS[_LOOK.get().size]
 
 
 def across(panels: int) -> int:
@@ -180,29 +169,71 @@ def across(panels: int) -> int:
     return min(panels, sheet().across)
 
 
+def columns(panels: int, wanted: int, row: float, rest: float = 1.2) -> int:
+    """How many panels to put side by side: so many as are wanted, more where the page cannot grow downwards.
+
+    Parameters
+    ----------
+    row, rest
+        Height of a row of panels, and of what is not panels, in inches on a screen.
+    """
+    asked, wanted = sheet(), across(wanted)
+    if asked.highest >= HIGHEST:
+        return wanted
+
+    def letters(columns: int) -> float:
+        tall, wide = (rest + row * -(-panels // columns)) / asked.highest, NARROWEST * columns / asked.width
+        return min(1.0 / tall, 1.0 / wide, asked.letters)
+
+    return max(range(min(wanted, panels), panels + 1), key=letters)
+
+
 def points(size: float) -> float:
     """The size of letters that have so many points on a screen."""
-    return size * sheet().letters
+    return size * _LETTERS.get()
 
 
-def characters(page: Figure, columns: float) -> int:
-    """How many of a title have room above a panel, where so many stand side by side."""
-    return int((page.get_figwidth() / sheet().letters / columns - MARGIN) / CHARACTER)
+def on_screen(page: Figure) -> float:
+    """How wide a page would be on a screen, in inches, for letters of the size that it has."""
+    return float(page.get_figwidth()) / _BEGUN[page]
+
+
+def room(page: Figure, columns: float) -> float:
+    """Inches on a screen above a panel, where so many stand side by side."""
+    return max(SHORTEST, on_screen(page) / columns - MARGIN)
+
+
+def length(text: str, size: float) -> float:
+    """Inches on a screen that a line of text takes, in letters of so many points there."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    formula = text.replace(r"\$", "").count("$") > 1
+    width, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size), ismath=formula)
+    return float(width) / 72.0
 
 
 def figure(width: float, height: float) -> Figure:
     """An empty figure that lays itself out; no pyplot, hence no window and no global state.
+
+    Where a page cannot be as high as it would have to be, letters are smaller.
 
     Parameters
     ----------
     width, height
         In inches on a screen.
     """
+    import matplotlib
     from matplotlib.figure import Figure
 
     asked = sheet()
-    size = min(width / WIDTH, 1.0) * asked.width, min(height * asked.letters, asked.highest)
-    return Figure(figsize=(asked.width if asked.across == 1 else size[0], size[1]), layout="constrained")
+    letters = min(asked.letters, asked.highest / height)
+    wide = asked.width if asked.across == 1 else min(width / WIDTH, 1.0) * asked.width
+    matplotlib.rcParams.update({name: _RC[name] * letters for name in _SCALED})
+    page = Figure(figsize=(wide, height * letters), layout="constrained")
+    _BEGUN[page] = letters
+    _LETTERS.set(letters)
+    return page
 
 
 def titled(title: str, width: float, height: float) -> Figure:
@@ -210,9 +241,9 @@ def titled(title: str, width: float, height: float) -> Figure:
     page = figure(width, height)
     if not with_titles():
         return page
-    room = int(9.8 * page.get_figwidth() / sheet().letters)
+    letters = int(9.8 * on_screen(page))
     page.suptitle(
-        textwrap.fill(say(title), room, max_lines=2, placeholder="\N{HORIZONTAL ELLIPSIS}"),
+        textwrap.fill(say(title), letters, max_lines=2, placeholder="\N{HORIZONTAL ELLIPSIS}"),
         x=0.012,
         ha="left",
         fontsize=points(11.5),
@@ -228,6 +259,7 @@ def finished(page: Figure) -> Figure:
 
     from satsym.report.plots.powers import WithPowers
 
+    _LETTERS.set(_BEGUN[page])
     for axes in page.axes:
         _fit(page, axes)
         for axis in (axes.xaxis, axes.yaxis):
@@ -244,17 +276,42 @@ def _fit(page: Figure, axes: Axes) -> None:
     place = axes.get_subplotspec()
     if place is None or axes.figure is not page:
         return
-    room = max(12, characters(page, place.get_gridspec().ncols / len(place.colspan)))
-    axes.set_xlabel(_lines(axes.get_xlabel(), int(SMALLER * room)))
+    wide = room(page, place.get_gridspec().ncols / len(place.colspan))
+    axes.set_xlabel(broken(axes.get_xlabel(), wide, _RC["axes.labelsize"]))
     if not axes.get_title(loc="right"):
-        axes.set_title(_lines(axes.get_title(loc="left"), room))
+        axes.set_title(broken(axes.get_title(loc="left"), wide, TITLE))
 
 
-def _lines(text: str, room: int) -> str:
-    """Formulas with spaces in them are left as they are, and what stands around them."""
+def broken(text: str, wide: float, size: float = TITLE, most: int | None = None) -> str:
+    """Text in lines that have room; what goes beyond the most of them is left out.
+
+    Formulas with spaces in them are left as they are, and what stands around them.
+
+    Parameters
+    ----------
+    wide
+        In inches on a screen.
+    size
+        Of its letters there, in points.
+    most
+        Lines, for text of a single line.
+    """
     if re.search(r"\$[^$ ]* [^$]*\$", text):
         return text
-    return "\n".join(textwrap.fill(line, room, break_long_words=False) for line in text.splitlines())
+    return "\n".join(_lines(line, wide, size, most) for line in text.splitlines())
+
+
+def _lines(line: str, wide: float, size: float, most: int | None) -> str:
+    """A line, or several where it is too long; formulas are longer as text than they look."""
+    long = length(line, size)
+    if long <= wide:
+        return line
+    dots, letters = "\N{HORIZONTAL ELLIPSIS}", max(FEWEST, int(len(line) * wide / long))
+    while True:
+        filled = textwrap.fill(line, letters, break_long_words=False, max_lines=most, placeholder=dots)
+        if letters <= FEWEST or all(length(each, size) <= wide for each in filled.splitlines()):
+            return filled
+        letters -= 1
 
 
 def contents(name: str, page: Figure) -> dict[str, files.Content]:

@@ -213,18 +213,19 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     columns = {labels[name]: values for name, values in found.items()}
     rows = counted(said["rows"], "row")
     title = say("<name>: <each> for <rows>", name=said["instance"], each=said["each"], rows=rows)
+    given = {labels[name]: columns.pop(labels[name]) for name in varied}
     return Numbers(
         title=title,
-        varied={labels[name]: columns.pop(labels[name]) for name in varied},
-        quantities=distinguishing(columns),
+        varied=given,
+        quantities=distinguishing(columns, given),
         status=status.tolist(),
         shape=tuple(said["grid"]) if said["grid"] else None,
         branch=branch,
     )
 
 
-def distinguishing(quantities: Mapping[str, Array]) -> dict[str, Array]:
-    """The first of them that differ, from row to row and from each other, by more than rounding; if none, the first."""
+def distinguishing(quantities: Mapping[str, Array], varied: Mapping[str, Array]) -> dict[str, Array]:
+    """The first of them that differ, from row to row, from each other and from what varies; if none do, the first."""
 
     def varies(name: str, values: Array) -> bool:
         known = values[np.isfinite(values)]
@@ -236,15 +237,17 @@ def distinguishing(quantities: Mapping[str, Array]) -> dict[str, Array]:
 
     found = dict[str, Array]()
     for name, values in quantities.items():
-        if varies(name, values) and not any(_same(values, before) for before in found.values()):
+        before = (*varied.values(), *found.values())
+        if varies(name, values) and not any(_same(values, other) for other in before):
             found[name] = values
     names = list(found or quantities)[: MOST_DRAWN if found else 1]
     return {name: quantities[name] for name in names}
 
 
 def _same(values: Array, others: Array) -> bool:
-    """Whether two columns are one but for rounding, such as the duration and what it costs."""
-    return bool(np.allclose(values, others, rtol=ROUNDING, atol=0.0, equal_nan=True))
+    """Whether a column is another one but for rounding, such as the duration what it costs, where it has numbers."""
+    known = np.isfinite(values)
+    return bool(np.allclose(values[known], others[known], rtol=ROUNDING, atol=0.0))
 
 
 def _case(study: Study, number: int, values: Sequence[float]) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, formula, labelled, length_scale, length_unit
-from satsym.report.plots import curves, legend, series, style
+from satsym.report.plots import coordinates, curves, legend, series, style
 from satsym.report.plots.reading import BURIED, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View, views
@@ -41,13 +42,72 @@ class Orbit:
     free_relative: curves.Relative | None
     ends_there: bool
     """Whether the end is asked for, on the reference."""
+    central: bool = True
+    """Whether the motion is about the origin."""
+    by_states: bool = False
+    """Whether states tell where it is, and no position vector."""
+    target: Array | None = None
+    """Where it has to end, shape (2 or 3, 1)."""
 
     @classmethod
     def of(cls, scene: Scene) -> Orbit | None:
-        """The curves of a scene; nothing if the model has no position vector with two or three components."""
-        position = scene.spec.position
-        if len(position) not in (2, 3) or not scene.drawable:
+        """The curves of a scene; nothing if neither the model nor its states tell a place in a plane or in space."""
+        if not scene.drawable:
             return None
+        return cls._of_position(scene) if len(scene.spec.position) in (2, 3) else cls._of_states(scene)
+
+    @classmethod
+    def _of_states(cls, scene: Scene) -> Orbit | None:
+        """A path whose coordinates are states."""
+        states = scene.spec.states
+        if (about := coordinates.polar(states)) is not None:
+            return cls._of_polar(scene, *about)
+        places = list(coordinates.places(states, scene.rated))
+        if not places:
+            return None
+        ends = [series.target(scene, i) for i in places]
+        return cls(
+            states[places[0]].unit,
+            tuple(formula(states[i].latex, states[i].symbol) for i in places),
+            scene.x[places],
+            None,
+            None if scene.free is None else scene.free[places],
+            None,
+            None,
+            None,
+            False,
+            central=False,
+            by_states=True,
+            target=None if any(end is None for end in ends) else np.array([ends], dtype=float).T,
+        )
+
+    @classmethod
+    def _of_polar(cls, scene: Scene, distance: int, angle: int) -> Orbit:
+        """A path by a distance and an angle, which are states."""
+
+        def path(x: Array) -> Array:
+            return np.array([x[distance] * np.cos(x[angle]), x[distance] * np.sin(x[angle])])
+
+        given = [series.target(scene, i) for i in (distance, angle)]
+        r, theta = (formula(scene.spec.states[i].latex, scene.spec.states[i].symbol) for i in (distance, angle))
+        return cls(
+            scene.spec.states[distance].unit,
+            (rf"{r}$\,\cos\,${theta}", rf"{r}$\,\sin\,${theta}"),
+            path(scene.x),
+            None if scene.reference is None else path(scene.reference),
+            None if scene.free is None else path(scene.free),
+            None,
+            None,
+            None,
+            False,
+            by_states=True,
+            target=_point(*given),
+        )
+
+    @classmethod
+    def _of_position(cls, scene: Scene) -> Orbit:
+        """A path by the position vector of the model."""
+        position = scene.spec.position
         model, p = scene.instance.model, scene.instance.parameters
 
         def path(x: Array | None) -> Array | None:
@@ -62,7 +122,7 @@ class Orbit:
             own,
             reference,
             free,
-            curves.thrust(model, scene.nodes, scene.x, scene.u, p) if scene.free is not None else None,
+            curves.thrust(model, scene.nodes, scene.x, scene.u, p) if not scene.coasting else None,
             seen if _near(seen, reference) else None,
             curves.relative(free, reference) if free is not None and reference is not None else None,
             _on_reference(scene),
@@ -82,9 +142,10 @@ def entries(orbit: Orbit) -> list[legend.Entry]:
     found = [(arrow, say("thrust"))] if orbit.thrust is not None else []
     found.append((legend.line(color=style.STATE, **style.START), say("start")))
     found.append((legend.line(color=style.STATE, **style.END), say("end")))
-    if orbit.ends_there and orbit.relative is not None:
+    if orbit.target is not None or (orbit.ends_there and orbit.relative is not None):
         found.append((legend.line(**style.TARGET), say("final condition")))
-    found.append((legend.line(**style.ORIGIN), say("origin")))
+    if orbit.central:
+        found.append((legend.line(**style.ORIGIN), say("origin")))
     return found
 
 
@@ -92,7 +153,8 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     """Draw the path in a plane, at equal scales."""
     seen, drawn = view.axes, [c for c in (orbit.reference, orbit.free) if c is not None]
     curve, others = seen @ orbit.path, [seen @ c for c in drawn]
-    low, high = box(curve, [*others, np.zeros((2, 1))])
+    fixed = [np.zeros((2, 1))] if orbit.central else [seen @ orbit.target] if orbit.target is not None else []
+    low, high = box(curve, [*others, *fixed])
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     names = list(view.labels)
     datum: Array = np.zeros((2, 1))
@@ -116,8 +178,10 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     if orbit.thrust is not None:
         _arrows(axes, curve * scale, seen @ orbit.thrust, LONGEST * 2.0 * half * scale)
     axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
-    if not datum.any():
+    if orbit.central and not datum.any():
         axes.plot([0.0], [0.0], **style.ORIGIN)
+    if orbit.target is not None:
+        axes.plot(*((seen @ orbit.target - datum) * scale), **style.TARGET)
     _ends(axes, *(curve * scale))
     axes.set_xlabel(labelled(names[0], measure.unit))
     axes.set_ylabel(labelled(names[1], measure.unit))
@@ -155,6 +219,13 @@ def _on_reference(scene: Scene) -> bool:
         return False
     given = [(v, series.target(scene, i)) for i, v in enumerate(scene.reference[:, -1])]
     return all(value is None or abs(value - v) <= ROUNDING * max(1.0, abs(v)) for v, value in given)
+
+
+def _point(distance: float | None, angle: float | None) -> Array | None:
+    """A place in polar coordinates."""
+    if distance is None or angle is None:
+        return None
+    return distance * np.array([[math.cos(angle)], [math.sin(angle)]])
 
 
 def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
