@@ -71,6 +71,8 @@ TITLE = 9.5
 """Of the title of a panel, in points on a screen."""
 NARROWEST = 3.0
 """Of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
+HINTED = 1.06
+"""Letters on a coarse grid of pixels are wider than their outlines by up to this factor."""
 FEWEST = 12
 """Letters of a line."""
 SHORTEST = 0.8
@@ -210,7 +212,7 @@ def length(text: str, size: float) -> float:
 
     formula = text.replace(r"\$", "").count("$") > 1
     width, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size), ismath=formula)
-    return float(width) / 72.0
+    return HINTED * float(width) / 72.0
 
 
 def figure(width: float, height: float) -> Figure:
