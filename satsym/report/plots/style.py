@@ -71,7 +71,7 @@ TITLE = 9.5
 """Of the title of a panel, in points on a screen."""
 NARROWEST = 3.0
 """Of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
-HINTED = 1.06
+HINTED = 1.1
 """Letters on a coarse grid of pixels are wider than their outlines by up to this factor."""
 FEWEST = 12
 """Letters of a line."""
