@@ -28,6 +28,8 @@ VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
 """As it was asked for, in one run."""
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
+TENTHS, SHORT, LONG = 10, 5.0, 60.0
+"""Of work whose share is known: how many lines it has where these stay, the least and the most seconds between two."""
 
 
 def emit(text: str) -> None:
@@ -137,7 +139,7 @@ _SPELT = str.maketrans({"\N{PLUS-MINUS SIGN}": "+-", "\N{HORIZONTAL ELLIPSIS}": 
 
 
 class Live:
-    """One line on stderr that is written over and over; nothing at all where stderr is no terminal.
+    """One line on stderr that is written over and over; where stderr is no terminal nothing, but of long studies.
 
     Who wants to hear everything has a line for each state, wherever stderr goes.
     """
@@ -145,12 +147,30 @@ class Live:
     def __init__(self) -> None:
         self._kept = VOICE.get() is Voice.VERBOSE
         self._shown = not self._kept and VOICE.get() is Voice.NORMAL and _is_terminal(sys.stderr)
-        self._due = 0.0
+        self._due, self._told, self._tenth = 0.0, time.monotonic(), 0
 
     def show(self, text: str) -> None:
         """Replace the line, unless it was replaced a moment ago."""
         if time.monotonic() >= self._due:
             self.replace(text)
+
+    def report(self, text: str, share: float) -> None:
+        """The same of work of which a share is done; where nobody sees a line change, now and then a line that stays.
+
+        Parameters
+        ----------
+        share
+            From 0 to 1; each tenth has a line, unless the last one was written a moment ago.
+        """
+        if self._shown or self._kept or VOICE.get() is not Voice.NORMAL:
+            self.show(text)
+            return
+        now = time.monotonic()
+        waited, further = now - self._told, int(TENTHS * share) > self._tenth
+        if waited >= LONG or (further and waited >= SHORT):
+            self._told, self._tenth = now, int(TENTHS * share)
+            with unless_unwritable():
+                _write(sys.stderr, f"{text}\n")
 
     def replace(self, text: str) -> None:
         """Replace the line at once, for what is said now may stand for long."""

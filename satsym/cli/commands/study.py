@@ -115,7 +115,7 @@ def study(
                 made,
                 count,
                 resume=resume,
-                watch=lambda advance: line.show(progress_line(advance)),
+                watch=lambda advance: line.report(progress_line(advance), advance.done / max(1, advance.total)),
             )
         except KeyboardInterrupt as stop:
             stop.add_note("--resume goes on with what is done")

@@ -167,7 +167,7 @@ def study_object(merged: Merged) -> dict[str, Any]:
             continue
         if isinstance(verdict := row.numbers.get(Column.VERDICT), str):
             verdicts[verdict] += 1
-        if isinstance(cost := row.numbers.get(Column.OBJECTIVE), float):
+        if isinstance(cost := row.numbers.get(Column.OBJECTIVE), float) and np.isfinite(cost):
             worst = sorted([*worst, (sense * cost, number, values)], reverse=True, key=lambda one: one[0])[:SHOWN]
     status = Status.CONVERGED if statuses[Status.CONVERGED.value] else Status.NOT_CONVERGED
     return with_settings(head("study", spec, study.instance, status), study.settings) | {

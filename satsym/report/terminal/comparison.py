@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.objects import file_of, head, plain
 from satsym.report.results.unit_names import times, units
 from satsym.report.said import each, message, say
-from satsym.report.terminal.solution import joined
+from satsym.report.terminal.solution import ROUNDING, joined
 from satsym.report.terminal.table import figure, table, wrapped
 from satsym.status import Status
 
@@ -59,10 +59,9 @@ def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[
 def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
     """The metrics side by side, what is to be said of each case, and a range if there is one."""
     names = [case.instance.name for case in cases]
-    rows = [
-        (key, *("" if value is None else figure(value, 8) for value in values), unit_of(cases, key))
-        for key, values in metrics_of(cases).items()
-    ]
+    found = metrics_of(cases)
+    shown = {key: ["" if v is None else figure(v, 8) for v in _without_rounding(key, found)] for key in found}
+    rows = [(key, *values, unit_of(cases, key)) for key, values in shown.items()]
     said = [
         (
             case.instance.name,
@@ -77,6 +76,16 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
         table([each("instance", "how", "certificate", "message"), *said]),
     ]
     return joined([*blocks, _range(cases[0], over)] if over else blocks)
+
+
+def _without_rounding(key: str, found: Mapping[str, Sequence[float | None]]) -> list[float | None]:
+    """Values of a metric; final ones are zero where they are nothing beside the peak of the same."""
+    name, _, kind = key.rpartition("_")
+    peaks = found.get(f"{name}_peak") if kind == "final" else None
+    return [
+        0.0 if value and peak and abs(value) <= ROUNDING * abs(peak) else value
+        for value, peak in zip(found[key], peaks or [None] * len(found[key]), strict=True)
+    ]
 
 
 def _range(case: Case, over: Range) -> list[str]:

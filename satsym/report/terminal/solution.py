@@ -212,7 +212,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
 def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[tuple[str, ...]]:
     """Below a header, a row for each state: where it starts and ends, where it was to end, and its costate."""
     spec = instance.model.spec
-    reference = _reference(instance, times)
+    reference, worth = _reference(instance, times), [0.0] * len(x) if lam is None else _worth(x, lam)
     rows: list[tuple[str, ...]] = [
         each("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
     ]
@@ -228,7 +228,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
                 "" if reference is None else figure(reference[i]),
                 off,
                 "" if state.unit == "1" else state.unit,
-                "" if lam is None else figure(_without_rounding(_first(lam[i]), lam[i]), 10),
+                "" if lam is None else figure(_without_rounding(_first(lam[i]), lam[i], worth[i]), 10),
                 "" if lam is None or (by := cost_per(state.unit, spec)) == "1" else by,
             )
         )
@@ -291,13 +291,19 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
 
 
 def _switching(solution: Solution, unit: str) -> list[str]:
-    rows = []
+    """Switching times, once of all controls that have the same: those of a vector switch together."""
+    together: dict[tuple[float, ...], list[str]] = {}
     for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
+        together.setdefault(tuple(times), []).append(control)
+    rows = []
+    for times, controls in together.items():
         if times:
             listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
             if len(times) > SHOWN_TIMES:
                 listed = say("<listed> and <number> more", listed=listed, number=len(times) - SHOWN_TIMES)
-            rows.append((say("switching times:"), control, say("at <times>", times=f"{listed} {unit}".rstrip())))
+            rows.append(
+                (say("switching times:"), ", ".join(controls), say("at <times>", times=f"{listed} {unit}".rstrip()))
+            )
     return table([("", "", ""), *rows])[1:] if rows else []
 
 
@@ -313,9 +319,16 @@ def _events(solution: Solution, unit: str) -> list[str]:
     return table([(head, "", ""), *rows]) if rows else []
 
 
-def _without_rounding(value: float, row: Array) -> float:
-    """A value along the way; zero where it is nothing beside the largest one."""
-    return 0.0 if abs(value) <= ROUNDING * np.abs(row).max(initial=0.0) else value
+def _worth(x: Array, lam: Array) -> list[float]:
+    """How large each costate would be if its state were worth as much as the one that is worth most."""
+    widths = [float(np.abs(row).max(initial=0.0)) or 1.0 for row in x]
+    most = max((width * float(np.abs(row).max(initial=0.0)) for width, row in zip(widths, lam, strict=True)), default=0)
+    return [most / width for width in widths]
+
+
+def _without_rounding(value: float, row: Array, size: float = 0.0) -> float:
+    """A value along the way; zero where it is nothing beside the largest one, or beside what counts as large."""
+    return 0.0 if abs(value) <= ROUNDING * max(float(np.abs(row).max(initial=0.0)), size) else value
 
 
 def _first(row: Array) -> float:

@@ -26,7 +26,10 @@ class Reason(Enum):
     PATH_ENDS = "the {} ends after {:.0%}"
     DURATION_ENDS = "lengthening the duration ends at {:.4g} of {:.4g}"
     BLOCKED = "relaxed bounds could be tightened only {:.0%} of the way"
-    UNSETTLED = "the times at which bounds are met do not settle"
+    UNSETTLED = (
+        "the times at which bounds are met do not settle: "
+        "try wider bounds, another tf, or --continue from an easier problem"
+    )
     INACCURATE = "the estimated error stays at {:.0e} on {} intervals"
     COSTLY = "keeping the bounds costs more and more without end"
 
