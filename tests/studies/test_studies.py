@@ -380,5 +380,5 @@ def test_what_is_rounding_or_the_same_in_each_row_is_not_drawn() -> None:
         "none": rounding * math.nan,
     }
     assert list(distinguishing(given, {})) == ["objective"]
-    assert list(distinguishing({"t_final": steady, "x_final.v": rounding})) == ["t_final"]
-    assert list(distinguishing({name: np.arange(3.0) ** k for k, name in enumerate("abcd", 1)})) == ["a", "b", "c"]
+    assert list(distinguishing({"t_final": steady, "x_final.v": rounding}, {})) == ["t_final"]
+    assert list(distinguishing({name: np.arange(3.0) ** k for k, name in enumerate("abcd", 1)}, {})) == ["a", "b", "c"]
