@@ -89,7 +89,7 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     return {key: vars(module)[key] for key in names}
 
 
-ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many")
+ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many", "combine")
 """Functions that are called from outside, of which machine code is kept with all that they call."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -29,23 +30,34 @@ class Condensing(Protocol):
         Gaps of shape (2n, N, M) are added to the last column at the end of each segment.
         """
 
+    def combine(self, columns: Array, shares: Array, found: Array) -> None:
+        """Add shares (k, M) of the first k columns at all nodes, shape (2n, c, N+1, M), to others, (2n, N+1, M)."""
 
+
+@lru_cache(maxsize=16)
 def condensing(states: int, compiled: bool) -> Condensing:
     """For so many states."""
-    return _Compiled(2 * states) if compiled else _on_arrays
+    return _Compiled(2 * states) if compiled else _OnArrays()
 
 
-def _on_arrays(transition: Array, start: Array, gaps: Array | None) -> Array:
-    found = np.empty((*start.shape[:2], transition.shape[2] + 1, start.shape[2]))
-    found[:, :, 0] = start
-    for s in range(transition.shape[2]):
-        before, after = found[:, :, s], found[:, :, s + 1]
-        np.multiply(transition[:, 0, None, s], before[0], out=after)
-        for k in range(1, len(before)):
-            after += transition[:, k, None, s] * before[k]
-        if gaps is not None:
-            after[:, -1] += gaps[:, s]
-    return found
+class _OnArrays:
+    """By NumPy."""
+
+    def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
+        found = np.empty((*start.shape[:2], transition.shape[2] + 1, start.shape[2]))
+        found[:, :, 0] = start
+        for s in range(transition.shape[2]):
+            before, after = found[:, :, s], found[:, :, s + 1]
+            np.multiply(transition[:, 0, None, s], before[0], out=after)
+            for k in range(1, len(before)):
+                after += transition[:, k, None, s] * before[k]
+            if gaps is not None:
+                after[:, -1] += gaps[:, s]
+        return found
+
+    def combine(self, columns: Array, shares: Array, found: Array) -> None:
+        for k, share in enumerate(shares):
+            found += columns[:, k] * share
 
 
 class _Compiled:
@@ -53,9 +65,11 @@ class _Compiled:
 
     def __init__(self, rows: int) -> None:
         name = f"condensing_{rows}"
-        self._function = compiling.compiled(name, text(rows))["many"]
+        functions = compiling.compiled(name, text(rows))
+        self._function, self._combine = functions["many"], functions["combine"]
         with compiling.alone(name):  # made or read by a call with no problems
-            self(np.zeros((rows, rows, 1, 0)), np.zeros((rows, 1, 0)), None)
+            found = self(np.zeros((rows, rows, 1, 0)), np.zeros((rows, 1, 0)), None)
+            self.combine(found, np.zeros((1, 0)), found[:, 0].copy())
 
     def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
         rows, columns = start.shape[:2]
@@ -70,6 +84,11 @@ class _Compiled:
             found,
         )
         return found.reshape(rows, columns, segments + 1, count)
+
+    def combine(self, columns: Array, shares: Array, found: Array) -> None:
+        rows, count = columns.shape[:2]
+        given = np.ascontiguousarray(columns).reshape(rows * count, *found.shape[1:])
+        self._combine(given, count, shares, found)
 
 
 def text(rows: int) -> str:
@@ -111,5 +130,13 @@ def text(rows: int) -> str:
         *indented(step),
     ]
     body = [f"w = np.zeros({own.size})", *over_blocks("start.shape[1]", block)]
+    adding = [
+        "for i in range(len(found)):",
+        "    for s in range(found.shape[1]):",
+        "        for k in range(len(shares)):",
+        "            for m in range(found.shape[2]):",
+        "                found[i, s, m] += given[i * columns + k, s, m] * shares[k, m]",
+    ]
     lines = [*compiling.HEAD, *function("many(transition, start, gaps, columns, found)", body)]
+    lines += function("combine(given, columns, shares, found)", adding)
     return "\n".join(lines) + "\n"

@@ -146,10 +146,15 @@ class Many:
         z
             Nodes, shape (2n, N+1, M).
         """
-        columns = np.ascontiguousarray(z[:, :-1]).reshape(len(z), -1)
+        begins, lasting, given = self._segments
+        return begins, np.ascontiguousarray(z[:, :-1]).reshape(len(z), -1), lasting, given
+
+    @cached_property
+    def _segments(self) -> tuple[Array, Array, Array]:
+        """When they begin, how long they last, and what is given in each."""
         given = np.ascontiguousarray(np.tile(self.given, len(self.times) - 1))
         begins, ends = self.at_nodes(slice(None, -1)), self.at_nodes(slice(1, None))
-        return begins, columns, ends - begins, given
+        return begins, ends - begins, given
 
 
 def _ends(instances: Sequence[Instance], parameters: Array) -> Array:

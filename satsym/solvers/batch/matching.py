@@ -23,7 +23,7 @@ class Matching:
     transition: Array
     """Ends of segments by their beginnings, shape (2n, 2n, N, M)."""
     field: Array
-    """Nodes by initial costates in their units, shape (2n, n, N+1, M)."""
+    """Nodes by initial costates in their units, and perhaps by something else, shape (2n, n or more, N+1, M)."""
     inverse: Array
     """Initial costates by what is missing at the end, in units, shape (n, n, M); not finite where nothing decides."""
     units: Array
@@ -61,9 +61,7 @@ class Matching:
     def _closed(self, found: Array, missing: Array) -> Array:
         """Corrections without initial costates, with those that are missing for the end, in place."""
         wanted = (missing - found[: len(missing), -1]) / self.units[: len(missing), None]
-        costates = (self.inverse * wanted).sum(axis=1)
-        for column, costate in enumerate(costates):
-            found += self.field[:, column] * costate
+        self.condense.combine(self.field, (self.inverse * wanted).sum(axis=1), found)
         return found
 
 
@@ -73,8 +71,8 @@ def corrected(
     """What :meth:`Matching.correction` says where it is asked for once, with one look at the transitions."""
     begun = np.concatenate([start, np.zeros_like(start)])
     found = condense(transition, np.concatenate([_unity(units, transition.shape[3]), begun[:, None]], axis=1), gaps)
-    field = found[:, :-1]
-    return Matching(transition, field, _inverse(field, units), units, condense)._closed(found[:, -1], missing)
+    inverse = _inverse(found[:, :-1], units)
+    return Matching(transition, found, inverse, units, condense)._closed(found[:, -1].copy(), missing)
 
 
 def _unity(units: Array, count: int) -> Array:

@@ -169,8 +169,8 @@ def _missing(many: Many, z: Array, reached: Array) -> tuple[Array, Array, Array]
 
 def _size(many: Many, step: Array, z: Array) -> Array:
     """The largest change, states relative to their size (at least one), costates to theirs, shape (M,)."""
-    n, units = many.states, many.units[:, None, None]
-    moved, there = (np.abs(rows / units).max(axis=1) for rows in (step, z))
+    n, units = many.states, many.units[:, None]
+    moved, there = (np.abs(rows).max(axis=1) / units for rows in (step, z))
     states = moved[:n].max(axis=0) / np.maximum(there[:n].max(axis=0), 1.0)
     costates = moved[n:].max(axis=0) / np.maximum(there[n:].max(axis=0), SMALL)
     found = np.maximum(states, costates)
