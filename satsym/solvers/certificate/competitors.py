@@ -23,6 +23,7 @@ from satsym.solvers.certificate.directed import led
 from satsym.solvers.certificate.drawn_controls import drawable, drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.seeded import drawn_extremals
+from satsym.solvers.certificate.seeded.answer import Answer
 from satsym.solvers.certificate.seeded.searches import ROUGH, Search, accurate, at_its_duration, bounded, from_path
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -74,8 +75,8 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     seed
         Of starts that are drawn: another one where a solution was found from such a start.
     """
-    kinds, missing, spec = [], [], solution.instance.model.spec
-    for kind, attempts in _attempts(solution, seed):
+    kinds, missing, spec, answer = [], [], solution.instance.model.spec, Answer(solution)
+    for kind, attempts in _attempts(solution, answer, seed):
         smooth = kind is Kind.STARTS and not (spec.directional or spec.stationary)
         activity.tell(f"certificate: comparing with {kind.value} ...")
         found = _tried(solution, kind, attempts, deadline)
@@ -88,7 +89,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
             found = found if more is None else found.joined(more)
         several = found.several or seed > 0  # what led to the solution costs more
         if smooth and several and found.margin >= 0.0 and not found.interrupted:
-            more = _tried(solution, kind, _from_more(solution, seed), deadline, MORE_WORK)
+            more = _tried(solution, kind, _from_more(solution, answer, seed), deadline, MORE_WORK)
             found = found if more is None else found.joined(more)
         if kind is Kind.STARTS and found.margin >= 0.0:
             far = _tried(solution, kind, _from_controls(solution, seed), deadline)
@@ -164,7 +165,7 @@ def _tried(
     return replace(summary, cheapest=cheapest, several=several)
 
 
-def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
+def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
     """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
     from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.symmetry import rotation, rotations
@@ -178,7 +179,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
             yield kind, [_rough(search, cost) for search in searches]
         return
-    yield Kind.STARTS, [from_path(problem, path, 1.0, cost) for path in _bent(problem, rng)]
+    yield Kind.STARTS, [from_path(problem, path, 1.0, cost, answer=answer) for path in _bent(problem, rng)]
     if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
         soft = [from_path(problem, path, softness, cost) for path, softness in starts]
@@ -212,10 +213,11 @@ def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: floa
     return attempt
 
 
-def _from_more(solution: Solution, seed: int) -> list[Search]:
+def _from_more(solution: Solution, answer: Answer, seed: int) -> list[Search]:
     """The minima within the bounds to which further paths lead that are drawn."""
     problem, rng = at_its_duration(solution), np.random.default_rng((seed, MORE))
-    return [from_path(problem, path, 1.0, solution.objective) for path in _bent(problem, rng, MORE)]
+    paths = _bent(problem, rng, MORE)
+    return [from_path(problem, path, 1.0, solution.objective, answer=answer) for path in paths]
 
 
 def _from_controls(solution: Solution, seed: int) -> list[Search]:

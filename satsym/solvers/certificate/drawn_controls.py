@@ -13,6 +13,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
+from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.simulations import Simulations, simulations_of
 from satsym.solvers.simulation.together import together
@@ -62,8 +63,8 @@ def drawable(solution: Solution) -> bool:
 
 def _simulated(solution: Solution) -> Simulations | None:
     spec = solution.instance.model.spec
-    found = None if spec.in_arcs or spec.multipliers else simulations_of(solution)
-    return None if found is None or found.rows.size else found
+    tied = spec.in_arcs or spec.multipliers or fixed_states(solution.instance).any()
+    return None if tied else simulations_of(solution)
 
 
 def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:

@@ -9,6 +9,7 @@ from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
+from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -32,14 +33,28 @@ FINISHING, MESHES = 25, 3
 
 
 def from_path(
-    problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int = STRAIGHT_THROUGH
+    problem: TwoPoint,
+    path: Callable[[Array], Array],
+    limits: Limits,
+    most: int = STRAIGHT_THROUGH,
+    arrived: Callable[[Curve], bool] | None = None,
 ) -> Attempt:
-    """Minimise from a path of states, shape (n, M) for M times; the mesh is laid anew as the curve takes shape."""
+    """Minimise from a path of states; the mesh is laid anew as the curve takes shape.
+
+    Parameters
+    ----------
+    path
+        Shape (n, M) for M times.
+    most
+        Steps.
+    arrived
+        Whether a curve leads to what is known, which then ends the search.
+    """
     curve = paths.curve(problem, path)
     steps, hard, tolerance = 0, False, ROUGHLY
     while True:
         system = System(problem, curve.mesh, STAGES)
-        found = minimise(system, curve, limits, tolerance, max(most - steps, 1), meshes.COARSEST)
+        found = minimise(system, curve, limits, tolerance, max(most - steps, 1), meshes.COARSEST, arrived)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
         extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)

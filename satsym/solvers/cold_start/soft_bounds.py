@@ -36,7 +36,12 @@ BLOCKED = 5.0
 
 
 def within_bounds(
-    problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0, most: int = TRIED
+    problem: TwoPoint,
+    path: Callable[[Array], Array],
+    limits: Limits,
+    softness: float = 1.0,
+    most: int = TRIED,
+    arrived: Callable[[Curve], bool] | None = None,
 ) -> Attempt:
     """The extremal within the bounds to which a path of states leads, its mesh with nodes where these are met.
 
@@ -50,9 +55,11 @@ def within_bounds(
         Of the first problem: one for that without bounds.
     most
         Steps of its minimisation.
+    arrived
+        Whether a curve leads to an extremal that is known, which then ends the search.
     """
     softened = problem.softened(softness)
-    first = finished(softened, from_path(softened, path, limits, most), limits)
+    first = finished(softened, from_path(softened, path, limits, most, arrived), limits)
     if not first.minimum:
         return first
     if not first.curve.in_domain(problem.positive):

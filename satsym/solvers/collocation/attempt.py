@@ -16,6 +16,7 @@ class Reason(Enum):
     SADDLE = "saddle"
     EXTREMAL = "extremal"
     """Nobody asked whether it is a minimum."""
+    KNOWN = "led to what is known"
     OUTGROWN = "the curve outgrew its mesh"
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"

@@ -12,6 +12,7 @@ refusing good steps.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,6 +54,7 @@ def minimise(
     tolerance: float = 1e-7,
     most: int = 80,
     coarsest: float = float("inf"),
+    arrived: Callable[[Curve], bool] | None = None,
 ) -> Attempt:
     """Minimise the cost from a curve without costates, over all curves that solve the problem.
 
@@ -70,6 +72,8 @@ def minimise(
     coarsest
         Largest angle by which the motion may turn in one interval. A mesh that is too coarse has minima that the
         problem does not have, so the minimisation stops when its curve outgrows the mesh.
+    arrived
+        Whether a curve leads to what is known, where it stops too.
     """
     n, problem, curve = system.problem.states, system.problem, start
     residual, cost = system.residual(curve), system.cost(curve)
@@ -106,6 +110,8 @@ def minimise(
         if found is None:
             return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
         curve, residual, cost, violated = found.curve, found.residual, found.cost, found.violated
+        if arrived and arrived(curve):
+            return Attempt(curve, Reason.KNOWN, iteration + 1, cost)
         fraction, halved = found.fraction, found.halved
         limits.spend(int(curve.flat.shape[1] * -np.log2(fraction)) if halved else 0)
         hard = hard or halved

@@ -12,8 +12,10 @@ from satsym.solvers.certificate.comparison import SAME, Competitor
 from satsym.solvers.iteration import Limits
 
 if TYPE_CHECKING:
+    from satsym.solvers.certificate.seeded.answer import Answer
     from satsym.solvers.collocation.attempt import Attempt
     from satsym.solvers.collocation.curve import Curve
+    from satsym.solvers.collocation.linearised import Linearised
     from satsym.solvers.collocation.problem import TwoPoint
 
 ROUGH = 1e-2
@@ -32,14 +34,36 @@ def at_its_duration(solution: Solution) -> TwoPoint:
 
 
 def from_path(
-    problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float, most: int | None = None
+    problem: TwoPoint,
+    path: Callable[[Any], Any],
+    softness: float,
+    cost: float,
+    most: int | None = None,
+    answer: Answer | None = None,
 ) -> Search:
-    """The minimum within the bounds to which a path of states leads."""
+    """The minimum within the bounds to which a path of states leads.
+
+    Parameters
+    ----------
+    softness
+        Of the bounds at first.
+    cost
+        That of the solution.
+    most
+        Steps of the minimisation.
+    answer
+        The solution, of the same problem: a search that is led to it need not find it once more.
+    """
     from satsym.solvers.cold_start.soft_bounds import TRIED, within_bounds
+    from satsym.solvers.collocation.attempt import Reason
 
     def attempt(limits: Limits) -> Competitor | None:
-        found = within_bounds(problem, path, limits, softness, most or TRIED)
-        return accurate(problem, found.curve, cost) if found.solved else None
+        known = answer.near if answer and softness == 1.0 else None
+        found = within_bounds(problem, path, limits, softness, most or TRIED, known.leads if known else None)
+        if known and found.reason is Reason.KNOWN:
+            return Competitor(known.system.problem, known.curve, cost)
+        at_hand = None if problem.control_set.bounded else found.linearised
+        return accurate(problem, found.curve, cost, at_hand) if found.solved else None
 
     return attempt
 
@@ -57,8 +81,14 @@ def bounded(problem: TwoPoint, found: Attempt, cost: float, limits: Limits) -> C
     return accurate(problem, inside.curve, cost) if inside.solved else None
 
 
-def accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
-    """A minimum with its cost, as rough as its mesh where it clearly exceeds another cost."""
+def accurate(problem: TwoPoint, curve: Curve, cost: float, known: Linearised | None = None) -> Competitor | None:
+    """A minimum with its cost, as rough as its mesh where it clearly exceeds another cost.
+
+    Parameters
+    ----------
+    known
+        The linearised equations there, if they are at hand and no bound is met.
+    """
     from satsym.solvers.collocation.accuracy.refinement import refine
     from satsym.solvers.collocation.continuation import kept
     from satsym.solvers.collocation.system import System
@@ -66,7 +96,7 @@ def accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
     rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
     if rough > cost + ROUGH * abs(cost):
         return Competitor(problem, curve, rough)
-    refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
+    refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve), known=known)
     if not refined.solved or not refined.curve.in_domain(problem.positive):
         return None
     return Competitor(problem, refined.curve, refined.cost * problem.scale.cost)
