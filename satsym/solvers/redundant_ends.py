@@ -125,10 +125,13 @@ def _shares(count: int) -> Array:
 
 def _end(instance: Instance, fixed: Array) -> Array:
     """A final state as it is asked for, and with what is free somewhere off the start."""
-    start = np.array(instance.initial)
-    off = start + np.where(start != 0.0, np.abs(start), 1.0) * _shares(len(start))
-    names = instance.model.spec.state_names
-    return np.array([float(instance.final[name]) if fixed[i] else off[i] for i, name in enumerate(names)])
+    start, names = np.array(instance.initial), instance.model.spec.state_names
+    off = curve = start + np.where(start != 0.0, np.abs(start), 1.0) * _shares(len(start))
+    referred = [instance.final.get(name) == "reference" for name in names]
+    if any(referred) and instance.tf is not None:
+        curve = np.array(instance.model.reference(instance.tf, instance.parameters))
+    stated = [float(instance.final[name]) if fixed[i] else off[i] for i, name in enumerate(names)]
+    return np.where(referred, curve, stated)
 
 
 def _sizes(instance: Instance, end: Array) -> Array:
@@ -148,8 +151,15 @@ def _spans_less(instance: Instance, end: Array) -> bool:
     Where they do not, no quantity is conserved, and nothing else needs to be looked at.
     """
     place = _last(instance), instance.tf is None, tuple(end.tolist())
-    columns, made_of = _directions(instance.model, instance.parameters, instance.control_set, *place)
-    size = _sizes(instance, end)[:, None]
+    rounded = np.exp2(np.rint(np.log2(_sizes(instance, end))))  # known again where only the start differs
+    return _dependent(instance.model, instance.parameters, instance.control_set, *place, tuple(rounded.tolist()))
+
+
+@lru_cache(maxsize=32)
+def _dependent(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row, sizes: Row) -> bool:
+    """The same, states being of these sizes."""
+    columns, made_of = _directions(model, p, within, t, free_time, end)
+    size = np.array(sizes)[:, None]
     # what cancels but for rounding must not count: each column is relative to what it is made of
     table = columns / size / np.maximum((made_of / size).max(axis=0), 1e-300)
     if not np.isfinite(table).all():
@@ -160,7 +170,7 @@ def _spans_less(instance: Instance, end: Array) -> bool:
 
 @lru_cache(maxsize=8)
 def _directions(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row) -> tuple[Array, Array]:
-    """Those rates and changes, a column each, and what they are made of; known again where only the start differs."""
+    """Those rates and changes, a column each, and what they are made of."""
     drawn = np.random.default_rng(0).normal(size=(len(model.spec.controls), DRAWN))
     given = np.full(DRAWN, t), np.repeat(np.array(end)[:, None], DRAWN, axis=1), within.project(drawn), p
     rates, slopes = model.dynamics_batch(*given), model.jacobian_x_batch(*given)

@@ -136,10 +136,16 @@ def _given_end(instance: Instance) -> list[Array]:
 
 def _sizes(model: Kernels, ends: Array) -> Array:
     """How large states are at these ends (n, k), alike for those of one unit, which may be components of a vector."""
-    units = np.array([state.unit for state in model.spec.states])
-    sizes = np.array([np.linalg.norm(ends[units == unit], axis=0).max() for unit in units])
+    sizes = np.sqrt((_of_one_unit(model) @ (ends * ends)).max(axis=1))
     moving = sizes > 0.0  # what is zero at all ends is taken for as large as the rest
     return np.where(moving, sizes, sizes[moving].mean() if moving.any() else 1.0)
+
+
+@lru_cache(maxsize=32)
+def _of_one_unit(model: Kernels) -> Array:
+    """Which states have the same unit, shape (n, n): one where two have, zero elsewhere."""
+    units = np.array([state.unit for state in model.spec.states])
+    return (units[:, None] == units).astype(float)
 
 
 def _about(model: Kernels, start: Array, size: Array) -> Row:

@@ -12,7 +12,7 @@ from sympy import Expr, Symbol
 from satsym import instance
 from satsym.solution import Solution
 from satsym.solvers import solve
-from satsym.solvers.redundant_ends import redundant
+from satsym.solvers.redundant_ends import _dependent, redundant
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -47,6 +47,16 @@ def test_an_end_that_the_conserved_quantity_does_not_allow_is_told(tmp_path: Pat
     assert "ties the final" in found.message
     assert "0.3 instead of 0.2" in found.message
     assert not math.isfinite(found.objective)
+
+
+def test_what_is_known_of_an_end_on_the_reference_is_known_for_other_starts() -> None:
+    case = instance.load("return-to-orbit")
+    assert redundant(case) is None
+    known = _dependent.cache_info()
+    assert redundant(replace(case, initial=(1.05, 0.0, 0.02, 0.95))) is None
+    assert _dependent.cache_info().misses == known.misses
+    assert redundant(replace(case, final={**case.final, "r_dot": 0.1})) is None  # another end is looked at
+    assert _dependent.cache_info().misses == known.misses + 1
 
 
 def test_a_reorientation_with_all_four_components_leaves_one_out() -> None:

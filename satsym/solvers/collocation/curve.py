@@ -60,12 +60,14 @@ class Curve:
     def __call__(self, tau: Array) -> Array:
         """Values at ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
-        interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
-        table, total = barycentric(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
+        mesh = self.mesh
+        interval = np.searchsorted(mesh[1:-1], tau, side="right")
+        table, total = barycentric(self.order, (tau - mesh[interval]) / (mesh[1:] - mesh[:-1])[interval])
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
-        values, begun = np.empty((len(self.nodes), len(tau))), np.flatnonzero(np.diff(interval, prepend=-1)).tolist()
-        for first, last in pairwise([*begun, len(tau)]):  # times in one interval after the other
-            np.matmul(known[:, interval[first]], table[first:last].T, out=values[:, first:last])
+        values, turned = np.empty((len(self.nodes), len(tau))), np.flatnonzero(interval[1:] != interval[:-1]) + 1
+        ends = [0, *turned.tolist(), len(tau)] if len(tau) else []
+        for first, last in pairwise(ends):  # times in one interval after the other
+            np.matmul(known[:, interval[first]], table[:, first:last], out=values[:, first:last])
         values /= total
         return values
 
@@ -88,6 +90,8 @@ class Curve:
 
     def moved(self, step: Step, length: float) -> Curve:
         """The curve after a share of a step."""
+        if length == 1.0:
+            return Curve(self.mesh, self.nodes + step.nodes, self.stages + step.stages, self.theta + step.theta)
         return Curve(
             self.mesh,
             self.nodes + length * step.nodes,
@@ -122,5 +126,5 @@ def _largest(nodes: Array, stages: Array) -> Array:
 
 def stage_times(mesh: Array, order: int) -> Array:
     """Gauss points of each interval, shape (N, s)."""
-    times: Array = mesh[:-1, None] + np.diff(mesh)[:, None] * scheme(order).nodes
+    times: Array = mesh[:-1, None] + (mesh[1:] - mesh[:-1])[:, None] * scheme(order).nodes
     return times

@@ -54,19 +54,19 @@ def lagrange(stages: int, places: Array) -> Array:
     By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
     """
     table, total = barycentric(stages, places)
-    table /= total[:, None]
-    return table
+    table /= total
+    return np.ascontiguousarray(table.T)
 
 
 def barycentric(stages: int, places: Array) -> tuple[Array, Array]:
-    """The same before it is divided by what each row comes to, shapes (M, stages + 1) and (M,)."""
+    """The same transposed, before it is divided by what each place comes to, shapes (stages + 1, M) and (M,)."""
     own = scheme(stages)
-    table: Array = places[:, None] - own.known
+    table: Array = places - own.known[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        np.divide(own.barycentric, table, out=table)
-        total = table @ np.ones(stages + 1)
+        np.divide(own.barycentric[:, None], table, out=table)
+        total = np.ones(stages + 1) @ table
     at = np.flatnonzero(np.isinf(total))  # a place at which the value is known
-    table[at], total[at] = np.isinf(table[at]), 1.0
+    table[:, at], total[at] = np.isinf(table[:, at]), 1.0
     return table, total
 
 

@@ -102,9 +102,9 @@ def linearise(
         If the equations are singular here.
     """
     n, s, count, e = system.rows, system.order, system.intervals, system.problem.unknowns
-    by_stage = np.ascontiguousarray(jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1))
+    by_stage = jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1).reshape(count, 1, n, s * n)
     grown = (-system.problem.elapsed(curve.theta)) * system.matrix
-    matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
+    matrix = (grown[:, :, None] * by_stage).reshape(count, s * n, s * n)
     matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
     blocks = Blocks(matrix)
     right = _by_nodes(count, s, n, e).copy()

@@ -206,17 +206,22 @@ class TwoPoint:
             return smoothed_cost(self.instance, self.control_set, t, x, u) / self.scale.cost
         if model.spec.directional:
             return np.asarray(model.regularised_cost_batch(t, x, lam, p, self.control_set.arguments)) / self.scale.cost
-        u = model.control_law_batch(t, x, lam, p, self.control_set.arguments)
+        u = self._law(t, x, lam, p, self.control_set)
         beyond = 0.0
         if self.softness:
-            over = (
-                np.asarray(model.control_law_batch(t, x, lam, p, self.instance.control_set.without_bounds.arguments))
-                - u
-            )
+            over = self._law(t, x, lam, p, self.instance.control_set.without_bounds) - u
             weight = np.asarray(model.control_hessian_batch(t, x, u, lam, p))
             beyond = self.softness * (1.0 - self.softness) / 2.0 * np.einsum("ik,ijk,jk->k", over, weight, over)
             u = u + self.softness * over
-        return (np.asarray(model.running_cost_batch(t, x, u, p)) + beyond) / self.scale.cost
+        found = np.empty(x.shape[1:], x.dtype)
+        model.running_cost_batch(t, x, u, p, out=found)
+        return np.asarray((found + beyond) / self.scale.cost)
+
+    def _law(self, t: Array, x: Array, lam: Array, p: Row, within: ControlSet) -> Array:
+        """The control law within a set, by its batch form, shape (m, N)."""
+        found = np.empty((len(self.instance.model.spec.controls), *x.shape[1:]), x.dtype)
+        self.instance.model.control_law_batch(t, x, lam, p, within.arguments, out=found)
+        return found
 
     def terminal_cost(self, end: Array, theta: Array) -> float:
         """S at the end, scaled."""
@@ -243,8 +248,7 @@ class TwoPoint:
         arguments = self._arguments(tau, z, theta)
         if self.instance.model.spec.stationary and not bounded:
             return self._beyond(*arguments)
-        law: Array = self.instance.model.control_law_batch(*arguments, control_set.arguments)
-        return law
+        return self._law(*arguments, control_set)
 
     def _beyond(self, t: Array, x: Array, lam: Array, p: Row) -> Array:
         """The law within its bounds, moved by a step of Newton's method for H: beyond bounds that hold it.

@@ -70,8 +70,10 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
         control_set = control_set.regularised(full_length_smoothing(instance), 1.0)
     free = control_set.without_bounds.arguments
     none = sloping(instance, np.zeros_like(path))
+    slopes = np.empty((2 * n, 2 * n, POINTS))
     with np.errstate(all="ignore"):
-        slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
+        model.canonical_jacobian_batch(times, path, none, instance.parameters, free, out=slopes)
+    slopes = np.abs(slopes).max(axis=2)
     slopes[~(slopes >= NO_SLOPE)] = 0.0  # some laws say nothing of costates that vanish
     size = np.abs(path).max(axis=1)
     table = slopes[:n, :n].tolist()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -43,10 +44,15 @@ class System:
     def __init__(self, problem: TwoPoint, mesh: Array, order: int, jumps: Sequence[Jump] = ()) -> None:
         self.problem, self.mesh, self.order, self.jumps = problem, mesh, order, jumps
         self.scheme: Scheme = scheme(order)
-        self.widths: Array = np.diff(mesh)
+        self.widths: Array = mesh[1:] - mesh[:-1]
         self.tau: Array = stage_times(mesh, order).ravel()
         self.intervals, self.rows = len(mesh) - 1, 2 * problem.states
-        self.matrix: Array = self.widths[:, None, None] * self.scheme.matrix
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The scheme's on every interval, each entry as often as there are rows, shape (N, s, s 2n)."""
+        found: Array = self.widths[:, None, None] * np.repeat(self.scheme.matrix, self.rows, axis=1)
+        return found
 
     def cost(self, curve: Curve) -> float:
         """The scaled cost J along a curve, under the control law of its stages."""
