@@ -21,7 +21,7 @@ from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
-from satsym.kernels.core import Kernels
+from satsym.kernels.core import Function, Kernels
 from satsym.kernels.evaluation import COPIES, Evaluation, size, with_copies
 from satsym.kernels.motion import of_motion
 from satsym.kernels.optimality import of_the_cost
@@ -166,17 +166,28 @@ def _both_forms(of: Evaluation) -> Iterator[Relation]:
             of(name, lam=none).reshape(everywhere.shape)[:, :1] if "lam" in signature.arguments else everywhere[:, :1]
         )
         rows = np.concatenate([everywhere[:, : len(columns) - 1], first], axis=1)
-        found = [_single(of, name, signature.arguments, each) for each in columns]
-        known = [k for k, one in enumerate(found) if one is not None]
+        single, known = _singly(of.kernels.functions[name], signature.arguments, columns)
         if known:
-            single = np.array([found[k] for k in known]).T
-            yield Relation(name, "the same on floats and on arrays", single, rows[:, known], _largest(rows))
+            yield Relation(name, "the same on floats and on arrays", single.T, rows[:, known], _largest(rows))
 
 
-def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[str, Any]) -> list[float] | None:
-    """A function on floats, as a row; ``None`` where something in it has no value, which arrays may get over."""
+def _singly(
+    function: Function, arguments: tuple[str, ...], columns: Sequence[Mapping[str, Any]]
+) -> tuple[Array, list[int]]:
+    """A function on floats, a row for each place where it has a value, and these places: arrays may get over others."""
+    every, given = list(range(len(columns))), [[at[a] for a in arguments] for at in columns]
     try:
-        found = of.kernels.functions[name](*[at[a] for a in arguments])
+        return np.array([function(*one) for one in given], dtype=float).reshape(len(given), -1), every
+    except _FAILED:
+        found = [_single(function, one) for one in given]
+        known = [k for k in every if found[k] is not None]
+        return np.array([found[k] for k in known], dtype=float), known
+
+
+def _single(function: Function, given: Sequence[Any]) -> list[float] | None:
+    """One row; ``None`` where something in it has no value."""
+    try:
+        found = function(*given)
         return [*map(float, found)] if isinstance(found, tuple) else [float(found)]
     except _FAILED:
         return None

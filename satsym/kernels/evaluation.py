@@ -80,9 +80,22 @@ class Evaluation:
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
         """How small derivatives may be before what they are made of is lost: see :data:`FAINT`."""
-        unit = size(self._table(by, instead))
-        value = size(self(name, **instead))[..., None, :]
-        return np.asarray(FAINT * value / np.where(unit > 0.0, unit, 1.0))
+        if instead:
+            unit, value = size(self._table(by, instead)), size(self(name, **instead))
+        else:
+            unit, value = self._size("", by), self._size(name, "")
+        return np.asarray(FAINT * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
+
+    @cached_property
+    def _sizes(self) -> dict[tuple[str, str], Array]:
+        """Of values and of arguments, kept."""
+        return {}
+
+    def _size(self, name: str, by: str) -> Array:
+        """Of a function at the columns themselves, or of an argument."""
+        if (name, by) not in self._sizes:
+            self._sizes[name, by] = size(self(name) if name else self._table(by, {}))
+        return self._sizes[name, by]
 
     def _table(self, by: str, instead: Mapping[str, Any]) -> Array:
         return np.asarray(instead.get(by, self.at[by]), dtype=float).reshape(-1, len(self.at["t"]))

@@ -134,13 +134,16 @@ def idle_end(solution: Solution, steps: int) -> Array:
 
 def costing(solution: Solution) -> Callable[[Array, Array], Array]:
     """The canonical rates with that of the cost, functions of times (M,) and values (2n + 1, M)."""
-    instance, model, n = solution.instance, solution.instance.model, len(solution.x)
+    instance, model, n, m = solution.instance, solution.instance.model, len(solution.x), len(solution.u)
     p, bounds = instance.parameters, instance.control_set.arguments
 
     def rates(t: Array, y: Array) -> Array:
-        x, lam = y[:n], y[n:-1]
-        cost = model.running_cost_batch(t, x, model.control_law_batch(t, x, lam, p, bounds), p)
-        return np.concatenate([model.canonical_batch(t, x, lam, p, bounds), np.broadcast_to(cost, t.shape)[None]])
+        x, lam, found = y[:n], y[n:-1], np.empty_like(y)  # given, so that kernels need not find out shapes and types
+        u = np.empty((m, *t.shape))
+        model.control_law_batch(t, x, lam, p, bounds, out=u)
+        model.canonical_batch(t, x, lam, p, bounds, out=found[:-1])
+        model.running_cost_batch(t, x, u, p, out=found[-1])
+        return found
 
     return rates
 
@@ -173,6 +176,14 @@ def unit_sizes(solution: Solution) -> Array:
     return found
 
 
+@lru_cache(maxsize=256)
+def _largest(solution: Solution) -> tuple[Array, Array]:
+    """Magnitudes of states and costates along the way, shapes (n,)."""
+    state, costate = (np.abs(rows).max(axis=1) for rows in (solution.x, solution.lam))
+    state.flags.writeable = costate.flags.writeable = False
+    return state, costate
+
+
 def products(solution: Solution) -> float:
     """The sum of the products of states and costates at their largest: what a share of the states is worth."""
     state, costate = typical(solution, ROUNDED)
@@ -194,7 +205,7 @@ def typical(solution: Solution, faint: float = SMALL) -> tuple[Array, Array]:
         The share of their unit at which smaller costates count.
     """
     n, unit = len(solution.x), unit_sizes(solution)
-    state = np.maximum(np.abs(solution.x).max(axis=1), NEGLIGIBLE * unit[:n])
-    costate = np.abs(solution.lam).max(axis=1)
+    largest, costate = _largest(solution)
+    state = np.maximum(largest, NEGLIGIBLE * unit[:n])
     product = float((state * costate).max())
     return state, np.maximum(np.maximum(costate, faint * unit[n:]), NEGLIGIBLE * product / state)

@@ -216,7 +216,9 @@ def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tu
     p, bounds = instance.parameters, instance.control_set.arguments
 
     def rates(t: Array, z: Array) -> Array:
-        return np.asarray(instance.model.canonical_batch(t, z[:n], z[n:], p, bounds))
+        found = np.empty_like(z)
+        instance.model.canonical_batch(t, z[:n], z[n:], p, bounds, out=found)
+        return found
 
     def slopes(t: Array, z: Array) -> Array:
         return np.ascontiguousarray(_slopes(solution, t, z))
