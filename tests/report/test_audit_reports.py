@@ -355,3 +355,18 @@ def test_objects_have_the_findings_beside_the_rows(judged: dict[str, list[Judged
     assert found["findings"][0]["places"] == ["2"]
     assert found["findings"][0]["spoils"] == ["3"]
     assert [finding["weight"] for finding in found["findings"]] == ["overturns a conclusion", "wrong result"]
+
+
+def test_each_finding_quotes_what_is_printed(document: Ledger, judged: dict[str, list[Judged]]) -> None:
+    """Whether told in full or in a sentence; a proposition, which only a reader of code can follow, is no quotation."""
+    told = " ".join(audit_text([document], judged).split())
+    findings = told.partition("titik ini pelana")[2]
+    for found in Review.of(document, judged["small"], load("en")).findings:
+        printed = found.places[0].original or found.places[0].printed
+        assert str(printed)[:40] in findings, found.places[0].key
+    assert "stable('saddle')" not in findings
+    assert "stable('saddle')" in " ".join(audit_text([document], judged, rows=True).split())
+    conclusion = next(found for found in judged["small"] if found.original and found.verdict == "wrong")
+    review = Review.of(document, [replace(conclusion, spoiled_by=())], load("en"))
+    (brief,) = typeset._in_brief(review, 1, review.findings[0])
+    assert r"\textit{titik ini stabil" in brief

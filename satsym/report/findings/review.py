@@ -226,6 +226,15 @@ def _in_indonesian(row: Judged) -> Judged:
     return replace(row, why=row.why_id or row.why, diagnosis=row.diagnosis_id or row.diagnosis, derived=derived)
 
 
+def quote(row: Judged) -> tuple[str, str]:
+    """What is printed, in the document's words or as its formula, or what it is about; before it the label of that."""
+    if row.original:
+        return "says", row.original
+    if row.kind != "claim" and row.printed:
+        return "printed", flat(row.printed)
+    return "about", row.says
+
+
 def measured(row: Judged) -> str:
     """What was measured, where the sentence for people does not say it."""
     return row.derived if row.why and not row.by_formula and row.derived not in row.why else ""

@@ -58,21 +58,16 @@ class Section:
     def _finding(self, number: int, found: Finding) -> Markup:
         row = found.places[0]
         heading = tag("h4", f"{number}. ", self._review.places(found.places))
-        summary = tag(
-            "summary",
-            heading,
-            " ",
-            self._verdict(row),
-            " ",
-            tag("span", *_formulas(self._review.brief(found)), ".", class_="brief"),
-        )
+        said = [*([self._original(row), " "] if row.original else []), *_formulas(self._review.brief(found)), "."]
+        summary = tag("summary", heading, " ", self._verdict(row), " ", tag("span", *said, class_="brief"))
         facts = {
             **self._facts(row),
             "places": self._links(r.key for r in found.places) if len(found.places) > 1 else "",
         }
         facts |= {"spoils": self._links(r.key for r in found.spoiled), **self._sources(row.key)}
         evidence, command = recompute(row)
-        facts |= {"evidence": "" if measured(row) else evidence, "recompute": tag("code", command)}
+        facts |= {"evidence": "" if measured(row) else evidence, "claims": self._proposition(row)}
+        facts |= {"recompute": tag("code", command)}
         return tag(
             "details",
             summary,
@@ -90,8 +85,8 @@ class Section:
         right = correction(row)
         return {
             "says": self._original(row),
-            "about": "" if row.original else row.says,
-            "claims" if row.kind == "claim" else "printed": self._printed(row),
+            "about": tag("span", row.says, lang="en") if row.says and not row.original else "",
+            "printed": "" if row.kind == "claim" else self._printed(row),
             "in_fact": joined(*_formulas(self._review.fact(row))),
             "measured": measured(row),
             "right": _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else "",
@@ -129,6 +124,10 @@ class Section:
             data_weight=row.weight,
             data_verdict=row.verdict,
         )
+
+    def _proposition(self, row: Judged) -> Markup:
+        """What a claim is tested as, for readers of code."""
+        return self._printed(row) if row.kind == "claim" else Markup()
 
     def _original(self, row: Judged) -> Markup:
         """The document's own words."""

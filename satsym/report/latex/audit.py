@@ -15,6 +15,7 @@ from satsym.report.findings.review import (
     is_mathematical,
     items,
     measured,
+    quote,
     recompute,
     title,
     where,
@@ -105,8 +106,13 @@ def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
     said = (
         rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(review.brief(finding))}."
     )
-    formula = review.formulas.get(finding.places[0].key)
-    yield f"{said}\n{_fact(review.texts, 'printed', _printed(formula, ''))}" if formula is not None else said
+    row = finding.places[0]
+    formula, (key, quoted) = review.formulas.get(row.key), quote(row)
+    if formula is not None:
+        key, printed = "printed", _printed(formula, "")
+    else:
+        printed = rf"\textit{{{_breakable(quoted)}}}" if key == "says" else _breakable(quoted)
+    yield f"{said}\n{_fact(review.texts, key, printed)}" if printed else said
 
 
 def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:

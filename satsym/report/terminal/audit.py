@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 from satsym.auditing import Judged, Ledger
@@ -17,6 +18,7 @@ from satsym.report.findings.review import (
     is_put_in_words,
     items,
     measured,
+    quote,
     recompute,
     where,
 )
@@ -28,6 +30,8 @@ WIDTH = 100
 _NARROWEST = 40
 _INDENT = "  "
 _LABEL = 10
+_QUOTED = 200
+"""Characters of what is printed that are quoted beside a finding told in a sentence."""
 _SHORT = 30
 """Characters of what is printed that stand behind a verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
@@ -112,8 +116,12 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
         yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
 
-def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
-    return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
+def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
+    """A finding in a sentence, and what is printed there."""
+    yield from _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
+    key, quoted = quote(finding.places[0])
+    if quoted:
+        yield from _labelled(review.texts.get("audit", key), textwrap.shorten(quoted, _QUOTED, placeholder=" ..."))
 
 
 def _row(review: Review, row: Judged) -> Iterator[str]:
@@ -133,14 +141,14 @@ def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -
 
 def _facts(review: Review, row: Judged, *, short: bool = False) -> Iterator[str]:
     """What is printed and what is so instead, each once; if short, without what only a reader of code can follow."""
-    said, found, command = row.original or row.says, measured(row), recompute(row)[1]
-    long = short and len(found) > _width() - 2 * len(_INDENT) * 3 - _LABEL
+    claim, found = row.kind == "claim", measured(row)
+    said = row.original or row.says if claim or not row.printed else ""
     facts = {
-        "says": said if row.kind == "claim" or not row.printed else "",
-        "claims" if row.kind == "claim" else "printed": "" if _is_short(row) else flat(row.printed),
+        "says": said,
+        "claims" if claim else "printed": "" if _is_short(row) or (short and claim and said) else flat(row.printed),
         "in_fact": review.fact(row),
-        "measured": "" if long else found,
-        "recompute": command if long else "",
+        "measured": "" if short else found,
+        "recompute": recompute(row)[1] if short and found else "",
         "right": "" if short and is_put_in_words(row) else correction(row),
     }
     for key, text in facts.items():
