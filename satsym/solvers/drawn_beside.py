@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.solution import Solution
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.drawn_motions import Bundle, from_start, simulated, to_end
+from satsym.solvers.spare_time import longest
 
-STEPS, LONG_STEPS = 100, 240
-"""Runge-Kutta steps in the known duration, and in the longest one where that is free."""
+STEPS, LONGER = 100, 2.4
+"""Runge-Kutta steps in the known duration, and so many times as many at most in the longest one where that is free."""
 
 DRAWN, SIZES = 512, (-1.5, 0.7)
 """Extremals that are drawn on each side, and decimal logarithms of sizes of their costates, as shares of the largest
@@ -26,6 +28,9 @@ known."""
 ROUNDS, CHILDREN, PARENTS, NEAR = (0.3, 0.1), 256, 48, 0.15
 """Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
 cheapest whose gaps are below that."""
+
+CLOSEST = 0.03
+"""Relative change of costates in one more round."""
 
 TIMES, ANY_TIMES, NEIGHBOURS = 8, 40, 4
 """Times at which they may meet, where the duration is given and where it is free, and how many of the nearest of the
@@ -42,6 +47,9 @@ at. A duration that is longer by that share is another motion as well."""
 SEARCHED, HALVINGS = np.geomspace(1e-3, 1e2, 26), 12
 """Sizes of costates, as shares of the known ones, between which H changes its sign, and halvings of that."""
 
+SAMPLES = 401
+"""Of a known extremal."""
+
 
 @dataclass(frozen=True, eq=False)
 class Known:
@@ -54,6 +62,8 @@ class Known:
     cost: float
     longest: float
     """The longest duration of others; its own where that is given."""
+    free: bool = False
+    """Whether others may have any duration up to that."""
 
     @property
     def size(self) -> float:
@@ -66,17 +76,35 @@ class Beside:
     """Another motion, almost an extremal."""
 
     duration: float
-    states: Array
-    """Scaled, at evenly spaced times, shape (n, M); a jump between both parts is spread over them."""
+    z: Array
+    """Scaled states and costates at evenly spaced times, shape (2n, M); a jump between both parts is spread over them.
+    """
+
+    @property
+    def states(self) -> Array:
+        """Shape (n, M)."""
+        return self.z[: len(self.z) // 2]
 
 
-def beside(problem: TwoPoint, known: Known, rng: np.random.Generator) -> list[Beside]:
+def about(solution: Solution, problem: TwoPoint, seed: int, *, closely: bool) -> list[Beside]:
+    """See :func:`beside`: of a solution, in its problem at its duration."""
+    even = np.linspace(solution.times[0], solution.times[-1], SAMPLES)
+    z = [np.interp(even, solution.times, row) for row in (*solution.x, *solution.lam)] / problem.scale.both
+    n, free = problem.states, solution.instance.tf is None
+    known = Known(z[:n], z[n:], solution.objective / problem.scale.cost, longest(solution), free)
+    return beside(problem, known, np.random.default_rng(seed), closely=closely)
+
+
+def beside(problem: TwoPoint, known: Known, rng: np.random.Generator, *, closely: bool = False) -> list[Beside]:
     """Different motions that nearly meet, and would cost less if they did, the cheapest first.
 
     Parameters
     ----------
     problem
         With its bounds, and with the duration of what is known.
+    closely
+        Whether more are drawn, and of each motion that pair is taken which comes nearest to it: costates are then near
+        those of an extremal as well.
     """
     if problem.unknowns or not problem.fixed.any() or not known.size > 0.0:
         return []
@@ -84,10 +112,10 @@ def beside(problem: TwoPoint, known: Known, rng: np.random.Generator) -> list[Be
     if problem.fixed.all():  # what the end costs is no part of either motion
         end = np.concatenate([straight(problem)[:, 1], np.zeros(problem.states)])
         known = replace(known, cost=known.cost - problem.terminal_cost(end, problem.theta))
-    free = known.longest > problem.duration and problem.instance.model.spec.autonomous and bool(given.all())
+    free = known.free and problem.instance.model.spec.autonomous and bool(given.all())
     with np.errstate(all="ignore"):
-        field = _of_any_duration(problem, known, rng) if free else _of_given(problem, known, rng)
-        for size in ROUNDS:
+        field = (_of_any_duration if free else _of_given)(problem, known, closely, rng)
+        for size in (*ROUNDS, CLOSEST) if closely else ROUNDS:
             field = field.refined(size, rng)
         return field.different()
 
@@ -97,19 +125,21 @@ def _directions(n: int, count: int, rng: np.random.Generator) -> Array:
     return np.asarray(found / np.linalg.norm(found, axis=0))
 
 
-def _of_given(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
+def _of_given(problem: TwoPoint, known: Known, closely: bool, rng: np.random.Generator) -> _Field:
     """Extremals in the known duration."""
     first, last = (
         _directions(problem.states, DRAWN, rng) * known.size * 10.0 ** rng.uniform(*SIZES, DRAWN) for _ in range(2)
     )
     onwards = from_start(problem, first, STEPS)
-    return _Field(problem, known, problem.duration, False, onwards, to_end(problem, onwards, last, rng, STEPS))
+    backwards = to_end(problem, onwards, last, rng, STEPS)
+    return _Field(problem, known, problem.duration, False, closely, onwards, backwards)
 
 
-def _of_any_duration(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
+def _of_any_duration(problem: TwoPoint, known: Known, closely: bool, rng: np.random.Generator) -> _Field:
     """Extremals with which H vanishes, up to the longest duration."""
-    nothing = Bundle(np.zeros((LONG_STEPS + 1, 2 * problem.states, 0)), np.zeros((LONG_STEPS + 1, 0)))
-    field = _Field(problem, known, known.longest, True, nothing, nothing)
+    steps = int(np.ceil(STEPS * min(known.longest / problem.duration, LONGER)))
+    nothing = Bundle(np.zeros((steps + 1, 2 * problem.states, 0)), np.zeros((steps + 1, 0)))
+    field = _Field(problem, known, known.longest, True, closely, nothing, nothing)
     return field.joined(_directions(problem.states, DRAWN, rng), _directions(problem.states, DRAWN, rng), rng)
 
 
@@ -149,6 +179,7 @@ class _Field:
     known: Known
     longest: float
     free: bool
+    closely: bool
     onwards: Bundle
     backwards: Bundle
 
@@ -169,8 +200,12 @@ class _Field:
         return replace(self, onwards=self.onwards.joined(onwards), backwards=self.backwards.joined(backwards))
 
     def refined(self, size: float, rng: np.random.Generator) -> _Field:
-        """With others about the cheapest pairs, so far away relative to their costates."""
-        n, pairs = self.problem.states, self.cheapest(NEAR)[:PARENTS]
+        """With others about the cheapest pairs, and the closest as well, so far away relative to their costates."""
+        n, pairs = self.problem.states, self.cheapest(NEAR)
+        if self.closely:
+            nearest = pairs[np.argsort(pairs[:, 4])]
+            pairs = np.concatenate([pairs[: PARENTS // 2], nearest[: PARENTS // 2]])
+        pairs = pairs[:PARENTS]
         if not len(pairs):
             return self
         of = pairs[rng.integers(len(pairs), size=CHILDREN)].astype(int)
@@ -213,9 +248,19 @@ class _Field:
             met = np.isfinite(gaps)  # else so far apart that their distance overflows
             row = np.broadcast_to(np.arange(here.places.shape[1])[:, None], met.shape)[met]
             one, other = here.places[:, row], there.places[:, places[met]]
-            cost = here.costs[row] + there.costs[places[met]]
-            found.append(np.column_stack([one[0], other[0], one[1], other[1], gaps[met], cost]))
+            cost, gap = here.costs[row] + there.costs[places[met]], gaps[met]
+            if self.closely:
+                gap = gap / self._extent(one, other)
+            found.append(np.column_stack([one[0], other[0], one[1], other[1], gap, cost]))
         return np.concatenate(found)
+
+    def _extent(self, one: NDArray[np.int64], other: NDArray[np.int64]) -> Array:
+        """How far pairs go, shape (P,), in units of what is known, where that goes further: gaps are relative to it."""
+        n, unit = self.problem.states, self.unit
+        begin, end = self.onwards.z[0, :n, one[1]], self.backwards.z[-1, :n, other[1]]
+        before, after = self.onwards.z[one[0], :n, one[1]], self.backwards.z[other[0], :n, other[1]]
+        gone = np.maximum(np.abs(before - begin), np.maximum(np.abs(after - end), np.abs(end - begin))) / unit
+        return np.asarray(np.clip(np.linalg.norm(gone, axis=1), 1e-300, 1.0))
 
     def _points(self, side: Bundle, nodes: NDArray[np.int64]) -> _Points:
         """Where extremals of one side are at some nodes."""
@@ -225,9 +270,10 @@ class _Field:
         return _Points(states, costs[at, which], np.array([nodes[at], which]))
 
     def different(self) -> list[Beside]:
-        """The cheapest pairs that are not close to one before, nor to what is known."""
-        pairs = self.cheapest(CLOSE)[:MOST]
+        """The cheapest pairs that are not close to one before, nor to what is known; or the closest beside each."""
+        pairs, n = self.cheapest(CLOSE)[:MOST], self.problem.states
         motions, durations = self._motions(pairs, SHOWN)
+        motions = motions[:, :n]
         shares = np.linspace(0.0, 1.0, self.known.states.shape[1])
         shown = np.linspace(0.0, 1.0, SHOWN)
         own = np.array([np.interp(shown, shares, row) for row in self.known.states])
@@ -240,21 +286,25 @@ class _Field:
         left = apart(own, self.problem.duration)
         while left.any() and len(kept) < KEPT:
             k = int(left.argmax())
+            others = apart(motions[k], float(durations[k]))
+            if self.closely:
+                near = np.flatnonzero(left & ~others)
+                k = int(near[pairs[near, 4].argmin()])
             kept.append(Beside(float(durations[k]), self._motions(pairs[k : k + 1])[0][0]))
-            left &= apart(motions[k], float(durations[k]))
+            left &= others
         return kept
 
     def _motions(self, pairs: Array, count: int = 0) -> tuple[Array, Array]:
-        """Of pairs: states at so many shares of their durations, or of one pair at all nodes, and these durations."""
-        n, steps = self.problem.states, len(self.onwards.z) - 1
+        """Of pairs: states and costates at shares of their durations, or of one at all nodes, and these durations."""
+        steps = len(self.onwards.z) - 1
         first, second, one, other = pairs[:, :4].astype(int).T
         lasting = first + steps - second
         at = np.rint(np.linspace(0.0, 1.0, count or int(lasting[0]) + 1) * lasting[:, None]).astype(int)
         before, after = np.minimum(at, first[:, None]), np.clip(second[:, None] + at - first[:, None], 0, steps)
         ahead = at <= first[:, None]
-        early = self.onwards.z[before, :n, one[:, None]]
-        late = self.backwards.z[after, :n, other[:, None]]
-        jump = (self.backwards.z[second, :n, other] - self.onwards.z[first, :n, one])[:, None]
+        early = self.onwards.z[before, :, one[:, None]]
+        late = self.backwards.z[after, :, other[:, None]]
+        jump = (self.backwards.z[second, :, other] - self.onwards.z[first, :, one])[:, None]
         rest = np.maximum(lasting - first, 1)[:, None]
         halves = np.where(ahead, at / np.maximum(first, 1)[:, None], (at - lasting[:, None]) / rest) / 2.0
         found = np.where(ahead[:, :, None], early, late) + jump * halves[:, :, None]

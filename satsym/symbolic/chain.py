@@ -48,7 +48,7 @@ class Chain:
         return found
 
 
-def told(
+def named_parts(
     parts: Iterable[Assignment], values: Iterable[sp.Expr], named: Callable[[int], sp.Symbol]
 ) -> tuple[list[Assignment], list[sp.Expr]]:
     """Parts without those that are the negative of another symbol and say nothing, numbered anew."""

@@ -13,9 +13,10 @@ from sympy import Expr, Integer, Rational, sin
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
-from satsym.solvers.certificate.seeded.drawn_extremals import far_from_linear, longest, may_swing
+from satsym.solvers.certificate.seeded.drawn_extremals import far_from_linear, may_swing
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.drawn_beside import Known, beside
+from satsym.solvers.spare_time import longest
 from satsym.status import Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -86,7 +87,7 @@ def test_motions_drawn_beside_a_push_last_longer_and_would_cost_less(tmp_path: P
     push = solve(_case(tmp_path, STIFF, "-1.49 -0.514", "-1.49 0.268", 0.14), examined=False)
     problem = two_point(push.instance, 0.14)
     n, z = 2, np.concatenate([push.x, push.lam]) / problem.scale.both
-    known = Known(z[:n], z[n:], push.objective / problem.scale.cost, longest=10.0)
+    known = Known(z[:n], z[n:], push.objective / problem.scale.cost, longest=10.0, free=True)
     drawn = beside(problem, known, np.random.default_rng(0))
     assert drawn
     assert all(one.duration > 1.0 for one in drawn)

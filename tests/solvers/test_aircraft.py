@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,13 @@ from scipy.integrate import solve_ivp
 from sympy import Expr, Rational
 
 from satsym.arrays import Array
-from satsym.solution import Solution
+from satsym.instance import Instance
+from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers import solve
+from satsym.solvers.certificate.comparison import Compared
+from satsym.solvers.certificate.competitors import guess
+from satsym.solvers.certificate.seeded.drawn_extremals import searches
+from satsym.solvers.iteration import Limits, unsolved
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -42,10 +47,14 @@ RATES = {
 }
 
 
-def levelled(folder: Path, cost: Expr | int, text: str) -> Solution:
+def f8(folder: Path, cost: Expr | int, text: str) -> Instance:
     motion = FirstOrder(name="f8", title="An F-8", states=STATES, controls=(ELEVATOR,), parameters=(), rates=RATES)
     problem = Problem(name="levelled", title="An F-8 levelled", model=motion, running_cost=cost, control_set="box")
-    found = solve(build(folder, problem, text))
+    return build(folder, problem, text)
+
+
+def levelled(folder: Path, cost: Expr | int, text: str) -> Solution:
+    found = solve(f8(folder, cost, text))
     assert found.status is Status.CONVERGED
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate.checks
@@ -60,25 +69,54 @@ def test_levelling_costs_what_it_costs_a_direct_method(tmp_path: Path) -> None:
     assert found.objective == pytest.approx((16.0 * 0.019648536261164657 - 0.01964853974571359) / 15.0, rel=2e-9)
 
 
-@pytest.mark.study
-def test_levelling_in_least_time_jumps_twice(tmp_path: Path) -> None:
-    """The motion under its law arrives. It is a local minimum and no more: another one is far quicker.
+ENDS = "[initial]\nalpha = 0.4655\ntheta = 0.0\nrate = 0.0\n[final]\nalpha = 0.0\ntheta = 0.0\nrate = 0.0\n"
+HURRIED = f'{ENDS}[time]\ntf = "free"\n[control]\nelevator = [-0.05236, 0.05236]\n[solver]\nmax_seconds = 300.0\n'
 
-    Ipopt, steps of constant control on phases of free length: 5.72933 near this one, and 3.78086 for the other, which
-    is the least known; nothing that starts from drawn controls is led there yet.
-    """
-    ends = "[initial]\nalpha = 0.4655\ntheta = 0.0\nrate = 0.0\n[final]\nalpha = 0.0\ntheta = 0.0\nrate = 0.0\n"
-    given = f'{ends}[time]\ntf = "free"\n[control]\nelevator = [-0.05236, 0.05236]\n[solver]\nmax_seconds = 300.0\n'
-    found = levelled(tmp_path, 1, given)
-    assert [one.kind for one in found.events] == ["jump", "jump"]
-    assert found.times[-1] < 5.72933
-    model, p, bounds = found.instance.model, found.instance.parameters, found.instance.control_set.arguments
+QUICKEST, SLOW = 3.78086, 5.72864575840
+"""Least times by Ipopt, steps of constant control on phases of free length, and near another strict minimum, with the
+costates at its start."""
+COSTATES = (26.841081135395438, -7.531763056827809, 0.8848835422691439)
+
+
+def follows(case: Instance, costates: tuple[float, ...], times: Array) -> tuple[Array, Array]:
+    """Where the law leads from the start, by an adaptive integrator: states and costates at times, and controls."""
+    model, p, bounds = case.model, case.parameters, case.control_set.arguments
 
     def rates(t: float, z: Array) -> Array:
         return np.array(model.canonical(t, tuple(z[:3].tolist()), tuple(z[3:].tolist()), p, bounds))
 
-    z = np.concatenate([found.x[:, 0], found.lam[:, 0]])
-    for begin, end in pairwise([0.0, *(one.t for one in found.events), float(found.times[-1])]):
-        times = np.linspace(begin, end, 2)
-        z = solve_ivp(rates, times, z, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
-    assert z[:3] == pytest.approx(np.zeros(3), abs=1e-5)
+    start, ends = np.array([*case.initial, *costates]), (times[0], times[-1])
+    z = solve_ivp(rates, ends, start, t_eval=times, method="DOP853", rtol=1e-9, atol=1e-11, max_step=0.02).y
+    return z, np.asarray(model.control_law_batch(times, z[:3], z[3:], p, bounds))
+
+
+@pytest.mark.slow(in_turn=True)
+def test_extremals_drawn_beside_a_levelling_lead_to_one_that_is_far_quicker(tmp_path: Path) -> None:
+    """To the slow one lead most starts; nothing that a descent of states finds tells of the other, whose law jumps."""
+    case = f8(tmp_path, 1, HURRIED)
+    times = np.linspace(0.0, SLOW, 801)
+    z, u = follows(case, COSTATES, times)
+    assert z[:3, -1] == pytest.approx(np.zeros(3), abs=1e-4)
+    slow = replace(unsolved(case, "collocation", 0.0), times=times, x=z[:3], u=u, lam=z[3:], objective=SLOW)
+    starts = Compared(Competitors(Kind.STARTS, 4, 1, SLOW), 0.0, None, interrupted=False)
+    with np.errstate(all="ignore"):
+        found = [search(Limits(200, float("inf"))) for search in searches(slow, starts, seed=0)]
+    quicker = min((one for one in found if one is not None), key=lambda one: one.cost)
+    assert quicker.cost == pytest.approx(QUICKEST, rel=2e-6)
+    assert quicker.curve is not None
+
+    begun = guess(quicker, slow)
+    assert begun.tf_guess == pytest.approx(quicker.cost)
+    again = solve(begun, examined=False)
+    assert again.status is Status.CONVERGED
+    assert again.objective == pytest.approx(quicker.cost, rel=1e-9)
+    z, _ = follows(case, tuple(again.lam[:, 0].tolist()), np.array([0.0, float(again.times[-1])]))
+    assert z[:3, -1] == pytest.approx(np.zeros(3), abs=1e-4)
+
+
+@pytest.mark.study
+def test_levelling_in_least_time_jumps_twice(tmp_path: Path) -> None:
+    """The first extremal that is found is the slow one."""
+    found = levelled(tmp_path, 1, HURRIED)
+    assert [one.kind for one in found.events] == ["jump", "jump"]
+    assert found.objective == pytest.approx(QUICKEST, rel=2e-6)

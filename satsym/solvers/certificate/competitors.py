@@ -77,13 +77,14 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     """
     kinds, missing, spec, answer = [], [], solution.instance.model.spec, Answer(solution)
     for kind, attempts in _attempts(solution, answer, seed):
-        smooth = kind is Kind.STARTS and not (spec.directional or spec.stationary)
+        by_law = spec.directional or spec.stationary
+        smooth = kind is Kind.STARTS and not by_law
         activity.tell(f"certificate: comparing with {kind.value} ...")
         found = _tried(solution, kind, attempts, deadline)
         if found is None:
             missing.append(kind)
             continue
-        if smooth and not found.interrupted:
+        if (smooth or by_law) and not found.interrupted:
             drawn = tried(partial(drawn_extremals.searches, solution, found, seed)) or []
             more = _tried(solution, kind, drawn, deadline, DRAWN_WORK, PATIENT)
             found = found if more is None else found.joined(more)

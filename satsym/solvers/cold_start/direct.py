@@ -18,15 +18,10 @@ from satsym.arrays import Array
 from satsym.control_set import UNSMOOTHED
 from satsym.grid import interleave
 from satsym.instance import Instance
+from satsym.solvers.cold_start.by_newton import by_newton
 from satsym.solvers.cold_start.origin import Origin, Start
-from satsym.solvers.cold_start.swept import on_mesh
-from satsym.solvers.collocation.accuracy.jumping import found, located
-from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
 KNOTS, STEPS, FINER = 25, 4, 2
@@ -46,9 +41,6 @@ PROGRAMMES, SATISFIED = 300, 1e-6
 
 FLAT = (1e-6, 1e-8)
 """Relative changes of the cost at which it ends: Newton's method mostly goes on from the first, else the second."""
-
-MESHES = (30, 60, 120)
-"""Intervals with which Newton's method is tried."""
 
 SMALLEST = 1e-9
 
@@ -338,19 +330,8 @@ def _extremal(programme: Programme, unknown: Array) -> tuple[TwoPoint, Start] | 
     scale = Scale(size, max(float(np.abs(costates * size[:, None]).max()), 1e-30))
     duration = float(times[-1] - times[0])
     problem = TwoPoint(instance, final_argument(instance), duration, scale)
-    z, tau = np.concatenate([x, costates]) / scale.both, np.linspace(0.0, 1.0, len(times))
-    for intervals in MESHES:
-        mesh = np.linspace(0.0, 1.0, intervals + 1)
-        curve = on_mesh(problem, tau, z, mesh)
-        if found(problem, curve):
-            outcome = located(problem, curve, STAGES, intervals)
-        else:
-            outcome = newton(System(problem, mesh, STAGES), curve, most=40)
-        if outcome is not None and outcome.solved and outcome.curve.in_domain(problem.positive):
-            cost = System(problem, outcome.curve.mesh, STAGES).cost(outcome.curve)
-            attempt = Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, cost)
-            return problem, Start(attempt, Origin.DIRECT, outcome.iterations, bounded=True)
-    return None
+    found = by_newton(problem, np.concatenate([x, costates]) / scale.both)
+    return None if found is None else (problem, Start(found, Origin.DIRECT, found.iterations, bounded=True))
 
 
 def _ends(instance: Instance) -> tuple[Array, Array]:

@@ -42,7 +42,7 @@ def first(problem: TwoPoint) -> States:
     def overlaid(tau: Array) -> Array:
         states = path(tau)
         for name, values in guessed.items():
-            states[names.index(name)] = _series(values, tau) / problem.scale.state[names.index(name)]
+            states[names.index(name)] = series(values, tau) / problem.scale.state[names.index(name)]
         return states
 
     return overlaid
@@ -79,12 +79,12 @@ def start(problem: TwoPoint, path: States | None = None) -> Curve:
     for name, values in problem.instance.guess.costate.items():
         i = n + problem.instance.model.spec.state_names.index(name)
         unit = problem.scale.both[i, 0]
-        begun.nodes[i] = _series(values, begun.mesh) / unit
-        begun.stages[i] = _series(values, times.ravel()).reshape(times.shape) / unit
+        begun.nodes[i] = series(values, begun.mesh) / unit
+        begun.stages[i] = series(values, times.ravel()).reshape(times.shape) / unit
     return begun
 
 
-def _series(values: Sequence[float], tau: Array) -> Array:
+def series(values: Sequence[float], tau: Array) -> Array:
     """Values evenly spaced over [0, 1], straight lines between."""
     found: Array = np.interp(tau, np.linspace(0.0, 1.0, len(values)), values)
     return found
@@ -128,7 +128,7 @@ def _under_guess(problem: TwoPoint) -> States | None:
         return None
     nodes = np.linspace(0.0, 1.0, 2 * STEPS + 1)
     names = instance.model.spec.control_names
-    u = np.array([_series(values.get(name, (0.0,)), nodes) for name in names])
+    u = np.array([series(values.get(name, (0.0,)), nodes) for name in names])
     u = instance.control_set.project(u)
     times = instance.t0 + problem.duration * nodes[::2]
     x, _, _ = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)

@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.physics.mechanics import KanesMethod, ReferenceFrame, dynamicsymbols
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.chain import parts_of, told
+from satsym.symbolic.chain import named_parts, parts_of
 from satsym.symbolic.checks import Point, compare, identity, numeric_along, slopes
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds import stated_as
@@ -84,7 +84,7 @@ def kane(so_far: Derivation) -> Step:
     if sum(map(sp.count_ops, written)) > LONG:
         names = map(_part, range(1, 10**4))
         found, reduced = sp.cse(written, symbols=names, order="canonical")
-        parts, written = told(found, reduced, _part)
+        parts, written = named_parts(found, reduced, _part)
     equations = [Equation(s.name, s, value) for s, value in parts]
     equations += [
         Equation(name, sp.Symbol(name, real=True), value)

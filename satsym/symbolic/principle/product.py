@@ -16,7 +16,7 @@ import sympy as sp
 
 from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
-from satsym.symbolic.chain import told
+from satsym.symbolic.chain import named_parts
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
@@ -162,7 +162,7 @@ def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]],
     compared = [e for law in laws if isinstance(law, Vertex) for e in law.args[:2]]
     compared += [e for law in laws if isinstance(law, Argmin) for e in law.args[2:]]
     taken, left = sp.cse([*compared, *laws], symbols=named, order="canonical")
-    parts, reduced = told(taken, left, pn.part_of_law)
+    parts, reduced = named_parts(taken, left, pn.part_of_law)
     return parts, reduced[len(compared) :]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from satsym.arrays import Array
 from satsym.instance import Guess
 from satsym.solution import Solution
 from satsym.solvers.certificate.comparison import SAME, Competitor
@@ -64,6 +65,17 @@ def from_path(
             return Competitor(known.system.problem, known.curve, cost)
         at_hand = None if problem.control_set.bounded else found.linearised
         return accurate(problem, found.curve, cost, at_hand) if found.solved else None
+
+    return attempt
+
+
+def from_near(problem: TwoPoint, z: Array, cost: float) -> Search:
+    """The extremal next to states and costates, shape (2n, M), that are nearly one of the problem's duration."""
+    from satsym.solvers.cold_start.by_newton import by_newton
+
+    def attempt(limits: Limits) -> Competitor | None:
+        found = by_newton(problem, z / problem.scale.both)
+        return None if found is None else accurate(problem, found.curve, cost)
 
     return attempt
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.arrays import distinct
@@ -58,9 +60,8 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
     """
     met, before, size = found(problem, curve), np.zeros(0), float("inf")
     for _ in range(MOST):
+        met = _merged(met)
         times = np.array([jump.time for jump in met])
-        if (np.diff(times) < CLOSE).any():
-            return None
         mesh = through(np.union1d(corners(problem, curve), times), count)
         system, curve = System(problem, mesh, order, met), curve.on(mesh, order)
         if size < ROUGHLY:
@@ -77,6 +78,20 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
             curve, size = stepped
         before, met = times, found(problem, curve)
     return Attempt(curve, Reason.UNSETTLED, MOST)
+
+
+def _merged(met: list[Jump]) -> list[Jump]:
+    """Without jumps that leave nothing between them: where a curve is torn at a node, its law may jump to and fro."""
+    left: list[Jump] = []
+    for jump in met:
+        if left and jump.time - left[-1].time < CLOSE:
+            last = left.pop()
+            apart = float(np.abs(jump.after - last.before).max())
+            if apart > CLEAR * max(float(np.abs(jump.after).max()), float(np.abs(last.before).max())):
+                left.append(replace(last, after=jump.after))
+        else:
+            left.append(jump)
+    return left
 
 
 def _stepped(system: System, curve: Curve) -> tuple[Curve, float] | None:

@@ -63,10 +63,10 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
         return None
     names = instance.model.spec.state_names
     missed = reach.nearest_miss()
-    told = ", ".join(f"{names[i]} by {abs(value):.3g}" for i, value in zip(rows, missed, strict=True))
+    misses = ", ".join(f"{names[i]} by {abs(value):.3g}" for i, value in zip(rows, missed, strict=True))
     return (
         f"no control within its bounds reaches the given end in {instance.tf - instance.t0:.10g}: "
-        f"the nearest one misses {told}, and {separated_by(instance, costate)}"
+        f"the nearest one misses {misses}, and {separated_by(instance, costate)}"
     )
 
 

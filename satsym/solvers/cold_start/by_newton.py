@@ -1,0 +1,59 @@
+"""The extremal next to states and costates that are nearly one, by Newton's method with the law itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.origin import Origin, Start
+from satsym.solvers.cold_start.swept import on_mesh
+from satsym.solvers.collocation.accuracy.jumping import found, located
+from satsym.solvers.collocation.attempt import Attempt, Reason
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.system import System
+
+MESHES = (30, 60, 120)
+"""Intervals that are tried."""
+
+SAMPLES = 401
+"""Of a guess."""
+
+
+def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
+    """The extremal, with nodes at jumps of its control; ``None`` where there is none in the domain.
+
+    Parameters
+    ----------
+    z
+        Scaled, at evenly spaced times, shape (2n, M); the duration is the problem's.
+    """
+    tau = np.linspace(0.0, 1.0, z.shape[1])
+    for intervals in MESHES:
+        mesh = np.linspace(0.0, 1.0, intervals + 1)
+        curve = on_mesh(problem, tau, z, mesh)
+        if found(problem, curve):
+            outcome = located(problem, curve, STAGES, intervals)
+        else:
+            outcome = newton(System(problem, mesh, STAGES), curve, most=40)
+        if outcome is not None and outcome.solved and outcome.curve.in_domain(problem.positive):
+            cost = System(problem, outcome.curve.mesh, STAGES).cost(outcome.curve)
+            return Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, cost)
+    return None
+
+
+def from_guess(instance: Instance) -> tuple[TwoPoint, Start] | None:
+    """The problem and the extremal next to a guess of all states and costates; ``None`` where that is not guessed."""
+    names, guess = instance.model.spec.state_names, instance.guess
+    end = instance.tf_guess if instance.tf is None else instance.tf
+    if end is None or not all(name in guess.state and name in guess.costate for name in names):
+        return None
+    problem = two_point(instance, end - instance.t0)
+    even, both = np.linspace(0.0, 1.0, SAMPLES), (guess.state, guess.costate)
+    z = np.array([paths.series(table[name], even) for table in both for name in names])
+    found = by_newton(problem, z / problem.scale.both)
+    return None if found is None else (problem, Start(found, Origin.GUESS, found.iterations, bounded=True))
