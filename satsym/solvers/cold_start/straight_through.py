@@ -7,6 +7,8 @@ ways.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.solvers.collocation import mesh as meshes
@@ -17,7 +19,7 @@ from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.system import System
+from satsym.solvers.collocation.system import System, costs
 from satsym.solvers.iteration import Limits
 
 NEAR = 3e-2
@@ -44,8 +46,18 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
     start
         A guess, mostly without costates.
     """
+    passed: list[tuple[System, Curve, float]] = []
+    found = _followed(problem, start, passed)
+    told = costs([(system, curve) for system, curve, _ in passed]) if found or limits.watch else []
+    for cost, (_, _, size) in zip(told, passed, strict=False):
+        limits.tell(cost * problem.scale.cost, size)
+    return replace(found, cost=told[-1]) if found else None
+
+
+def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve, float]]) -> Attempt | None:
+    """The same without its cost; curves on the way, and the corrections that led to them, are put into a list."""
     curve, before = start.with_stages(FEWER), float("inf")
-    system, cost = System(problem, start.mesh, FEWER), 0.0
+    system = System(problem, start.mesh, FEWER)
     for steps in range(1, FEW + 1):
         if steps == ROUGH + 1:
             curve, system = curve.with_stages(STAGES), System(problem, curve.mesh, STAGES)
@@ -58,9 +70,7 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
             if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
             curve, before = moved, SHORTER * size
-            if limits.watch or size < NEAR:
-                cost = system.cost(curve)
-                limits.tell(cost * problem.scale.cost, size)
+            passed.append((system, curve, size))
             if not size < NEAR or steps <= ROUGH:
                 continue
             if system.largest_turn(curve, jacobian) > meshes.COARSEST:
@@ -69,7 +79,7 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
             elif negative_directions(problem, curve, linearised.matching):
                 return None
             else:
-                return Attempt(curve, Reason.MINIMUM, steps, cost, hard=False, linearised=linearised)
+                return Attempt(curve, Reason.MINIMUM, steps, hard=False, linearised=linearised)
         except np.linalg.LinAlgError:
             return None
     return None

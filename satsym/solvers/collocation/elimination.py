@@ -73,11 +73,11 @@ class Nodes:
     def __init__(self, transition: Array, final: Array) -> None:
         count, n = transition.shape[:2]
         half = n // 2
-        kl, ku, row, column, first, first_column, last, last_column = _band(half, count)
+        kl, ku, row, column, first, first_column, last, last_column, unity = _band(half, count)
         band = np.zeros((2 * kl + ku + 1, n * (count + 1)))
         band[row, column] = transition
         band[kl + ku + half - n, n:] = -1.0
-        band[first, first_column] = np.eye(n)[:half]
+        band[first, first_column] = unity
         band[last, last_column] = final
         self._band = (kl, ku)
         self._factors, self._pivots, info = lapack().dgbtrf(band, kl, ku)
@@ -105,6 +105,7 @@ def _band(half: int, count: int) -> tuple[Any, ...]:
         b[:half],
         diagonal + half + (a - b)[: n - half],
         count * n + b[: n - half],
+        np.eye(n)[:half],
     )
 
 

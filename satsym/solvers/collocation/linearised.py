@@ -116,7 +116,7 @@ def linearise(
     transition = np.ascontiguousarray((system.scheme.end @ response.reshape(count, n, s, n)).swapaxes(1, 2))
     transition.reshape(count, -1)[:, :: n + 1] += 1.0 - system.scheme.end.sum()
     extra = solved[:, n + 1 :].reshape(count, e, s, n)
-    by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
+    by_theta = (system.scheme.end @ extra).swapaxes(1, 2) if e else extra.reshape(count, n, 0)
     for k, one in residual.saltations.items():
         transition[k], by_theta[k] = one.matrix @ transition[k], one.matrix @ by_theta[k]
         if system.problem.free_time:

@@ -56,9 +56,12 @@ class System:
 
     def cost(self, curve: Curve) -> float:
         """The scaled cost J along a curve, under the control law of its stages."""
+        return self._summed(curve, self.problem.running_cost(self.tau, curve.flat, curve.theta))
+
+    def _summed(self, curve: Curve, running: Array) -> float:
+        """The same by the running cost at its stages, shape (N s,)."""
         problem, theta = self.problem, curve.theta
-        running = problem.running_cost(self.tau, curve.flat, theta).reshape(self.intervals, self.order)
-        integral = float((running @ self.scheme.weights) @ self.widths)
+        integral = float((running.reshape(self.intervals, self.order) @ self.scheme.weights) @ self.widths)
         return problem.elapsed(theta) * integral + problem.terminal_cost(curve.nodes[:, -1], theta)
 
     def residual(self, curve: Curve) -> Residual:
@@ -111,3 +114,16 @@ class System:
         at_middles = jacobian[:n, :n, self.order // 2 :: self.order]
         speed = np.abs(np.linalg.eigvals(at_middles.transpose(2, 0, 1))).max(axis=1)
         return float((speed * self.widths).max()) * self.problem.elapsed(curve.theta)
+
+
+def costs(along: Sequence[tuple[System, Curve]]) -> list[float]:
+    """Of several curves of one problem, asked for at once where no extra unknowns tell them apart."""
+    if not along or along[0][0].problem.unknowns:
+        return [system.cost(curve) for system, curve in along]
+    tau, z = (np.concatenate(rows, axis=-1) for rows in zip(*((s.tau, c.flat) for s, c in along), strict=True))
+    running, found, begin = along[0][0].problem.running_cost(tau, z, along[0][1].theta), [], 0
+    for system, curve in along:
+        end = begin + len(system.tau)
+        found.append(system._summed(curve, running[begin:end]))
+        begin = end
+    return found
