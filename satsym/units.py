@@ -1,9 +1,9 @@
 """Quantities written as text, such as ``"42164.17 km"``, in the unit that a model wants.
 
 The text comes from a file, so it is read by a small grammar of our own: a number, then unit names with
-``*``, ``/`` and small whole exponents. pint is asked about single names only. It would evaluate anything it is
-given, powers included, and ``"1 m**9**9**9"`` is a quantity too. It costs half a second to load, hence is
-imported where the first quantity is read and nowhere else.
+``*``, ``/``, parentheses and small whole exponents. pint is asked about single names only. It would evaluate
+anything it is given, powers included, and ``"1 m**9**9**9"`` is a quantity too. It costs half a second to load,
+hence is imported where the first quantity is read and nowhere else.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ MAX_LENGTH = 100
 MAX_EXPONENT = 9
 
 _NUMBER = re.compile(r" *([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)(?![0-9.]) *")
-_FACTOR = re.compile(r" *(1(?![0-9.])|[A-Za-z][A-Za-z0-9_]*) *(?:(?:\^|\*\*) *([+-]?[0-9])(?![0-9.]))? *")
+_EXPONENT = r"(?:(?:\^|\*\*) *([+-]?[0-9])(?![0-9.]))? *"
+_FACTOR = re.compile(r" *(1(?![0-9.])|[A-Za-z][A-Za-z0-9_]*) *" + _EXPONENT)
+_OPENED, _CLOSED = re.compile(r" *\("), re.compile(r"\) *" + _EXPONENT)
 _OPERATOR = re.compile(r"\*|/")
 
 
@@ -33,7 +35,7 @@ def parse_quantity(text: str, unit: str) -> float:
     ----------
     text
         A number, then a unit expression: names, ``*``, ``/``, ``^`` or ``**`` with a whole exponent from -9 to
-        9, spaces. ``a/b*c`` is ``(a/b)*c``.
+        9, parentheses, spaces. ``a/b*c`` is ``(a/b)*c``.
     unit
         The unit wanted, in the same notation; ``"1"`` where there is none.
 
@@ -167,23 +169,44 @@ def _unit(expression: str) -> Any:
 
 def _factors(expression: str) -> dict[str, int]:
     """Names in a unit expression and their exponents, by our grammar alone."""
+    found = _product(expression, 0) if len(expression) <= MAX_LENGTH else None
+    if found is None or found[1] != len(expression) or any(abs(n) > MAX_EXPONENT for n in found[0].values()):
+        raise BadInput(
+            f"unit {shown(expression)} is not readable; write names joined by * or /, with exponents up to "
+            f'{MAX_EXPONENT}, for instance "km/s^2"'
+        )
+    return found[0]
+
+
+_Read = tuple[dict[str, int], int]
+"""Names with their exponents, and the place after what was read."""
+
+
+def _product(text: str, position: int) -> _Read | None:
+    """Powers joined by ``*`` and ``/``, from a place on; ``None`` where there are none."""
     factors: dict[str, int] = {}
-    position, sign = 0, 1
-    while len(expression) <= MAX_LENGTH and (match := _FACTOR.match(expression, position)):
-        name, exponent = match[1], sign * int(match[2] or 1)
-        if name != "1":
-            factors[name] = factors.get(name, 0) + exponent
-        position = match.end()
-        if position == len(expression) and all(abs(n) <= MAX_EXPONENT for n in factors.values()):
-            return factors
-        operator = _OPERATOR.match(expression, position)
+    sign = 1
+    while (one := _power(text, position)) is not None:
+        names, position = one
+        for name, exponent in names.items():
+            factors[name] = factors.get(name, 0) + sign * exponent
+        operator = _OPERATOR.match(text, position)
         if operator is None:
-            break
+            return factors, position
         position, sign = operator.end(), -1 if operator[0] == "/" else 1
-    raise BadInput(
-        f"unit {shown(expression)} is not readable; write names joined by * or /, with exponents up to "
-        f'{MAX_EXPONENT}, for instance "km/s^2"'
-    )
+    return None
+
+
+def _power(text: str, position: int) -> _Read | None:
+    """A name, a one or a product in parentheses, with its exponent."""
+    if match := _FACTOR.match(text, position):
+        return ({} if match[1] == "1" else {match[1]: int(match[2] or 1)}), match.end()
+    opened = _OPENED.match(text, position)
+    inner = _product(text, opened.end()) if opened else None
+    closed = _CLOSED.match(text, inner[1]) if inner else None
+    if inner is None or closed is None:
+        return None
+    return {name: exponent * int(closed[1] or 1) for name, exponent in inner[0].items()}, closed.end()
 
 
 @cache

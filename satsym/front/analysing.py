@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from satsym.analysis import subject as subjects
 from satsym.front import html
 from satsym.front.instance import Instance
+from satsym.front.refusals import in_one_line
 from satsym.front.single_threaded import single_threaded
 from satsym.instance import Instance as Case
 from satsym.kernels import Kernels
@@ -141,6 +142,7 @@ class Regulator(_Said):
 
 
 @single_threaded()
+@in_one_line
 def analyse(subject: Subject) -> Analysis:
     """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
 
@@ -159,6 +161,7 @@ def analyse(subject: Subject) -> Analysis:
 
 
 @single_threaded()
+@in_one_line
 def lqr(subject: Subject) -> Regulator:
     """Find the linear feedback that costs least.
 

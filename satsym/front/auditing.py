@@ -11,6 +11,7 @@ from typing import Any
 from satsym import auditing
 from satsym.auditing import Judged, Ledger, cache
 from satsym.front import html
+from satsym.front.refusals import in_one_line
 from satsym.front.single_threaded import single_threaded
 from satsym.report.findings import objects, review
 from satsym.report.results.files import to_json
@@ -79,6 +80,7 @@ class Audit:
 
 
 @single_threaded()
+@in_one_line
 def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) -> Audit:
     """Judge what documents print.
 

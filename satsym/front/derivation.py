@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym import symbolic
+from satsym.front.refusals import in_one_line
 from satsym.kernels.digest import sealed
 from satsym.report import artefacts
 from satsym.status import BadInput
@@ -220,6 +221,7 @@ def _display(lines: list[str]) -> str:
 Subject: TypeAlias = "Problem | Model | Derivation | str | Path"
 
 
+@in_one_line
 def derive(subject: Subject, convention: Convention | None = None) -> Derivation:
     """Derive everything that follows from a problem, or from a model without a cost.
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym import instance as instances
 from satsym.front import tables
+from satsym.front.refusals import in_one_line
 from satsym.instance import Written
 from satsym.status import BadInput
 from satsym.wording import shown
@@ -27,6 +28,7 @@ TIMES = ("tf", "t0", "tf_guess", "t0_guess")
 _NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
 
 
+@in_one_line
 def load(name_or_path: str | Path) -> Instance:
     """An instance from a file.
 
@@ -64,6 +66,7 @@ class Instance:
         return cls(written, written.instance())
 
     @classmethod
+    @in_one_line
     def of(
         cls,
         model: str | Path | Problem | Model | Derivation,
@@ -116,6 +119,7 @@ class Instance:
         written = Written(tables.merged(tree, more), chosen, Path(f"{chosen}.toml"), model=kernels)
         return cls.of_written(written)
 
+    @in_one_line
     def with_(self, **changes: Any) -> Instance:
         """The same with changes, checked anew.
 

@@ -16,6 +16,7 @@ from satsym.front import between, html, saved
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance
 from satsym.front.pictures import Pictures
+from satsym.front.refusals import in_one_line
 from satsym.report.results.files import to_json
 from satsym.solution import Simulation, Solution
 from satsym.status import BadInput, Status
@@ -101,6 +102,7 @@ class Result(ABC, Generic[Found]):
         return saved.save(self.instance, self.found, self.to_dict(), Path(folder), pictures)
 
     @classmethod
+    @in_one_line
     def load(cls, folder: str | Path, instance: Instance | str | Path | None = None) -> Self:
         """What was saved in a folder, by :meth:`save` or by the command line.
 

@@ -74,7 +74,8 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
     if case is None:
         raise unusable(
             folder / LIST,
-            f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
+            f"is of {printable(name)}, which is neither there nor a shipped instance; give its file as well, as in "
+            f'Solution.load(FOLDER, "{printable(name)}.toml")',
         )
     case = _with(case, msgspec.json.decode(listed.result).get("set", {}))
     found, _ = trajectory.read(case.case, folder)

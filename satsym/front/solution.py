@@ -14,6 +14,7 @@ from satsym.arrays import Array, distinct
 from satsym.front import between, html
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance, as_case
+from satsym.front.refusals import in_one_line
 from satsym.front.result import Result
 from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import solution_object
@@ -109,6 +110,7 @@ class Solution(Result[solution.Solution]):
 
 
 @single_threaded()
+@in_one_line
 def solve(instance: Instance | str | Path, progress: Progress | None = None, **options: Any) -> Solution:
     """Solve an instance and certify the answer.
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.front import saved
 from satsym.front.instance import Instance, as_case
+from satsym.front.refusals import in_one_line
 from satsym.front.single_threaded import single_threaded
 from satsym.front.tables import name_of, plain
 from satsym.report.look import Look
@@ -67,6 +68,7 @@ class Study:
 
 
 @single_threaded()
+@in_one_line
 def study(
     instance: Instance | str | Path,
     folder: str | Path,

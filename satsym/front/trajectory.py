@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from satsym.front import html
 from satsym.front.instance import Instance, as_case
+from satsym.front.refusals import in_one_line
 from satsym.front.result import Result
 from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import simulation_object
@@ -57,6 +58,7 @@ class Trajectory(Result[Simulation]):
 
 
 @single_threaded()
+@in_one_line
 def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Trajectory:
     """Follow the motion of an instance under a control law.
 

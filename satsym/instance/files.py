@@ -129,6 +129,11 @@ def text(path: Path) -> str:
         If it cannot be read, is too large, or is no text.
     """
     try:
+        if path.suffix == ".py" and path.is_file():
+            raise BadInput(
+                "is a Python file, and what is solved is a TOML file; derive a model with `satsym derive FILE --out "
+                'DIR`, then write an instance of it that begins with model = "DIR/NAME"'
+            )
         if path.is_dir():
             raise BadInput("is a directory; give the path of a TOML file")
         if not path.is_file():

@@ -178,7 +178,7 @@ class SolverOptions(_Table, frozen=True):
 class InstanceFile(_Table, frozen=True):
     """An instance as it was written."""
 
-    model: Annotated[Name, Key("a shipped model, or a path from this file, without .py")]
+    model: Annotated[Name, Key("a shipped model, or a path from this file to its folder or below, without .py")]
     initial: Annotated[
         dict[str, Quantity],
         Key('the initial state, every one; "free" where it is found', unit="the model's", names="STATE"),

@@ -69,7 +69,7 @@ def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original
     ("arguments", "message"),
     [
         (["two words"], 'NAME: got "two words"; write small letters'),
-        (["class"], 'NAME: got "class"; write small letters'),
+        (["class"], "NAME: class is a word of Python's own; choose another name, such as my_class"),
         (["random"], "NAME: random.py would hide a module that Python imports"),
         (["polar_orbit"], "NAME: polar_orbit is a model that comes with satsym"),
         (["a/b", "--instance", "soft-return"], 'NAME: got "a/b"; write letters'),

@@ -184,6 +184,7 @@ def test_bad_input_is_one_line_that_says_what_to_do(refused: Callable[[], Any], 
         refused()
     assert line in str(found.value)
     assert "\n" not in str(found.value)
+    assert len(found.traceback) <= 4  # this test, what it calls, and where that ends
 
 
 def test_a_name_that_no_module_can_have_is_refused_before_anything_is_solved() -> None:

@@ -15,6 +15,7 @@ import satsym
 from satsym.cli import main
 from satsym.front.between import Motion
 from satsym.front.trajectory import Trajectory
+from satsym.instance.files import SHIPPED
 from satsym.kernels.digest import sealed
 from satsym.status import BadInput
 from tests.support.front import PUSH, pushed
@@ -219,6 +220,15 @@ def test_damaged_results_are_refused(tmp_path: Path) -> None:
         satsym.Solution.load(tmp_path)
     with pytest.raises(BadInput):
         satsym.Solution.load(tmp_path / "nowhere")
+
+
+def test_what_the_command_line_wrote_of_an_instance_elsewhere_is_loaded_with_its_file(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text((SHIPPED / "soft-return.toml").read_text())
+    assert main(["solve", str(mine), "--out", str(tmp_path / "out"), "--json"]) == 0
+    with pytest.raises(BadInput, match=r'give its file as well, as in Solution.load\(FOLDER, "mine.toml"\)'):
+        satsym.Solution.load(tmp_path / "out")
+    assert satsym.Solution.load(tmp_path / "out", mine).objective == pytest.approx(4.26589411e-4, rel=1e-8)
 
 
 def test_html_holds_no_foreign_markup_and_nothing_from_elsewhere() -> None:

@@ -246,6 +246,12 @@ def test_a_file_that_is_no_instance_is_refused_quickly(tmp_path: Path, content: 
         assert word in message, message
 
 
+def test_a_model_in_place_of_an_instance_is_told_what_to_do(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("PROBLEMS = ()\n")
+    assert "mine.py: is a Python file, and what is solved is a TOML file; derive a model with" in refusal(file)
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [

@@ -330,7 +330,9 @@ def test_an_indefinite_second_derivative_is_refused(cost: sp.Expr) -> None:
 
 
 def test_a_weight_has_to_be_declared_positive() -> None:
-    assert "declared positive" in complaint(problem(running_cost=c * u1**2 + u2**2))
+    assert '; declare positive c: Variable("c", ..., positive=True)' in complaint(
+        problem(running_cost=c * u1**2 + u2**2)
+    )
     assert derive(problem(running_cost=k * u1**2 + u2**2)).steps
 
 

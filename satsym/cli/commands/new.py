@@ -62,7 +62,9 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
     from satsym import kernels
     from satsym.wording import shown
 
-    if not _NAME.match(name) or keyword.iskeyword(name):
+    if keyword.iskeyword(name):
+        raise BadInput(f"NAME: {name} is a word of Python's own; choose another name, such as my_{name}")
+    if not _NAME.match(name):
         raise BadInput(f"NAME: got {shown(name)}; write small letters, digits and single underscores, such as my_model")
     if name in {*sys.stdlib_module_names, "numpy", "pytest", "satsym", "scipy", "sympy"}:
         raise BadInput(f"NAME: {name}.py would hide a module that Python imports; choose another name")

@@ -141,3 +141,13 @@ def weighed(weight: sp.Symbol, symbols: Sequence[sp.Symbol], controls: Sequence[
     if len({v.unit for v in controls}) == 1:
         return weight / 2 * sp.Add(*(u**2 for u in symbols))
     return sp.Add(*(weight * u**2 / 2 for u in symbols))
+
+
+def unsigned(problem: Problem, curvatures: sp.Matrix) -> str:
+    """What to do where H is not known to bend the right way: parameters of which no sign is known may be the reason."""
+    declared = problem.model.parameters
+    symbols = zip(declared, symbols_of(declared), strict=True)
+    found = [v.symbol for v, symbol in symbols if curvatures.has(symbol) and not symbol.is_positive]
+    if not found:
+        return "weigh the square of each control"
+    return f'declare positive {", ".join(found)}: Variable("{found[0]}", ..., positive=True)'

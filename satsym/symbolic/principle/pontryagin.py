@@ -17,6 +17,7 @@ from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle.parts import unsigned
 
 COMPETITORS = 50
 """Admissible controls that the control law is held against at each random point."""
@@ -87,8 +88,7 @@ def second_derivative(so_far: Derivation) -> Step:
     if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu is not {'positive' if sign(problem) > 0 else 'negative'} definite, so H has no "
-            f"{problem.convention} in the controls "
-            "(weights have to be declared positive)"
+            f"{problem.convention} in the controls; {unsigned(problem, hessian)}"
         )
     return Step(
         "second_derivative",

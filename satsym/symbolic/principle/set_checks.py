@@ -15,7 +15,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.branches import Minimum
-from satsym.symbolic.principle.parts import limits_of
+from satsym.symbolic.principle.parts import limits_of, unsigned
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.principle.set_laws import bare, found, problem_of
 
@@ -72,7 +72,7 @@ def convex(so_far: Derivation, one: Minimum) -> Any:
     if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu of {one.part.name!r} is not definite, so H has no {problem.convention} in these "
-            "controls (weights have to be declared positive)"
+            f"controls; {unsigned(problem, one.hessian)}"
         )
     return positive
 
