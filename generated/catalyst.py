@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
 Source: ../derivations/examples/catalyst.py d67ddf7b1d4e1ce71e1cb1ea89772f8e
-Digest: 152580c30e8c93ffc316c62f1128c1ca2c4256a00845d3651fe6dcba65547094
+Digest: 33667b7f9b1402491da5bc70a54d0d23d2c290fa51e70212d856ba1015f0acdb
 """
 
 import math
@@ -121,9 +121,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     return (
         0.0,
     )
@@ -542,12 +543,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

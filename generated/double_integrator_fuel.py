@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: b1adc7d0ca5fe2e024ae8b505ebfca373e324879eda7c33011c7cec7ea334ba0
+Digest: 04965d3a98cf145e6e3e82fd29262d99e4503602dd1cec2c8c33abe6a47ab230
 """
 
 import math
@@ -131,9 +131,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     q, q_dot = x
+    lambda_q, lambda_q_dot = lam
     (weight_time,) = p
     return (
         1.0,
@@ -504,13 +505,14 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     q, q_dot = x
+    lambda_q, lambda_q_dot = lam
     (weight_time,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 1.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: d1507c8fa173f99a7c9fea844c607eee01206e0b6231dedfcdaedc569f323bdf
+Digest: b627f05bf55139634c68c7c638cc05cc2d338425a9b05e5e138dd5a1f07dd774
 """
 
 import math
@@ -122,9 +122,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     q, q_dot = x
+    lambda_q, lambda_q_dot = lam
     return (
         0.0,
     )
@@ -525,12 +526,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     q, q_dot = x
+    lambda_q, lambda_q_dot = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
 Source: ../derivations/examples/fuller.py 892f877c73c232e8bee850c5bbbaa5e3
-Digest: 0a5947a0e0f5ad7ac6ec1d0640050e7386a1d831e84b2def068992d5d6714119
+Digest: ddc6053ac960c91455043eaacc037efc92e920b30c43dfa27f2e8bf8d237ce6b
 """
 
 import math
@@ -121,9 +121,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     return (
         0.0,
     )
@@ -486,12 +487,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

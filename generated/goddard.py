@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
 Source: ../derivations/examples/goddard.py 9b052ddd67fc13364b4876e03e6802d0
-Digest: 9d561127f11a390b47b484d93a2eed8845879856b7e39c3d3fab8bf02dbbe343
+Digest: 46f11afc51fc9081c7888a9b8ba0a21db3dd61428a2291974b0577520c49d242
 """
 
 import math
@@ -158,9 +158,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     h, v, m = x
+    lambda_h, lambda_v, lambda_m = lam
     D0, beta, g0, c = p
     return (
         0.0,
@@ -767,13 +768,14 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     h, v, m = x
+    lambda_h, lambda_v, lambda_m = lam
     D0, beta, g0, c = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
 Source: ../derivations/examples/goddard_pressure.py 691175e550e27f72c662b0b03cb7d0ae
-Digest: 4af7b19a88c7c544faf0838156e8c9c79a080b2ce307fdb3794beba297a6b6a0
+Digest: 442be2cd74ced0d3c9512a49818b33f2e8f3da2f0df4b55a4a6433c63234906b
 """
 
 import math
@@ -166,9 +166,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     h, v, m = x
+    lambda_h, lambda_v, lambda_m = lam
     rho0, area, beta, g0, c, q_max = p
     return (
         0.0,
@@ -894,13 +895,14 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     h, v, m = x
+    lambda_h, lambda_v, lambda_m = lam
     rho0, area, beta, g0, c, q_max = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: a1fa2e3cd519c24f8399d365936d8a59e90d90cebd2d7a3f50670fa7c294ce84
+Digest: bfdab31d11779ce7f67f21a496538f59205ea1e0c74a1b86c9fc178bcafc8d24
 """
 
 import math
@@ -172,9 +172,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     theta, theta_dot = x
+    lambda_theta, lambda_theta_dot = lam
     I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
     return (
         0.0,
@@ -638,13 +639,14 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     theta, theta_dot = x
+    lambda_theta, lambda_theta_dot = lam
     I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: 9091203b3e77f4545fa194ea4eafd12fa5deaae6c95f929a16ce21f5bdc10437
+Digest: c761fd88652ae1b58eb8a11f450c11a22f66974fb865c331f55e42c6af6de5f4
 """
 
 import math
@@ -122,9 +122,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     X1, X2 = x
+    lambda_X1, lambda_X2 = lam
     return (
         0.0,
     )
@@ -525,12 +526,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     X1, X2 = x
+    lambda_X1, lambda_X2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

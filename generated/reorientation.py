@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
 Source: ../derivations/examples/reorientation.py 8c2e5667e7283e0d22b96e097224f888
-Digest: fe3eb687f0af8a4022f83262c865dbf73faf347f4e272d9b6813092154e95c25
+Digest: 7b3f44570639789dd5c0c81ef579880af0795c27343ae2202ee5646c1b3b52a0
 """
 
 import math
@@ -269,9 +269,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     q1, q2, q3, q4, w1, w2, w3 = x
+    lambda_q1, lambda_q2, lambda_q3, lambda_q4, lambda_w1, lambda_w2, lambda_w3 = lam
     I1, I2, I3 = p
     return (
         0.0,
@@ -1698,13 +1699,14 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     q1, q2, q3, q4, w1, w2, w3 = x
+    lambda_q1, lambda_q2, lambda_q3, lambda_q4, lambda_w1, lambda_w2, lambda_w3 = lam
     I1, I2, I3 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((3, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((3, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     out[1] = 0.0
     out[2] = 0.0

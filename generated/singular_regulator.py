@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 274a3e5586ed16774182b67555102ffcceff0f7db6dc29b6ffc2284ab12a2b4f
+Digest: 7010a43b660fa0fe6fe36dc6750fb3d508d04a6dde5998da0d4bec0f66480bde
 """
 
 import math
@@ -111,9 +111,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     (x1,) = x
+    (lambda_x1,) = lam
     return (
         0.0,
     )
@@ -402,12 +403,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     (x1,) = x
+    (lambda_x1,) = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 015e90d4df03cbd9e3b5d204651b72c58a8d5a98973586f91817c4f5210323e8
+Digest: dc0827c3f974aad2a21c009b38b6044710bdfb3a2a2cf56e0bcb24d56395c289
 """
 
 import math
@@ -119,9 +119,10 @@ def switching_rate(t, x, u, lam, p):
     )
 
 
-def magnitude_weight(t, x, p):
-    """Weights of |u| in the cost."""
+def magnitude_weight(t, x, lam, p):
+    """What multiplies each |u| in H."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     return (
         0.0,
     )
@@ -518,12 +519,13 @@ def switching_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def magnitude_weight_batch(t, x, p, out=None):
-    """Weights of |u| in the cost. Batch form."""
+def magnitude_weight_batch(t, x, lam, p, out=None):
+    """What multiplies each |u| in H. Batch form."""
     x1, x2 = x
+    lambda_x1, lambda_x2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
     out[0] = 0.0
     return out
 

@@ -37,7 +37,7 @@ _OF_VARIABLES = (
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
-    *("chattering", "path_constraints", "linear_quadratic", "terminal_inequalities", "interior"),
+    *("chattering", "moving_magnitudes", "path_constraints", "linear_quadratic", "terminal_inequalities", "interior"),
 )
 
 
@@ -214,6 +214,8 @@ class ProblemSpec:
         Of the objective, where it is stated; else empty.
     chattering
         Names of controls whose singular arcs, within their bounds, are met and left by infinitely many switches only.
+    moving_magnitudes
+        Names of controls whose magnitudes stand in the motion.
     path_constraints
         Inequalities on the state along the way. May be empty.
     linear_quadratic
@@ -254,6 +256,7 @@ class ProblemSpec:
     maximise: bool = False
     objective_unit: str = ""
     chattering: tuple[str, ...] = ()
+    moving_magnitudes: tuple[str, ...] = ()
     path_constraints: tuple[PathConstraint, ...] = ()
     linear_quadratic: bool = False
     terminal_inequalities: tuple[str, ...] = ()

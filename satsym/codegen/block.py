@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen.printers import LARGEST_PRODUCT
-from satsym.symbolic.minimisers import MINIMISERS
+from satsym.symbolic.minimisers import MINIMISERS, Side
 
 Assignment = tuple[sp.Symbol, sp.Expr]
 
@@ -50,7 +50,7 @@ def build(
     """
     chain = used(chain, outputs)
     assignments: list[Assignment] = list(definitions)
-    current = [sp.sympify(e) for e in outputs]
+    current = [printable(sp.sympify(e)) for e in outputs]
     inner = {s for s, _ in definitions}
     for layer in layers:
         inner |= set(layer)
@@ -65,6 +65,11 @@ def build(
     current = [cheap.apply(e) for e in current]
     assignments += cheap.assignments
     return _ordered(*_shared(assignments, current))
+
+
+def printable(expression: sp.Expr) -> sp.Expr:
+    """The expression without the sign function, which is the side of a strip of no width."""
+    return expression.replace(sp.sign, lambda value: Side(value, sp.Integer(0)))
 
 
 def used(chain: Sequence[Assignment], outputs: Iterable[sp.Expr]) -> list[Assignment]:

@@ -43,14 +43,14 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "canonical_jacobian",
             "The canonical rates by states and costates, row by row.",
             ("t", "x", "lam", "p", "bounds"),
-            switching.printable(law.jacobian(rates, z)),
+            law.jacobian(rates, z),
             "matrix",
         ),
         Function(
             "canonical_drift",
             "The canonical rates by explicit time.",
             ("t", "x", "lam", "p", "bounds"),
-            switching.printable(law.jacobian(rates, (s.t,))),
+            law.jacobian(rates, (s.t,)),
             "vector",
         ),
         Function(
@@ -64,7 +64,7 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "boundary_jacobian",
             "The boundary residuals by states, costates, multipliers and final time, row by row.",
             ("t", "x", "lam", "nu", "p", "bounds", "final"),
-            switching.printable(law.jacobian(ends, unknown)),
+            law.jacobian(ends, unknown),
             "matrix",
         ),
     ]

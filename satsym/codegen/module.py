@@ -25,6 +25,7 @@ from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.path import inequalities
 from satsym.symbolic.roots import Argmin, Root, Vertex
 from satsym.symbolic.switching.curve import states_of
+from satsym.symbolic.switching.functions import moving_magnitudes
 from satsym.symbolic.switching.singular import chattering
 
 
@@ -98,6 +99,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         switching=switches(derivation),
         switching_curve=states_of(derivation) or (),
         chattering=chattering(derivation),
+        moving_magnitudes=tuple(u.name for u in moving_magnitudes(derivation)) if switches(derivation) else (),
         coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),

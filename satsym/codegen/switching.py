@@ -15,7 +15,6 @@ import sympy as sp
 from satsym.spec import names
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.minimisers import Side
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.switching import curve as switching_curve
@@ -50,7 +49,7 @@ def vectors(derivation: Derivation) -> list[Entry]:
     return [
         Entry("switching_function", "What multiplies each control in H.", "t x lam p", sp.Matrix(found.switching)),
         Entry("switching_rate", "Its rates of change along an extremal.", "t x u lam p", sp.Matrix(rates)),
-        Entry("magnitude_weight", "Weights of |u| in the cost.", "t x p", sp.Matrix(found.weights)),
+        Entry("magnitude_weight", "What multiplies each |u| in H.", "t x lam p", sp.Matrix(found.weights)),
         Entry(
             "control_law",
             "The controls that minimise H over the box.",
@@ -75,22 +74,22 @@ def curve(derivation: Derivation) -> list[Entry]:
             "beyond_switching_curve",
             "How far the position lies beyond the switching curve of least time.",
             arguments,
-            printable(sp.Matrix([beyond])),
+            sp.Matrix([beyond]),
         ),
         Entry(
             "feedback_law",
             "The controls of least time, by the side of the switching curve.",
             arguments,
-            printable(sp.Matrix([law])),
+            sp.Matrix([law]),
             (control,),
         ),
         Entry(
             "transition_time",
             "How long the change of position takes from rest to rest.",
             arguments,
-            printable(sp.Matrix([stated["duration"]])),
+            sp.Matrix([stated["duration"]]),
         ),
-        Entry("first_arc_time", "How long the first arc of it takes.", arguments, printable(sp.Matrix([first]))),
+        Entry("first_arc_time", "How long the first arc of it takes.", arguments, sp.Matrix([first])),
     ]
 
 
@@ -116,10 +115,10 @@ def regularised(derivation: Derivation) -> Regularised:
     h = h.xreplace({n.HAMILTONIAN: derivation.equation("hamiltonian.H").rhs})
     law = dict(zip(controls, laws, strict=True))
     costate_rates = [-sp.diff(h, x) for x in symbols_of(derivation.model.states)]
-    rates = sp.Matrix([*derivation.rhs("first_order"), *costate_rates])
+    beside = h - derivation.equation("hamiltonian.H").rhs  # of magnitudes in the motion, too, only a share counts
+    state_rates = [
+        rate + sp.diff(beside, costate)
+        for rate, costate in zip(derivation.rhs("first_order"), costates(derivation), strict=True)
+    ]
+    rates = sp.Matrix([*state_rates, *costate_rates])
     return Regularised(rates.xreplace(law), h.xreplace(law))
-
-
-def printable(matrix: sp.Matrix) -> sp.Matrix:
-    """Expressions without the sign function, which is the side of a strip of no width."""
-    return matrix.replace(sp.sign, lambda value: Side(value, sp.Integer(0)))

@@ -69,7 +69,7 @@ _OF_REGULAR_LAWS = ("stationarity", "control_hessian")
 _SWITCHING = {
     "switching_function": _signature("t x lam p", "m"),
     "switching_rate": _signature("t x u lam p", "m"),
-    "magnitude_weight": _signature("t x p", "m"),
+    "magnitude_weight": _signature("t x lam p", "m"),
     "extremal_jacobian": _signature("t x u lam p", "zz"),
 }
 """What a problem has, in place of the former, whose Hamiltonian is linear in the controls and their magnitudes.

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
@@ -27,7 +28,7 @@ def of_the_cost(of: Evaluation) -> Iterator[Relation]:
         control, surplus = regularised_law(of)
     else:
         yield from _of_regular_law(of)
-        control, surplus = of("control_law"), np.zeros_like(of.at["x"])
+        control, surplus = of("control_law"), np.zeros((2 * len(of.at["x"]), 1))
     yield from _of_canonical(of, control, surplus)
     yield from _of_ends(of, control)
     if of.kernels.spec.path_constraints:
@@ -77,7 +78,7 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
 def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Relation]:
     """The rates of states and costates with the law in them, and what is derived from these."""
     rates = (_under_law(of, name, control) for name in ("dynamics", "costate_rate"))
-    expected = np.concatenate([next(rates), next(rates) + surplus])
+    expected = np.concatenate([*rates]) + surplus
     terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
     yield Relation("canonical", "rates of states and costates under the law", of("canonical"), expected, FAINT * terms)
     yield from derivative(of, "canonical_jacobian", "canonical", ("x", "lam"))
@@ -148,8 +149,8 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
     yield Relation("switching_rate", "rate of change along an extremal", of("switching_rate"), total, terms)
     yield Relation("control_law", "H is minimal there", of("control_law"), _law(of, sigma, weight))
     none = np.zeros_like(of.at["lam"])
-    indifferent = of("switching_function", lam=none)
-    yield Relation("control_law", "of minimum magnitude", of("control_law", lam=none), _law(of, indifferent, weight))
+    indifferent = of("switching_function", lam=none), _weights(of, lam=none)
+    yield Relation("control_law", "of minimum magnitude", of("control_law", lam=none), _law(of, *indifferent))
     for row, name in enumerate(("dynamics", "costate_rate")):
         n = len(of.at["x"])
         block = of("extremal_jacobian")[row * n : (row + 1) * n]
@@ -177,18 +178,31 @@ def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
     """The least of sigma u + weight |u| in the box; where all of an interval is, of minimum magnitude or its middle."""
     low, high, *_ = _limits(of)
-    rest = np.where(weight > 0.0, np.minimum(np.maximum(0.0, low), high), 0.5 * (low + high))
-    return np.asarray(np.where(sigma > weight, low, np.where(sigma < -weight, high, rest)))
+    least = np.minimum(np.maximum(0.0, low), high)
+    rest = np.where((weight > 0.0) | _moving(of)[:, None], least, 0.5 * (low + high))
+    rise = sigma * (high - low) + np.minimum(weight, 0.0) * (np.abs(high) - np.abs(low))
+    bent = np.where(rise > 0.0, low, np.where(rise < 0.0, high, rest))
+    return np.asarray(
+        np.where(weight < 0.0, bent, np.where(sigma > weight, low, np.where(sigma < -weight, high, rest)))
+    )
 
 
 def regularised_law(of: Evaluation) -> tuple[Array, Array]:
-    """Controls of the companion, and what its costates change by besides."""
+    """Controls of the companion, and what its states and costates change by besides."""
     low, high, smoothing, fraction = _limits(of)
     sigma, width = of("switching_function"), fraction * _weights(of)
-    shrunk = np.maximum(sigma - width, 0.0) + np.minimum(sigma + width, 0.0)
-    control = np.minimum(np.maximum(-shrunk / smoothing, low), high)
-    by_state = _slope(of, "magnitude_weight", "x")
-    return control, (1.0 - fraction) * np.einsum("mnk,mk->nk", by_state, np.abs(control))
+    rest = np.minimum(np.maximum(0.0, low), high)
+    sides = ((-(sigma + width) / smoothing, rest, high), (-(sigma - width) / smoothing, low, rest))
+    above, below = (np.minimum(np.maximum(value, least), most) for value, least, most in sides)
+    values = (0.5 * smoothing * u * u + sigma * u + width * np.abs(u) for u in (above, below))
+    control = np.where(next(values) <= next(values), above, below)
+    moved = (np.einsum("mnk,mk->nk", _slope(of, "magnitude_weight", by), np.abs(control)) for by in ("lam", "x"))
+    return control, (1.0 - fraction) * np.concatenate([-next(moved), next(moved)])
+
+
+def _moving(of: Evaluation) -> NDArray[np.bool_]:
+    """Whether the magnitude of a control stands in the motion, shape (m,)."""
+    return np.asarray(_slope(of, "magnitude_weight", "lam").any(axis=(1, 2)))
 
 
 def extra_cost(of: Evaluation, control: Array) -> Array:
@@ -197,5 +211,5 @@ def extra_cost(of: Evaluation, control: Array) -> Array:
     return np.asarray((0.5 * smoothing * control**2 - (1.0 - fraction) * _weights(of) * np.abs(control)).sum(axis=0))
 
 
-def _weights(of: Evaluation) -> Array:
-    return np.broadcast_to(of("magnitude_weight"), of.at["u"].shape)
+def _weights(of: Evaluation, **given: Array) -> Array:
+    return np.broadcast_to(of("magnitude_weight", **given), of.at["u"].shape)

@@ -212,15 +212,16 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
-    switching.refuse_magnitudes(motion_derived)
     if motion_derived.problem.interior and (product.applies(motion_derived) or switching.applies(motion_derived)):
         message = "interior: points on the way are derived where H is quadratic in the controls; weigh their squares"
         raise DerivationError(f"{motion_derived.name}: {message}", ("interior",))
     if product.applies(motion_derived):
+        switching.refuse_magnitudes(motion_derived)
         return PRODUCT_PRINCIPLE
     if not switching.applies(motion_derived):
+        switching.refuse_magnitudes(motion_derived)
         return MINIMUM_PRINCIPLE
-    boundary.refuse(motion_derived.problem)
+    boundary.refuse(motion_derived)
     return SWITCHING_PRINCIPLE
 
 

@@ -49,6 +49,7 @@ CATALYST = switching(
     0,
     terminal_cost=x1 + x2 - 1,
 )
+BURNING = switching({x1: x2, x2: u1 / x3, x3: -a * sp.Abs(u1)}, 1)
 ROCKET = switching({x1: x2, x2: u1 / x3 - 1 - x2**2, x3: -u1}, -x2)
 """Vertical ascent with drag v^2, without an atmosphere that thins out."""
 

@@ -62,7 +62,7 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "rates={place: speed}",
             "rates={place: abs(speed)}",
-            "Abs(speed) in the equations of motion is not supported, only in the cost; state a control for each sign",
+            "Abs(speed) in the equations of motion is supported only where cost and motion are sums of controls",
         ),
         (
             "terminal_cost=place**2",

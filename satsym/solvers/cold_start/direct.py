@@ -165,7 +165,7 @@ class Programme:
         model, p = self.instance.model, self.instance.parameters
         if not model.spec.switching:
             return np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)
-        sigma, weight = model.switching_function_batch(t, x, lam, p), model.magnitude_weight_batch(t, x, p)
+        sigma, weight = model.switching_function_batch(t, x, lam, p), model.magnitude_weight_batch(t, x, lam, p)
         return np.broadcast_to(sigma + weight * np.sign(u) + self.smoothing * u, u.shape)
 
     def bounds(self) -> list[tuple[float | None, float | None]]:

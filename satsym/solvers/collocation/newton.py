@@ -13,7 +13,7 @@ from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.system import System
+from satsym.solvers.collocation.system import Residual, System
 
 KEEP = 0.3
 """Share of a positive state that a step must leave."""
@@ -22,6 +22,9 @@ SURE = 1e-4
 """Corrections below this are taken whole."""
 
 SHORTEST = 1e-3
+ABOUT = 1e-3
+"""Share of the states' size by which equations of motion and ends may be missed by what counts as a solution."""
+
 FLOOR = 1e-9
 """Corrections below this that no longer shrink are rounding."""
 
@@ -53,9 +56,18 @@ def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 1
         # Corrections shrink faster and faster: where the next one is small enough it is not made.
         ahead = size * min(size / before, 1.0) if np.isfinite(before) and length == 1.0 else size
         if ahead < tolerance or (size < FLOOR and size > 0.2 * before):
+            if not _moves(system, curve, residual):
+                return Attempt(curve, Reason.NO_CONVERGENCE, iteration, linearised=linearised, facts=(iteration,))
             return Attempt(curve, Reason.EXTREMAL, iteration, linearised=linearised)
         before = size
     return Attempt(curve, Reason.NO_CONVERGENCE, most, linearised=linearised, facts=(most,))
+
+
+def _moves(system: System, curve: Curve, residual: Residual) -> bool:
+    """Whether states obey their equations, about: to costates beyond all bounds any correction is small."""
+    n = system.problem.states
+    size = max(1.0, float(np.abs(curve.nodes[:n]).max()))
+    return float(system.infeasibility(residual)[:n].max()) <= ABOUT * size
 
 
 def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:

@@ -63,15 +63,21 @@ def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array
     """
     model, p = instance.model, instance.parameters
     sigma = model.switching_function_batch(t, x, lam, p)
-    weight = control_set.fraction * model.magnitude_weight_batch(t, x, p)
-    beyond = sigma - np.minimum(np.maximum(sigma, -weight), weight)
-    return control_set.project(-beyond / control_set.smoothing)
+    weight = control_set.fraction * model.magnitude_weight_batch(t, x, lam, p)
+    if not model.spec.moving_magnitudes:
+        beyond = sigma - np.minimum(np.maximum(sigma, -weight), weight)
+        return control_set.project(-beyond / control_set.smoothing)
+    smoothing, (low, high) = control_set.smoothing, control_set.box
+    rest = np.clip(0.0, low, high)
+    above, below = np.clip(-(sigma + weight) / smoothing, rest, high), np.clip(-(sigma - weight) / smoothing, low, rest)
+    worse, better = (smoothing / 2.0 * u * u + sigma * u + weight * np.abs(u) for u in (above, below))
+    return np.where(worse <= better, above, below)
 
 
 def smoothed_cost(instance: Instance, control_set: ControlSet, t: Array, x: Array, u: Array) -> Array:
     """The regularised problem's running cost, shape (N,)."""
     model, p, smoothing, fraction = instance.model, instance.parameters, control_set.smoothing, control_set.fraction
-    weight = model.magnitude_weight_batch(t, x, p)
+    weight = model.magnitude_weight_batch(t, x, np.zeros_like(x), p)
     exact = model.running_cost_batch(t, x, u, p)
     return np.asarray(
         exact + smoothing / 2.0 * (u * u).sum(axis=0) - (1.0 - fraction) * (weight * np.abs(u)).sum(axis=0)

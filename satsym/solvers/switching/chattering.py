@@ -143,7 +143,8 @@ def at_rest(solution: Solution) -> bool:
 
 def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
     """By how much H is above its minimum over the control set, shape (N,)."""
-    sigma, weight = signs(instance, t, x, lam)
+    model, p = instance.model, instance.parameters
+    sigma, weight = model.switching_function_batch(t, x, lam, p), model.magnitude_weight_batch(t, x, lam, p)
     low, high = instance.control_set.box
     lowest = np.min([sigma * v + weight * np.abs(v) for v in (low, high, np.clip(0.0, low, high))], axis=0)
     return np.asarray((sigma * u + weight * np.abs(u) - lowest).sum(axis=0))

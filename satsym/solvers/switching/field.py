@@ -9,7 +9,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.control_set import Row
 from satsym.instance import Instance
-from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER
+from satsym.solvers.switching.magnitudes import moving, ratio
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""
@@ -37,15 +38,20 @@ class Field:
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
         self.instance, self.levels = instance, levels
         self.model, self.p, self.n = instance.model, instance.parameters, len(instance.initial)
-        self.saturated = tuple(
-            high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
-            for level, low, high in zip(levels, *instance.control_set.switching, strict=True)
-        )
+        self.saturated = tuple(self._at(i, level) for i, level in enumerate(levels))
         self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
         self.kept = next((i for i, level in enumerate(levels) if level >= SINGULAR), None)
+        self.moving = moving(instance)
+        if self.singular is not None and self.moving[self.singular]:
+            raise ArithmeticError("no law is known on singular arcs of a control whose magnitude stands in the motion")
         if self.singular is not None:
             low, high = instance.lower[self.singular], instance.upper[self.singular]
             self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
+
+    def _at(self, control: int, level: int) -> float:
+        """The value of a control at a level."""
+        low, high = (bounds[control] for bounds in self.instance.control_set.switching)
+        return high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
 
     def kept_at(self, t: float, z: list[float]) -> Row:
         """The argument ``bounds`` of kernels that keep what switches as it is there."""
@@ -111,16 +117,40 @@ class Field:
 
     def weight(self, t: float, z: list[float], control: int) -> float:
         """The weight of the magnitude of a control."""
-        return float(self.model.magnitude_weight(t, z[: self.n], self.p)[control])
+        return float(self.model.magnitude_weight(t, z[: self.n], z[self.n :], self.p)[control])
 
     def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
         """That weight by states and costates, shape (2n,), and its rate along the extremal."""
-        f = self.model.dynamics(t, z[: self.n], self.control(t, z), self.p)
-        steps = np.concatenate([np.eye(self.n), np.array(f)[:, None]], axis=1)
-        x = np.array(z[: self.n])[:, None] + 1j * NUDGE * steps
-        times = t + 1j * NUDGE * np.append(np.zeros(self.n), 1.0)
-        found = np.broadcast_to(self.model.magnitude_weight_batch(times, x, self.p)[control], times.shape).imag / NUDGE
-        return np.concatenate([found[:-1], np.zeros(self.n)]), float(found[-1])
+        steps = np.concatenate([np.eye(2 * self.n), np.array(self.rates(t, z))[:, None]], axis=1)
+        x, lam = np.split(np.array(z)[:, None] + 1j * NUDGE * steps, 2)
+        times = t + 1j * NUDGE * np.append(np.zeros(2 * self.n), 1.0)
+        found = self.model.magnitude_weight_batch(times, x, lam, self.p)[control]
+        slopes = np.broadcast_to(found, times.shape).imag / NUDGE
+        return slopes[:-1], float(slopes[-1])
+
+    def ratios(self, control: int) -> tuple[float, ...]:
+        """What multiplies the weight of a control's magnitude where it passes from its level to another, for each."""
+        now = self.levels[control]
+        others = (level for level in (LOWER, REST, UPPER) if level != now)
+        return tuple(dict.fromkeys(self.ratio(control, (now, level)) for level in others))
+
+    def ratio(self, control: int, levels: tuple[int, int]) -> float:
+        """What multiplies the weight of its magnitude where a control passes between two levels; see :func:`ratio`."""
+        if max(levels) >= SINGULAR:
+            return 0.0
+        return ratio(*(self._at(control, level) for level in levels))
+
+    def passing(self, t: float, z: list[float], control: int, ratio: float) -> tuple[float, float]:
+        """What vanishes where a control passes from level to level, for that ratio; and its rate."""
+        sigma, rate = self.switching(t, z, control)
+        if not ratio:
+            return sigma, rate
+        return sigma + ratio * self.weight(t, z, control), rate + ratio * self.weight_gradient(t, z, control)[1]
+
+    def passing_gradient(self, t: float, z: list[float], control: int, ratio: float) -> Array:
+        """The same by states and costates, shape (2n,)."""
+        gradient = self.gradient(t, z, control)
+        return gradient + ratio * self.weight_gradient(t, z, control)[0] if ratio else gradient
 
     def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
         """The rate of a switching function by states and costates, shape (2n,)."""
@@ -137,7 +167,12 @@ class Field:
     def _column(self, t: float, x: list[float], u: tuple[float, ...], control: int | None = None) -> Array:
         """What a control does to the rates of the states, shape (n,)."""
         which = self.singular if control is None else control
-        return np.array(self.model.jacobian_u(t, x, u, self.p)).reshape(self.n, -1)[:, which]
+        if which is None or not self.moving[which]:
+            return np.array(self.model.jacobian_u(t, x, u, self.p)).reshape(self.n, -1)[:, which]
+        unit = np.zeros(len(u))
+        unit[which] = 1.0
+        both = [self.model.jacobian_u(t, x, (side * unit).tolist(), self.p) for side in (1.0, -1.0)]
+        return np.array(both).reshape(2, self.n, -1)[:, :, which].mean(axis=0)  # so that its magnitude falls out
 
     def _accelerations(self, t: Array, z: Array) -> tuple[Array, Array]:
         """Second derivative of the switching function in time without the singular control, and by that control.

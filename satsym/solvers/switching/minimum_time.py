@@ -17,6 +17,7 @@ from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.kernels import Kernels
+from satsym.solvers.switching.magnitudes import moving
 
 Function = Callable[..., Any]
 
@@ -27,6 +28,8 @@ STEP = 1e-6
 def minimum_time(instance: Instance) -> Instance | None:
     """The problem of least time with the same motion, bounds and ends; ``None`` where constraints tie the end."""
     if instance.model.spec.multipliers:
+        return None
+    if any(moving(instance)):  # what magnitudes do to the motion is not told apart from what they cost
         return None
     spec = replace(instance.model.spec, has_terminal_cost=False, chattering=())
     model = Kernels(spec, _LeastTime(instance.model).functions())

@@ -245,14 +245,11 @@ class _Switch:
     def row(self, levels: tuple[int, int], sizes: Array) -> tuple[float, Array]:
         """The switching function minus its value at such a switch, by the unknowns; in units of its own size."""
         field, place = self.field, (self.t, self.z, self.control)
-        gradient = field.gradient(*place)
-        target = switching_value(field, *place, levels)
-        sigma, rate = field.switching(*place)
-        size = max(float(np.abs(gradient) @ sizes), abs(target), 1e-300)
-        if target:
-            by_state, along = field.weight_gradient(*place)
-            gradient, rate = gradient - np.sign(target) * by_state, rate - np.sign(target) * along
-        return (sigma - target) / size, self._moving(gradient, rate) / size
+        ratio = field.ratio(self.control, levels)
+        target = ratio * field.weight(*place) if ratio else 0.0
+        value, rate = field.passing(*place, ratio)
+        size = max(float(np.abs(field.gradient(*place)) @ sizes), abs(target), 1e-300)
+        return value / size, self._moving(field.passing_gradient(*place, ratio), rate) / size
 
     def rate_row(self, sizes: Array) -> tuple[float, Array]:
         """The same for the rate of the switching function."""
@@ -277,14 +274,6 @@ class _Switch:
             place = len(self.z) // 2 + self.column
             row[place] += rate - gradient @ np.array(self.field.rates(self.t, self.z))
         return np.asarray(row)
-
-
-def switching_value(field: Field, t: float, z: list[float], control: int, levels: tuple[int, int]) -> float:
-    """What the switching function must be at a switch between two levels."""
-    weight = field.weight(t, z, control)
-    if max(levels) >= SINGULAR or 0 not in levels:
-        return 0.0
-    return -weight if max(levels) > 0 else weight
 
 
 def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float], None] | None = None) -> Refined | None:

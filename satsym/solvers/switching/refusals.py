@@ -62,7 +62,7 @@ def _free_of_charge(instance: Instance) -> bool:
     ends = [model.terminal_gradient(instance.tf, tuple(column), p) for column in x.T]
     costs = (
         model.switching_function_batch(t, x, none, p),
-        model.magnitude_weight_batch(t, x, p),
+        model.magnitude_weight_batch(t, x, none, p),
         model.costate_rate_batch(t, x, u, none, p),
         ends,
     )

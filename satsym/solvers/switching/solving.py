@@ -24,6 +24,7 @@ from satsym.solvers.switching.cold_start import by_costates, by_scouts, by_throt
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
+from satsym.solvers.switching.magnitudes import costs, moving
 from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.refusals import refuse, refuse_angles
 from satsym.solvers.switching.structure import REST, UPPER, Guess, Structure
@@ -168,8 +169,7 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
 
 def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
     """With what else may lead to an answer where magnitudes cost: singular arcs are recognised without a weight."""
-    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
-    if stopped.status is not Status.NOT_CONVERGED or not any(weights):
+    if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
     advice = "singular arcs are found only without |u|; state a control for each sign, both from 0 on"
     return replace(stopped, message=f"{stopped.message}; {advice}")
@@ -275,7 +275,7 @@ def _beside(instance: Instance, duration: float, fractions: Sequence[float], lim
 
 def _resting(instance: Instance) -> Guess | None:
     """No control at all, nor costates, where every |u| costs: the answer if the motion arrives by itself."""
-    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    weights = costs(instance)
     if instance.tf is None or not all(weight > 0.0 for weight in weights):
         return None
     rest = Structure(((REST,),) * len(weights))
@@ -288,7 +288,7 @@ def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
     assert instance.tf is not None
     spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)
     levels, times, rates = [], [], []
-    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    weights = costs(instance)
     for arc in hurried.refined.arcs:
         if arc.event is not None:
             _, rate = arc.field.switching(arc.end, arc.after.tolist(), arc.event.control)

@@ -12,8 +12,10 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.control_set import ControlSet, Row
 from satsym.instance import Instance
+from satsym.solvers.switching import magnitudes
 from satsym.solvers.switching.boundary import BoundaryField
 from satsym.solvers.switching.field import NUDGE, Field
+from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import BOUNDARY
 
 NOTHING = 1e-300
@@ -90,13 +92,13 @@ def equations(instance: Instance, levels: tuple[int, ...]) -> Field:
 
 
 def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Array]:
-    """Switching functions, and weights of magnitudes, at many points, shapes (r, N)."""
+    """Switching functions, and weights of magnitudes, none negative, at many points, shapes (r, N)."""
     model, p = instance.model, instance.parameters
     if model.spec.throttled:
         sigma = np.asarray(model.throttle_slope_batch(t, x, lam, p, instance.control_set.arguments))
         return sigma, np.zeros_like(sigma)
     sigma = model.switching_function_batch(t, x, lam, p)
-    return sigma, np.broadcast_to(model.magnitude_weight_batch(t, x, p), sigma.shape)
+    return effective(*instance.control_set.box, sigma, model.magnitude_weight_batch(t, x, lam, p))
 
 
 def switched(instance: Instance, u: Array) -> Array:
@@ -126,8 +128,8 @@ def shown_by(instance: Instance) -> list[int]:
     return [places[0] for places, part in instance.control_set.parts if part.throttled]
 
 
-def weights(instance: Instance) -> tuple[float, ...]:
-    """Weights of magnitudes at the start."""
+def resting(instance: Instance) -> tuple[bool, ...]:
+    """Of what switches, what may be best at rest for a while."""
     if instance.model.spec.throttled:
-        return (0.0,) * len(instance.control_set.switching[0])
-    return tuple(instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters))
+        return (False,) * len(instance.control_set.switching[0])
+    return magnitudes.resting(instance)

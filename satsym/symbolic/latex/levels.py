@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 
 def levels(value: str, threshold: str, low: str, high: str, reverse: bool) -> str:
     """The levels between which a control switches, each with its condition.
@@ -15,12 +17,22 @@ def levels(value: str, threshold: str, low: str, high: str, reverse: bool) -> st
     """
     above, below = (high, low) if reverse else (low, high)
     if threshold != "0":
-        middle = rf"\max\{{{low},\, \min\{{{high},\, 0\}}\}}, & |{value}| \le {threshold}"
+        middle = rf"{nearest(low, high)}, & |{value}| \le {threshold}"
         rows = (rf"{above}, & {value} > {threshold}", middle, rf"{below}, & {value} < -{threshold}")
     else:
         middle = rf"\tfrac{{1}}{{2}} ({low} + {high}), & {value} = 0"
         rows = (rf"{above}, & {value} > 0", middle, rf"{below}, & {value} < 0")
     return r"\begin{cases} " + r" \\ ".join(rows) + r" \end{cases}"
+
+
+def nearest(low: str, high: str) -> str:
+    """The value of least magnitude between two bounds."""
+    return rf"\max\{{{low},\, \min\{{{high},\, 0\}}\}}"
+
+
+def letter(taken: Collection[str]) -> str:
+    """One that stands for nothing else."""
+    return next(one for one in "vzsyxabcd" if one not in taken)
 
 
 def extreme(operator: str, first: str, second: str) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from satsym.symbolic.latex.levels import extreme, levels, size
+from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
 from satsym.symbolic.latex.products import HUNDREDTHS, Product, base, exponent, is_negative, spread, take_apart
 from satsym.symbolic.latex.terms import Piece, Term, joined
 from satsym.symbolic.minimisers import Clip
@@ -23,7 +23,6 @@ from satsym.symbolic.roots import Root
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""
-
 
 CHOSEN = frozenset("Shorten Stretch Within Clip Max Min".split())
 """Functions too tall to stand in a fraction."""
@@ -274,6 +273,19 @@ class Printer(LatexPrinter):
         value, *others = map(self._print, (-slope if reverse else slope, weight, low, high))
         return levels(value, others[0], others[1], others[2], reverse)
 
+    def _print_SignedClip(self, expr: sp.Expr, exp: str | None = None) -> str:
+        slope, weight, *smoothing, low, high = map(self._print, expr.args)
+        v = letter(self._notation.values())
+        bent = "".join(rf"\tfrac{{1}}{{2}} {e} {v}^{{2}} + " for e in smoothing)
+        among = rf"{low} \le {v} \le {high}" if smoothing else rf"{v} \in \{{{low},\, {nearest(low, high)},\, {high}\}}"
+        return self._argmin(rf"{bent}{slope} {v} + {weight} |{v}|", among, exp)
+
+    _print_SignedSwitch = _print_SignedClip
+
+    def _argmin(self, value: str, among: str, exp: str | None) -> str:
+        least = rf"\operatorname*{{arg\,min}}_{{{among}}} {self._enclosed(value)}"
+        return rf"{self._enclosed(least)}^{{{exp}}}" if exp else least
+
     def _print_sign(self, expr: sp.Expr, exp: str | None = None) -> str:
         raised = rf"^{{{exp}}}" if exp else ""
         return rf"\operatorname{{sgn}}{raised}{self._enclosed(self._print(expr.args[0]))}"
@@ -319,12 +331,11 @@ class Printer(LatexPrinter):
 
     def _print_Argmin(self, expr: sp.Expr, exp: str | None = None) -> str:
         lower, upper, *coefficients = expr.args
-        v = sp.Symbol("v", real=True)
-        polynomial = self._enclosed(self._print(sp.Add(*(c * v**k for k, c in enumerate(coefficients, 1)))))
         limits = [] if lower.is_infinite else [self._print(lower), r"\le"]
-        limits += ["v", *([] if upper.is_infinite else [r"\le", self._print(upper)])]
-        least = rf"\operatorname*{{arg\,min}}_{{{' '.join(limits)}}} {polynomial}"
-        return rf"{self._enclosed(least)}^{{{exp}}}" if exp else least
+        v = sp.Symbol(letter(self._notation.values()), real=True)
+        limits += [v.name, *([] if upper.is_infinite else [r"\le", self._print(upper)])]
+        polynomial = self._print(sp.Add(*(c * v**k for k, c in enumerate(coefficients, 1))))
+        return self._argmin(polynomial, " ".join(limits), exp)
 
     def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
         lower, upper = map(self._print, expr.args)

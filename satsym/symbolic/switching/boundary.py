@@ -13,7 +13,7 @@ import sympy as sp
 from satsym.symbolic.algebra import simplified, tidy
 from satsym.symbolic.checks import identity
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.model import Problem, symbols_of
+from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.path import notation as pn
 from satsym.symbolic.principle.path.path_constraints import STEP, acting, affine, constraints
 from satsym.symbolic.switching import notation as s
@@ -33,19 +33,22 @@ def boundary_control(so_far: Derivation) -> Step | None:
     return Step("boundary_control", "stay on the boundary", tuple(equations), (STEP,), tuple(checks))
 
 
-def refuse(problem: Problem) -> None:
+def refuse(so_far: Derivation) -> None:
     """Refuse what no boundary control is derived for, before anything is.
 
     Raises
     ------
     DerivationError
-        If a constraint holds a control that switches, or magnitudes of controls cost something.
+        If a constraint holds a control that switches, or magnitudes of controls cost something or move something.
     """
+    problem = so_far.problem
+    assert problem is not None
     controls, what = symbols_of(problem.model.controls), f"{problem.name}: path_constraints"
     held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
     if held:
         message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
         raise DerivationError(f"{message}derived; state it as a bound of that control", ("path_constraints",))
-    if problem.path_constraints and any(sp.sympify(problem.running_cost).has(a) for a in s.magnitudes(controls)):
-        message = "beside a cost of |u| they are not derived; state a control for each sign, both from 0 on"
+    stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
+    if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
+        message = "beside |u| they are not derived; state a control for each sign, both from 0 on"
         raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))

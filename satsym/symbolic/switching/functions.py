@@ -27,6 +27,7 @@ from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.parts import weighed
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
+from satsym.symbolic.signed import SignedClip, SignedSwitch, compared
 from satsym.symbolic.switching import notation as s
 
 SCALES = (0.1, 1.0, 10.0)
@@ -63,7 +64,7 @@ def applies(so_far: Derivation) -> bool:
 
 
 def refuse_magnitudes(so_far: Derivation) -> None:
-    """Refuse the magnitude of a single control in the motion, whose costates decide whether it is worth having.
+    """Refuse the magnitude of a single control in the motion where H is not affine in all controls and magnitudes.
 
     Raises
     ------
@@ -74,8 +75,9 @@ def refuse_magnitudes(so_far: Derivation) -> None:
     stated = (a for a in magnitudes if isinstance(a, sp.Abs))  # that of a positive control is the control itself
     if magnitude := next((a for a in stated if any(rate.has(a) for rate in rates)), None):
         raise DerivationError(
-            f"{so_far.name}: {magnitude} in the equations of motion is not supported, only in the cost; state a "
-            "control for each sign, both from 0 on, with their difference in its place and their sum for its magnitude"
+            f"{so_far.name}: {magnitude} in the equations of motion is supported only where cost and motion are sums "
+            'of controls and their magnitudes, with control_set = "box"; state a control for each sign, both from 0 '
+            "on, with their difference in its place and their sum for its magnitude"
         )
 
 
@@ -100,7 +102,7 @@ def switching_function(so_far: Derivation) -> Step:
     none = dict.fromkeys([*controls, *stands_for.values()], sp.Integer(0))
     drift = tidy(plain.xreplace(none), costates(so_far))
     sigma = [tidy(sp.diff(plain, u).xreplace(none), costates(so_far)) for u in controls]
-    weights = [tidy(sign(problem) * sp.diff(plain, v).xreplace(none)) for v in stands_for.values()]
+    weights = [tidy(sign(problem) * sp.diff(plain, v).xreplace(none), costates(so_far)) for v in stands_for.values()]
     equations = [
         Equation("H_0", s.UNSWITCHED, drift),
         *(Equation(u.name, s.switching_of(u), slope) for u, slope in zip(controls, sigma, strict=True)),
@@ -125,12 +127,15 @@ def control_law(so_far: Derivation) -> Step:
     problem, found = _problem(so_far), parts(so_far)
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
+    signed = moving_magnitudes(so_far)
     equations = tuple(
-        Equation(u.name, n.optimal(u), Switch(sign(problem) * s.switching_of(u), w, low, high))
-        for u, w, low, high in zip(controls, weights, lower, upper, strict=True)
+        Equation(
+            u.name, n.optimal(u), (SignedSwitch if u in signed else Switch)(sign(problem) * s.switching_of(u), w, *ends)
+        )
+        for u, w, *ends in zip(controls, weights, lower, upper, strict=True)
     )
     check = _cheapest(so_far, "no vertex cheaper", so_far.equation("hamiltonian.H").rhs, [e.rhs for e in equations])
-    rule = "three levels" if any(w != 0 for w in weights) else "two levels"
+    rule = "levels compared" if signed else "three levels" if any(w != 0 for w in weights) else "two levels"
     return Step("control_law", worded(rule, problem), equations, ("switching_function",), (check,))
 
 
@@ -144,19 +149,25 @@ def smoothed_law(so_far: Derivation) -> Step:
         ((1 - s.MAGNITUDE_FACTOR) * w * sp.Abs(u) for u, w in zip(controls, weights, strict=True)), sp.Integer(0)
     )
     companion = Equation("H", s.SMOOTHED, n.HAMILTONIAN + sign(problem) * effort - sign(problem) * saved)
+    better, signed = sign(problem), moving_magnitudes(so_far)
+
+    def law(u: sp.Symbol, w: sp.Expr, *ends: sp.Symbol) -> sp.Expr:
+        sigma, weight = s.switching_of(u), s.MAGNITUDE_FACTOR * w
+        if u in signed:
+            return SignedClip(better * sigma, weight, s.SMOOTHING, *ends)
+        return Clip(-better * Shrink(sigma, weight) / s.SMOOTHING, *ends)
+
     laws = tuple(
-        Equation(
-            u.name,
-            s.smoothed(u),
-            Clip(-sign(problem) * Shrink(s.switching_of(u), s.MAGNITUDE_FACTOR * w) / s.SMOOTHING, low, high),
-        )
+        Equation(u.name, s.smoothed(u), law(u, w, low, high))
         for u, w, low, high in zip(controls, weights, lower, upper, strict=True)
     )
     h = companion.rhs.xreplace({n.HAMILTONIAN: so_far.equation("hamiltonian.H").rhs})
     (h,) = written_out(so_far, [h])
     check = _cheapest(so_far, "cheapest admissible", h, [e.rhs for e in laws])
     sources = ("switching_function", "control_law")
-    rule = "weigh the effort and less of the magnitude" if saved != 0 else "weigh the effort"
+    shrunk = any(law.rhs.has(Shrink) for law in laws)
+    less = "weigh the effort and less of the magnitude" if shrunk else "weigh the effort and less of magnitudes moving"
+    rule = less if saved != 0 else "weigh the effort"
     return Step("smoothed_law", rule, (companion, *laws), sources, (check,))
 
 
@@ -222,11 +233,11 @@ def directional(values: Any, motion: Any, moving: Sequence[sp.Symbol], point: Po
 
 
 def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Expressions with switching functions and weights as what they stand for."""
+    """Expressions with switching functions and weights as what they stand for, minimisers as what they compare."""
     found, controls = parts(so_far), symbols_of(so_far.model.controls)
     values = dict(zip(map(s.switching_of, controls), found.switching, strict=True))
     values |= dict(zip(map(s.weight_of, controls), found.weights, strict=True))
-    return [e.xreplace(values) for e in expressions]
+    return [compared(e).xreplace(values) for e in expressions]
 
 
 def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
@@ -271,6 +282,12 @@ def _box(so_far: Derivation) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Symbol, ..
     controls = symbols_of(so_far.model.controls)
     limits = symbols_of(control_sets.bounds("box", so_far.model.controls))
     return controls, limits[: len(controls)], limits[len(controls) :]
+
+
+def moving_magnitudes(so_far: Derivation) -> list[sp.Symbol]:
+    """Controls whose magnitudes stand in the motion, so that costates decide whether these are worth having."""
+    controls, lam = symbols_of(so_far.model.controls), set(costates(so_far))
+    return [u for u, w in zip(controls, parts(so_far).weights, strict=True) if w.free_symbols & lam]
 
 
 def _weight_symbols(found: Parts, controls: Sequence[sp.Symbol]) -> list[sp.Expr]:

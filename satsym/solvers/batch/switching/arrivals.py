@@ -178,10 +178,10 @@ def _coefficients(instances: Sequence[Instance]) -> tuple[Array, Array, NDArray[
         by_x, by_u = drawn(model.jacobian_x_batch, (n, n)), drawn(model.jacobian_u_batch, (n, m))
         cost = drawn(model.running_cost_batch, ())
         linear = _same(by_x) & _same(by_u) & _same(cost) & (cost[0][0] > 0.0)
-        weight = np.broadcast_to(model.magnitude_weight_batch(t, at_x[0], p), (m, count))
+        weight = np.broadcast_to(model.magnitude_weight_batch(t, at_x[0], none, p), (m, count))
         drift = np.broadcast_to(model.dynamics_batch(t, none, np.zeros((m, count)), p), (n, count))
     tables = by_x[0].T.reshape(count, n, n), by_u[0].T.reshape(count, n, m), drift.T[:, :, None]
-    return np.concatenate(tables, axis=2), cost[0][0], linear & ~weight.any(axis=0)
+    return np.concatenate(tables, axis=2), cost[0][0], linear & ~weight.any(axis=0) & (not model.spec.moving_magnitudes)
 
 
 def _same(drawn: list[Array]) -> NDArray[np.bool_]:

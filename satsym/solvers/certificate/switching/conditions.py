@@ -159,7 +159,7 @@ def _excess(solution: Solution) -> float:
     if model.spec.throttled:
         return _excess_by_law(solution)
     sigma = model.switching_function_batch(solution.times, solution.x, solution.lam, p)
-    weight = model.magnitude_weight_batch(solution.times, solution.x, p)
+    weight = model.magnitude_weight_batch(solution.times, solution.x, solution.lam, p)
     low, high = instance.control_set.box
     rest = np.minimum(np.maximum(0.0, low), high)
     least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
@@ -239,8 +239,9 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
         assert control is not None
         if free[control] or max(piece.field.levels[control], pieces[k + 1].field.levels[control]) >= SINGULAR:
             continue
+        ratio = piece.field.ratio(control, (piece.field.levels[control], pieces[k + 1].field.levels[control]))
         for field in (piece.field, pieces[k + 1].field):
-            _, rate = field.switching(piece.end, piece.after.tolist(), control)
+            _, rate = field.passing(piece.end, piece.after.tolist(), control, ratio)
             rates.append(abs(rate) * lasting / sizes[control])
     # In a convex problem switches of different controls may coincide: each of them is decided by its own sign.
     each = [None] if linear_motion(again.pieces[0].field.instance) is None else range(len(free))

@@ -13,6 +13,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.field import Field
+from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 from satsym.solvers.switching.throttled import equations
 
@@ -48,7 +49,8 @@ def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int 
     low, high = field.instance.control_set.switching
     if level >= SINGULAR or low[control] == high[control]:
         return None
-    sigma, weight = field.switching(t, here, control)[0], field.weight(t, here, control)
+    given = low[control], high[control], field.sigma(t, here, control), field.weight(t, here, control)
+    sigma, weight = map(float, effective(*map(np.array, given)))
     if abs(abs(sigma) - weight) > AT_SWITCH * size:
         return None
     if weight == 0.0:

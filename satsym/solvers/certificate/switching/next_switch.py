@@ -34,19 +34,15 @@ to the last digits only. What is shorter is no arc for the solver either."""
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A value at which a control switches: of its switching function, -1, 0 or 1 times the weight of its magnitude."""
+    """Where a control passes to another level: where its switching function and, by a ratio, its weight cancel."""
 
     field: Field
     control: int
-    side: float
+    ratio: float
 
     def gap(self, t: float, y: list[float]) -> tuple[float, float]:
-        """How far the switching function is from it, and the rate of that."""
-        sigma, rate = self.field.switching(t, y, self.control)
-        if self.side == 0.0:
-            return sigma, rate
-        weight, (_, growth) = self.field.weight(t, y, self.control), self.field.weight_gradient(t, y, self.control)
-        return sigma - self.side * weight, rate - self.side * growth
+        """What vanishes there, and the rate of that."""
+        return self.field.passing(t, y, self.control, self.ratio)
 
     def size(self, t: float, z: Array, sizes: Array) -> float:
         """That of the switching function."""
@@ -74,14 +70,14 @@ class Mark:
 
     def event(self, span: Span, sign: float, sizes: Array) -> Any:
         """For SciPy: a change of sign, away from the switch that began the arc."""
-        field, side, control = self.field, self.side, self.control
+        field, ratio, control = self.field, self.ratio, self.control
         blurred = self.blurred(span, sizes)
 
         def value(t: float, y: Array) -> float:
             if t - span.start < blurred * span.lasting:
                 return sign
             sigma = field.sigma(t, y.tolist(), control)
-            return sigma - side * field.weight(t, y.tolist(), control) if side else sigma
+            return sigma + ratio * field.weight(t, y.tolist(), control) if ratio else sigma
 
         value.terminal = True  # type: ignore[attr-defined]
         return value
@@ -141,10 +137,7 @@ def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | 
         size = mark.size(start, span.z, sizes)
         if abs(now) > AT_ONCE * size or abs(rate) * span.lasting <= TURNING * size:
             continue
-        sigma, growth = field.switching(start, here, mark.control)
-        ahead = np.array([sigma + growth * AHEAD * span.lasting])
-        weight = np.array([field.weight(start, here, mark.control)])
-        level = int(levels(field.instance, mark.control, ahead, weight)[0])
+        level = best_level(field, start, here, mark.control, AHEAD * span.lasting)
         if level != field.levels[mark.control]:
             return mark.control, level
     return None
@@ -157,9 +150,17 @@ def _marks(span: Span, settled: list[bool]) -> list[Mark]:
     for i, level in enumerate(field.levels):
         if settled[i] or level >= SINGULAR or low[i] == high[i]:
             continue
-        weighs = field.weight(span.start, span.z.tolist(), i) > 0.0
-        marks += [Mark(field, i, side) for side in ((-1.0, 1.0) if weighs else (0.0,))]
+        weighs = field.moving[i] or field.weight(span.start, span.z.tolist(), i) > 0.0
+        marks += [Mark(field, i, ratio) for ratio in (field.ratios(i) if weighs else (0.0,))]
     return marks
+
+
+def best_level(field: Field, t: float, z: list[float], control: int, later: float) -> int:
+    """The level that is best for a control, a little later."""
+    sigma, rate = field.switching(t, z, control)
+    weight, growth = field.weight(t, z, control), field.weight_gradient(t, z, control)[1]
+    ahead = np.array([sigma + rate * later]), np.array([weight + growth * later])
+    return int(levels(field.instance, control, *ahead)[0])
 
 
 def _polished(mark: Mark, span: Span, guess: float, by: Integration) -> float:

@@ -16,13 +16,12 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
-from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
+from satsym.solvers.certificate.switching.next_switch import at_once, best_level, next_switch
 from satsym.solvers.certificate.switching.restarts import restarts
 from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none, jump
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.boundary import BoundaryField
-from satsym.solvers.switching.cold_start.recognition import levels as best_levels
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import REST, SINGULAR
 from satsym.solvers.switching.throttled import equations
@@ -177,10 +176,9 @@ class _Again:
                 continue
             sigma, rate = resting.switching(t, z.tolist(), i)
             weight = resting.weight(t, z.tolist(), i)
-            size = max(abs(sigma), weight, abs(rate) * (end - t))
-            if min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size:
-                sigma += rate * 1e-6 * (end - t)
-            found.append(int(best_levels(instance, i, np.array([sigma]), np.array([weight]))[0]))
+            size = max(abs(sigma), abs(weight), abs(rate) * (end - t))
+            near = min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size
+            found.append(best_level(resting, t, z.tolist(), i, 1e-6 * (end - t) if near else 0.0))
         return tuple(found)
 
     def _piece(self, span: Span) -> tuple[Piece, tuple[int, ...]]:
@@ -208,10 +206,7 @@ class _Again:
         if switched is None:
             return piece, field.levels
         if level is None:
-            sigma, rate = field.switching(until, after.tolist(), switched)
-            ahead = sigma + rate * 1e-6 * span.lasting
-            weight = field.weight(until, after.tolist(), switched)
-            level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
+            level = best_level(field, until, after.tolist(), switched, 1e-6 * span.lasting)
         return piece, _with(field.levels, switched, level)
 
     def _stated(self, span: Span, found: float, control: int) -> float:
@@ -220,7 +215,8 @@ class _Again:
         if not span.start < near < span.end:
             return found
         z = self.by.end(span.until(near)).tolist()
-        off = abs(abs(span.field.sigma(near, z, control)) - span.field.weight(near, z, control))
+        field = span.field
+        off = min(abs(field.passing(near, z, control, ratio)[0]) for ratio in field.ratios(control))
         size = float(np.abs(span.field.gradient(near, z, control)) @ self.by.sizes)
         return near if off <= ROUNDING * size else found
 

@@ -11,7 +11,8 @@ from satsym.solution import Solution
 from satsym.solvers.switching.boundaries import acting
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, on_boundary
-from satsym.solvers.switching.throttled import shown_by, signs, switched, weights
+from satsym.solvers.switching.throttled import resting as rests
+from satsym.solvers.switching.throttled import shown_by, signs, switched
 from satsym.solvers.switching.trajectory import deciding
 
 UNDECIDED = 1e-9
@@ -33,7 +34,7 @@ def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
     low, high = (bounds[control] for bounds in instance.control_set.switching)
     switches = solution.switching_times[shown_by(instance)[control]]
     times = [instance.t0, *switches, float(solution.times[-1])]
-    weighs = weights(instance)[control] > 0.0
+    weighs = rests(instance)[control]
     resting = weighs or indifferent(solution, control)
     near = {LOWER: low, UPPER: high} | ({REST: min(max(0.0, low), high)} if resting else {})
     found = []

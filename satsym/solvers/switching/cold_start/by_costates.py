@@ -19,6 +19,7 @@ from satsym.solvers.switching.attempt import Exact, attempt, given
 from satsym.solvers.switching.cold_start.minimum_effort import first_duration
 from satsym.solvers.switching.cold_start.recognition import Sample, guess
 from satsym.solvers.switching.cold_start.scouts import Target
+from satsym.solvers.switching.magnitudes import resting
 from satsym.solvers.switching.throttled import signs
 
 SEED = 11
@@ -78,8 +79,7 @@ def soonest(instance: Instance, limits: Limits) -> Exact | None:
     Only where no magnitude of a control costs anything, and something else does from the start: costates are then known
     but for their direction.
     """
-    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
-    if instance.tf is not None or instance.model.spec.multipliers or any(weights):
+    if instance.tf is not None or instance.model.spec.multipliers or any(resting(instance)):
         return None
     rng, h = np.random.default_rng(SEED), LONGEST * first_duration(instance) / STEPS
     sizes = given(instance)

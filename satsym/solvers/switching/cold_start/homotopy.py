@@ -35,6 +35,7 @@ from satsym.solvers.switching.cold_start.minimum_effort import (
     first_duration,
     of_size,
 )
+from satsym.solvers.switching.magnitudes import resting
 from satsym.status import Status
 
 STEPS = 200
@@ -143,7 +144,7 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
 
     Where |u| costs, it may be far too little smoothing to bring that in.
     """
-    if any(instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)):
+    if any(resting(instance)):
         return None
     found = of_size(instance, WITHIN, limits)
     if found is None:

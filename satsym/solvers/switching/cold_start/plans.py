@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solvers.switching.magnitudes import moving, resting
 from satsym.solvers.switching.structure import LOWER, REST, UPPER
 
 
@@ -50,17 +51,17 @@ def seeded(
     opposite
         Whether first levels are taken in the other order.
     """
-    weighs = np.array(instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)) > 0.0
+    moves = moving(instance)
     choices = [
-        (LOWER,) if low == high else (LOWER, REST, UPPER) if weight else (LOWER, UPPER)
-        for low, high, weight in zip(instance.lower, instance.upper, weighs, strict=True)
+        (LOWER,) if low == high else (LOWER, REST, UPPER) if rests else (LOWER, UPPER)
+        for low, high, rests in zip(instance.lower, instance.upper, resting(instance), strict=True)
     ]
     rows = []
     for number, duration in enumerate(durations.tolist()):
         times, tables = [], []
         for control, most in enumerate(switches):
             count = int(rng.integers(0, most + 1))
-            own = _walk(choices[control], count, number + opposite, rng)
+            own = _walk(choices[control], count, number + opposite, moves[control], rng)
             tables.append((np.sort(rng.uniform(0.0, duration, len(own) - 1)), own))
             times.append(tables[-1][0])
         edges = np.concatenate([[0.0], np.sort(np.concatenate(times)), [duration]])
@@ -72,11 +73,14 @@ def seeded(
     return Plans(levels.transpose(1, 2, 0), lengths)
 
 
-def _walk(choices: tuple[int, ...], switches: int, number: int, rng: np.random.Generator) -> list[int]:
-    """Levels of a control one after the other, through rest where its magnitude costs."""
+def _walk(choices: tuple[int, ...], switches: int, number: int, direct: bool, rng: np.random.Generator) -> list[int]:
+    """Levels of a control one after the other; where its magnitude costs through rest, unless it may pass directly."""
     found = [choices[number % len(choices)]]
     for _ in range(switches if len(choices) > 1 else 0):
         now = found[-1]
+        if direct:
+            found.append(int(rng.choice([level for level in choices if level != now])))
+            continue
         found.append(-now if REST not in choices else (int(rng.choice([LOWER, UPPER])) if now == REST else REST))
     return found
 

@@ -11,6 +11,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.switching.magnitudes import effective, moving
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs
 
@@ -79,6 +80,7 @@ def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDA
     low, high = (bounds[control] for bounds in instance.control_set.switching)
     if low == high:
         return np.full(len(sigma), LOWER)
+    sigma, weight = effective(np.array(low), np.array(high), sigma, weight)
     found = np.where(sigma > weight, LOWER, np.where(sigma < -weight, UPPER, REST))
     if not weight.any():  # a zero between two signs belongs to either
         return np.where(sigma > 0.0, LOWER, UPPER)
@@ -91,7 +93,8 @@ def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
     """Where controls without a weight of their magnitude are off both bounds for long, shape (m, N)."""
     low, high = instance.control_set.box
     off = INSIDE * (high - low)
-    free = (seen.u > low + off) & (seen.u < high - off) & (seen.weight == 0.0)
+    plain = ~np.array(moving(instance))[:, None] & (seen.weight == 0.0)
+    free = (seen.u > low + off) & (seen.u < high - off) & plain
     least = LONG * (seen.times[-1] - seen.times[0])
     for row, sigma in zip(free, seen.sigma, strict=True):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(int), [0]])))

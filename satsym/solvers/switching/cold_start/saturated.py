@@ -16,6 +16,7 @@ from satsym.instance import Instance
 from satsym.solvers.failures import tried
 from satsym.solvers.switching.cold_start.recognition import Sample, guess
 from satsym.solvers.switching.structure import Guess
+from satsym.solvers.switching.throttled import signs
 
 STEPS = 400
 """RK4 steps of such a motion."""
@@ -51,6 +52,4 @@ def _motion(instance: Instance, tf: float, held: tuple[float, ...]) -> Sample | 
     lam, _ = model.backward(times, last, x, x_mid, u, u[:, 1:], p)
     if not np.isfinite(lam).all():
         return None
-    sigma = model.switching_function_batch(times, x, lam, p)
-    weight = np.broadcast_to(model.magnitude_weight_batch(times, x, p), sigma.shape)
-    return Sample(times, np.concatenate([x, lam]), u, sigma, weight)
+    return Sample(times, np.concatenate([x, lam]), u, *signs(instance, times, x, lam))

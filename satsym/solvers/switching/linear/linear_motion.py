@@ -80,7 +80,8 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
     """The coefficients of an instance's motion; ``None`` where they vary, or controls have no box around them."""
     model, p, n, m = instance.model, instance.parameters, len(instance.initial), len(instance.lower)
     bounded = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
-    if not model.spec.autonomous or model.spec.multipliers or model.spec.control_set != "box" or not bounded:
+    spec = model.spec
+    if not spec.autonomous or spec.moving_magnitudes or spec.multipliers or spec.control_set != "box" or not bounded:
         return None
     rng = np.random.default_rng(0)
     given = [abs(v) if isinstance(v, float | int) else 0.0 for v in map(instance.final.get, model.spec.state_names)]
@@ -105,7 +106,7 @@ def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Arra
         return float("nan"), np.zeros(len(u)), np.zeros(len(u))
     none = np.zeros_like(x)
     slope = np.broadcast_to(model.switching_function_batch(t, x, none, p), u.shape)
-    weight = np.broadcast_to(model.magnitude_weight_batch(t, x, p), u.shape)
+    weight = np.broadcast_to(model.magnitude_weight_batch(t, x, none, p), u.shape)
     idle = np.broadcast_to(model.running_cost_batch(t, x, np.zeros_like(u), p), t.shape)
     plain = _constant(slope) and _constant(weight) and _constant(idle) and not model.spec.has_terminal_cost
     return (float(idle[0]) if plain else float("nan")), slope[:, 0].copy(), weight[:, 0].copy()
