@@ -113,8 +113,10 @@ def test_being_led_to_the_answer_costs_what_finding_it_again_does() -> None:
     assert short.curve.nodes[:, 0] == pytest.approx(begun, rel=1e-6, abs=1e-9)
 
 
-def test_an_answer_that_meets_its_bounds_leads_nowhere(beside: Solution) -> None:
-    most = 0.8 * float(np.abs(beside.u[1]).max())
+@pytest.mark.parametrize("share", [0.8, 0.9999])
+def test_an_answer_that_meets_its_bounds_leads_nowhere(beside: Solution, share: float) -> None:
+    """Also where it hardly differs from an extremal without bounds."""
+    most = share * float(np.abs(beside.u[1]).max())
     case: Instance = replace(beside.instance, lower=(-np.inf, -most), upper=(np.inf, most))
     within = solve(case, examined=False)
     assert within.status.answered
