@@ -24,6 +24,9 @@ ROUGHLY, TOLERANCE = 3e-2, 1e-7
 """Sizes of the last step: after the first the mesh is laid anew if the way was hard, the other ends the minimisation.
 """
 
+FEWER = 3
+"""Stages of a search that need not be accurate: what it may be led to is."""
+
 UNFINISHED = (Reason.NO_CONVERGENCE, Reason.NO_DESCENT, Reason.TIME_UP)
 """Ends of minimisations that may be next to a minimum: a penalty function takes ever shorter steps along narrow
 valleys, as motions that are unstable and pass close to a centre of attraction have them."""
@@ -48,12 +51,13 @@ def from_path(
     most
         Steps.
     arrived
-        Whether a curve leads to what is known, which then ends the search.
+        Whether a curve leads to what is known, which then ends the search; it has fewer stages until it is a minimum.
     """
-    curve = paths.curve(problem, path)
+    order = FEWER if arrived else STAGES
+    curve = paths.curve(problem, path).with_stages(order)
     steps, hard, tolerance = 0, False, ROUGHLY
     while True:
-        system = System(problem, curve.mesh, STAGES)
+        system = System(problem, curve.mesh, order)
         found = minimise(system, curve, limits, tolerance, max(most - steps, 1), meshes.COARSEST, arrived)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
@@ -64,8 +68,9 @@ def from_path(
             return found
         if steps >= most or limits.expired:
             return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
-        tolerance = TOLERANCE if extremal else ROUGHLY
-        curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), STAGES)
+        tolerance, order = (TOLERANCE, STAGES) if extremal else (ROUGHLY, order)
+        laid = found.curve.mesh if extremal and not hard else meshes.laid(problem, found.curve)
+        curve = found.curve.on(laid, order)
 
 
 def finished(problem: TwoPoint, attempt: Attempt, limits: Limits) -> Attempt:
