@@ -92,7 +92,7 @@ def test_searches_on_either_side_find_their_own_side(beside: Solution) -> None:
     assert same.curve is not None
     assert other.curve is not None
     assert same.curve.nodes[1].sum() > 0.0 > other.curve.nodes[1].sum()
-    assert same.cost == beside.objective
+    assert same.cost == pytest.approx(beside.objective, rel=1e-11)
     assert other.cost == pytest.approx(beside.objective, rel=1e-9)
 
 
@@ -106,8 +106,10 @@ def test_being_led_to_the_answer_costs_what_finding_it_again_does() -> None:
         return np.asarray(bent / scale)
 
     short, long = (led(solution, path, answer) for answer in (Answer(solution), None))
-    assert short.cost == solution.objective
+    assert short.cost == pytest.approx(solution.objective, rel=1e-11)
     assert long.cost == pytest.approx(solution.objective, rel=1e-10)
+    costlier = replace(solution, objective=1.001 * solution.objective)
+    assert led(costlier, path, Answer(costlier)).cost == pytest.approx(solution.objective, rel=1e-11)
     assert short.curve is not None
     begun = np.concatenate([solution.x[:, 0], solution.lam[:, 0]]) / at_its_duration(solution).scale.both[:, 0]
     assert short.curve.nodes[:, 0] == pytest.approx(begun, rel=1e-6, abs=1e-9)

@@ -18,6 +18,7 @@ from satsym.solution import Solution
 from satsym.solvers.failures import tried
 
 if TYPE_CHECKING:
+    from satsym.solvers.certificate.comparison import Competitor
     from satsym.solvers.collocation.curve import Curve
     from satsym.solvers.collocation.linearised import Linearised
     from satsym.solvers.collocation.system import System
@@ -77,6 +78,15 @@ class Answer:
         """Its surroundings among motions without bounds; ``None`` where it meets one, or multipliers are unknown."""
         with np.errstate(all="ignore"):
             return tried(self._near)
+
+    @cached_property
+    def once_more(self) -> Competitor | None:
+        """The extremal in these surroundings, with its own cost, which may be less than the stated one."""
+        from satsym.solvers.certificate.seeded.searches import accurate
+
+        assert self.near is not None
+        near = self.near
+        return accurate(near.system.problem, near.curve, self.solution.objective, near.linearised)
 
     def _near(self) -> Near | None:
         from satsym.solvers.certificate.seeded.searches import at_its_duration

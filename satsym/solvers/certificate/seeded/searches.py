@@ -61,8 +61,8 @@ def from_path(
     def attempt(limits: Limits) -> Competitor | None:
         known = answer.near if answer and softness == 1.0 else None
         found = within_bounds(problem, path, limits, softness, most or TRIED, known.leads if known else None)
-        if known and found.reason is Reason.KNOWN:
-            return Competitor(known.system.problem, known.curve, cost)
+        if answer and found.reason is Reason.KNOWN:
+            return answer.once_more
         at_hand = None if problem.control_set.bounded else found.linearised
         return accurate(problem, found.curve, cost, at_hand) if found.solved else None
 
