@@ -9,7 +9,7 @@ from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.prose import scrolled
 from satsym.report.results.unit_names import time_unit
 from satsym.report.said import decimal, message, numbers, say
-from satsym.report.terminal.solution import control_rows, state_rows
+from satsym.report.terminal.solution import control_rows, state_rows, switching_together
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
 from satsym.solution import Certificate, Solution
@@ -22,11 +22,7 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     unit = unit_text(time_unit(spec) or "1")
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
     span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""
-    switches = ", ".join(
-        f"{name} {numbers(map(figure, times))}"
-        for name, times in zip(spec.control_names, solution.switching_times, strict=True)
-        if times
-    )
+    switches = "; ".join(f"{names} {numbers(map(figure, times))}" for names, times in switching_together(solution))
     events = "; ".join(
         f"{message(one.kind)} {one.name} {say('at <times>', times=f'{figure(one.t, 10)} {unit}'.rstrip())}"
         for one in solution.events

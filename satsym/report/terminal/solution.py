@@ -290,20 +290,22 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
     return *extremes, words, f"{100.0 * fraction:.3g} %"
 
 
-def _switching(solution: Solution, unit: str) -> list[str]:
-    """Switching times, once of all controls that have the same: those of a vector switch together."""
-    together: dict[tuple[float, ...], list[str]] = {}
+def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]]:
+    """Switching times, and before them all controls that have the same: those of a vector switch together."""
+    found: dict[tuple[float, ...], list[str]] = {}
     for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
-        together.setdefault(tuple(times), []).append(control)
-    rows = []
-    for times, controls in together.items():
         if times:
-            listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
-            if len(times) > SHOWN_TIMES:
-                listed = say("<listed> and <number> more", listed=listed, number=len(times) - SHOWN_TIMES)
-            rows.append(
-                (say("switching times:"), ", ".join(controls), say("at <times>", times=f"{listed} {unit}".rstrip()))
-            )
+            found.setdefault(tuple(times), []).append(control)
+    return [(", ".join(controls), times) for times, controls in found.items()]
+
+
+def _switching(solution: Solution, unit: str) -> list[str]:
+    rows = []
+    for controls, times in switching_together(solution):
+        listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
+        if len(times) > SHOWN_TIMES:
+            listed = say("<listed> and <number> more", listed=listed, number=len(times) - SHOWN_TIMES)
+        rows.append((say("switching times:"), controls, say("at <times>", times=f"{listed} {unit}".rstrip())))
     return table([("", "", ""), *rows])[1:] if rows else []
 
 
