@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,6 +18,8 @@ _READABLE = (("s", 600.0), ("min", 7200.0), ("h", 4 * 86400.0), ("day", 3 * 3155
 _LENGTHS = frozenset("m km cm mm au AU astronomical_unit ft mile nautical_mile".split())
 ASTRONOMICAL_UNIT = 149_597_870_700.0
 """In metres, by definition (IAU 2012, resolution B2)."""
+COMPARABLE = 1e-3
+"""Share of the largest component of a vector from which another one is read in the same unit."""
 _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-12: "p", -9: "n", -6: "\N{MICRO SIGN}", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "ms": ("s", -3)}
@@ -96,12 +98,16 @@ def engineering(unit: str, size: float) -> Scale:
     return Scale(exponent, units.expression({name if one == first else one: n for one, n in factors.items()}))
 
 
-def together(sizes: Iterable[tuple[str, float]]) -> dict[str, Scale]:
-    """Of each unit the one with the prefix for the largest size there is: the components of a vector have one."""
+def together(quantities: Sequence[tuple[str, float]]) -> list[Scale]:
+    """Of quantities with a unit and a size, the units to read them in: components of a vector have one.
+
+    One that is far smaller than the largest with its unit has a unit of its own, for no tick would be a short number.
+    """
     largest: dict[str, float] = {}
-    for unit, size in sizes:
+    for unit, size in quantities:
         largest[unit] = max(largest.get(unit, 0.0), size)
-    return {unit: engineering(unit, size) for unit, size in largest.items()}
+    far = ((unit, size, 0.0 < size < COMPARABLE * largest[unit]) for unit, size in quantities)
+    return [engineering(unit, size if apart else largest[unit]) for unit, size, apart in far]
 
 
 def number(value: float, digits: int = 6) -> str:

@@ -59,11 +59,13 @@ def component(values: np.ndarray, unit: str = "km") -> Series:
 
 
 def test_components_of_a_vector_are_drawn_in_one_unit() -> None:
-    wide, slim, other = component(np.sin(T) * 3e-5), component(np.sin(T) * 2e-9), component(np.cos(T), "km/s")
+    wide, slim, other = component(np.sin(T) * 3e-5), component(np.sin(T) * 4e-8), component(np.cos(T), "km/s")
     shown = read([wide, slim, other])
     assert [one.label for one in shown] == ["$x$ [mm]", "$x$ [mm]", "$x$ [km/s]"]
     assert shown[1].values == pytest.approx(slim.values * 1e6)
     assert read([slim])[0].label == "$x$ [µm]"
+    # one of which all ticks would need powers of ten is no longer compared
+    assert read([wide, component(np.sin(T) * 2e-9)])[1].label == "$x$ [µm]"
 
 
 def test_a_hamiltonian_that_is_constant_but_for_a_billionth_is_flat() -> None:

@@ -108,12 +108,12 @@ def _drawn(cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array]
 
 def _measures(cases: Sequence[Case], panels: Sequence[tuple[Variable, Mapping[int, Array]]]) -> list[display.Scale]:
     """The unit of each panel: values have one, and so have differences."""
-    sizes = [_largest(_drawn(cases, *panel).values()) for panel in panels]
-    found = [
-        display.together((v.unit, size) for (v, apart), size in zip(panels, sizes, strict=True) if bool(apart) is kind)
-        for kind in (False, True)
-    ]
-    return [found[bool(apart)][v.unit] for v, apart in panels]
+    found: dict[int, display.Scale] = {}
+    for kind in (False, True):
+        own = [k for k, (_, apart) in enumerate(panels) if bool(apart) is kind]
+        sizes = [(panels[k][0].unit, _largest(_drawn(cases, *panels[k]).values())) for k in own]
+        found |= dict(zip(own, display.together(sizes), strict=True))
+    return [found[k] for k in range(len(panels))]
 
 
 def _largest(rows: Iterable[Array]) -> float:

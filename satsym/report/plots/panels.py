@@ -87,7 +87,9 @@ def against_time(axes: Axes, scene: Scene, series: Series, shown: Reading, colou
     ticks(axes.yaxis, shown)
     if title:
         remark = _remark(scene, series, shown)
-        room = max(style.SHORTEST, title - style.length(f"{remark}  ", style.TITLE))
+        room = title - style.length(f"{remark}  ", style.TITLE)
+        if room < style.SHORTEST:
+            remark, room = "", title
         axes.set_title(style.broken(series.meaning, room, most=2))
         axes.set_title(remark, loc="right")
 

@@ -119,10 +119,11 @@ def read(quantities: Sequence[Series]) -> list[Reading]:
     Those with one unit keep one, so that the components of a vector can be compared.
     """
     counted = [_Counted.of(each) for each in quantities]
-    measures = [
-        together((each.unit, each.furthest) for each in counted if each.from_datum is apart) for apart in (False, True)
-    ]
-    return [each.shown(Scale(0, each.unit) if each.turns else measures[each.from_datum][each.unit]) for each in counted]
+    measures: dict[int, Scale] = {}
+    for apart in (False, True):
+        own = [k for k, each in enumerate(counted) if each.from_datum is apart]
+        measures |= dict(zip(own, together([(counted[k].unit, counted[k].furthest) for k in own]), strict=True))
+    return [each.shown(Scale(0, each.unit) if each.turns else measures[k]) for k, each in enumerate(counted)]
 
 
 def within_reach(excess: float, width: float) -> float:

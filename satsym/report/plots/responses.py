@@ -195,8 +195,8 @@ def _measures(shown: Sequence[Curve]) -> list[display.Scale]:
     found: dict[int, display.Scale] = {}
     for colour in dict.fromkeys(curve.colour for curve in shown):
         own = [k for k, curve in enumerate(shown) if curve.colour == colour]
-        units = display.together((shown[k].what.unit, max(map(abs, shown[k].ends))) for k in own)
-        found |= {k: units[shown[k].what.unit] for k in own}
+        sizes = [(shown[k].what.unit, max(map(abs, shown[k].ends))) for k in own]
+        found |= dict(zip(own, display.together(sizes), strict=True))
     return [found[k] for k in range(len(shown))]
 
 
