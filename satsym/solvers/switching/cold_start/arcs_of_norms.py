@@ -13,6 +13,7 @@ from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.cold_start.concentrated import concentrated
 from satsym.solvers.switching.cold_start.recognition import guess, sample
 
 SWITCHED = 0.35
@@ -30,9 +31,12 @@ def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, lim
         problem, curve = near
         shares.append(fraction_between(problem, curve))
         if shares[-1] <= SWITCHED:
-            exact = attempt(instance, guess(instance, sample(problem, curve)), limits)
-            if exact is not None:
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)
+            seen = sample(problem, curve)
+            first = guess(instance, seen)
+            for one in (concentrated(instance, seen, first), first):
+                exact = attempt(instance, one, limits)
+                if exact is not None:
+                    return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)
         if limits.expired:
             break
     message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
