@@ -18,6 +18,7 @@ from satsym.solvers import solve
 from satsym.solvers.certificate.comparison import Competitor
 from satsym.solvers.certificate.seeded.answer import Answer, Near
 from satsym.solvers.certificate.seeded.searches import at_its_duration, from_path
+from satsym.solvers.cold_start.from_path import from_path as minimised
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.iteration import Limits
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
@@ -94,6 +95,13 @@ def test_searches_on_either_side_find_their_own_side(beside: Solution) -> None:
     assert same.curve.nodes[1].sum() > 0.0 > other.curve.nodes[1].sum()
     assert same.cost == pytest.approx(beside.objective, rel=1e-11)
     assert other.cost == pytest.approx(beside.objective, rel=1e-9)
+
+
+def test_a_search_that_is_led_nowhere_is_what_it_is_without_an_answer(beside: Solution) -> None:
+    problem = at_its_duration(beside)
+    plain, asked = (minimised(problem, around(-0.6), Limits(200, np.inf), 15, one) for one in (None, lambda _: False))
+    assert (plain.curve.nodes == asked.curve.nodes).all()
+    assert plain.iterations == asked.iterations
 
 
 def test_being_led_to_the_answer_costs_what_finding_it_again_does() -> None:

@@ -15,7 +15,7 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.sqp import kind, minimise
 from satsym.solvers.collocation.system import System
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, Meter
 
 STRAIGHT_THROUGH = 15
 """Steps within which the straight line leads to a minimum if it does so easily."""
@@ -25,7 +25,7 @@ ROUGHLY, TOLERANCE = 3e-2, 1e-7
 """
 
 FEWER = 3
-"""Stages of a search that need not be accurate: what it may be led to is."""
+"""Stages with which it is looked at first whether a path leads to what is known: that need not be found accurately."""
 
 UNFINISHED = (Reason.NO_CONVERGENCE, Reason.NO_DESCENT, Reason.TIME_UP)
 """Ends of minimisations that may be next to a minimum: a penalty function takes ever shorter steps along narrow
@@ -51,9 +51,25 @@ def from_path(
     most
         Steps.
     arrived
-        Whether a curve leads to what is known, which then ends the search; it has fewer stages until it is a minimum.
+        Whether a curve leads to what is known, which then ends the search.
     """
-    order = FEWER if arrived else STAGES
+    if arrived is not None:
+        led = _minimised(problem, path, replace(limits, meter=Meter()), most, arrived, FEWER)
+        if led.reason is Reason.KNOWN:
+            limits.spend(led.curve.flat.shape[1] * led.iterations)
+            return led
+    return _minimised(problem, path, limits, most, arrived, STAGES)
+
+
+def _minimised(
+    problem: TwoPoint,
+    path: Callable[[Array], Array],
+    limits: Limits,
+    most: int,
+    arrived: Callable[[Curve], bool] | None,
+    order: int,
+) -> Attempt:
+    """The same with so many stages; with fewer than all, what is found is rough."""
     curve = paths.curve(problem, path).with_stages(order)
     steps, hard, tolerance = 0, False, ROUGHLY
     while True:
@@ -64,13 +80,12 @@ def from_path(
         extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)
         if not (extremal or found.reason is Reason.OUTGROWN) or not found.curve.in_domain(problem.positive):
             return found
-        if extremal and tolerance == TOLERANCE:
+        if extremal and (tolerance == TOLERANCE or order == FEWER):
             return found
         if steps >= most or limits.expired:
             return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
-        tolerance, order = (TOLERANCE, STAGES) if extremal else (ROUGHLY, order)
-        laid = found.curve.mesh if extremal and not hard else meshes.laid(problem, found.curve)
-        curve = found.curve.on(laid, order)
+        tolerance = TOLERANCE if extremal else ROUGHLY
+        curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), order)
 
 
 def finished(problem: TwoPoint, attempt: Attempt, limits: Limits) -> Attempt:
