@@ -25,26 +25,33 @@ def hohmann() -> float:
     return 1.0 - math.exp(-(first + second) / EXHAUST)
 
 
-def transfer(tf: float) -> satsym.Instance:
-    """From circle to circle, the angle at the end being free: the burns may be a little earlier or later as well."""
+def transfer(tf: float, faster: float = 0.0) -> satsym.Instance:
+    """From circle to circle, the angle at the end being free: the burns may be a little earlier or later as well.
+
+    Unless it begins by so much faster than on a circle.
+    """
     return satsym.Instance.of(
         "transfer_fuel",
         parameters={"c": EXHAUST},
-        initial={"r": 1.0, "theta": 0.0, "u": 0.0, "v": 1.0, "m": 1.0},
+        initial={"r": 1.0, "theta": 0.0, "u": 0.0, "v": 1.0 + faster, "m": 1.0},
         final={"r": FARTHER, "u": 0.0, "v": FARTHER**-0.5},
         tf=tf,
         control={"thrust": {"max_norm": STRONGEST}},
     )
 
 
-def test_arcs_that_smoothing_spreads_are_found_as_short_as_they_are():
-    case = as_case(transfer(5.3)).case
+@pytest.mark.parametrize(
+    ("faster", "structures"), [(0.0, {"-+-+-", "+-+-"}), (4e-7, {"+-+-"})], ids=["circles", "nearly"]
+)
+def test_arcs_that_smoothing_spreads_are_found_as_short_as_they_are(faster: float, structures: set[str]):
+    """Between circles any time to begin is as good; next to them the equations hardly tell: here the first is best."""
+    case = as_case(transfer(5.3, faster)).case
     limits, _ = watched(case, None)
     with np.errstate(all="ignore"):
         found = by_throttle._first(case, limits)
     assert not isinstance(found, Stopped), found.message
-    assert found.refined.structure.name == "-+-+-"
-    assert hohmann() < found.trajectory.cost(case) < hohmann() * (1.0 + 2e-3)
+    assert found.refined.structure.name in structures
+    assert hohmann() - 2.0 * faster / EXHAUST < found.trajectory.cost(case) < hohmann() * (1.0 + 2e-3)
     assert found.smoothing > 1e-3  # where norms are far from their bounds for a third of the time
 
 

@@ -13,7 +13,7 @@ from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start.concentrated import concentrated
+from satsym.solvers.switching.cold_start.concentrated import concentrated, from_the_start
 from satsym.solvers.switching.cold_start.recognition import guess, sample
 
 SWITCHED = 0.35
@@ -33,7 +33,8 @@ def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, lim
         if shares[-1] <= SWITCHED:
             seen = sample(problem, curve)
             first = guess(instance, seen)
-            for one in (concentrated(instance, seen, first), first):
+            short = concentrated(instance, seen, first)
+            for one in filter(None, (short, from_the_start(instance, short), first)):
                 exact = attempt(instance, one, limits)
                 if exact is not None:
                     return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)

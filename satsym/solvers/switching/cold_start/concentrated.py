@@ -14,7 +14,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.switching.cold_start.recognition import Sample
-from satsym.solvers.switching.structure import UPPER, Guess
+from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess
 from satsym.solvers.switching.throttled import switched
 
 
@@ -47,3 +47,19 @@ def _times(times: Array, levels: tuple[int, ...], switches: Array, filled: Array
         else:
             found[arc - 1 : arc + 1] = centre - lasting / 2.0, centre + lasting / 2.0
     return found
+
+
+def from_the_start(instance: Instance, first: Guess) -> Guess | None:
+    """The same begun at once: without a wait at its lower bound of one control, all that follows as much earlier.
+
+    Where such a wait next to changes nothing, as on an orbit that is next to circular, the equations hardly tell when
+    to begin, and the best time may be the earliest. ``None`` where it does not wait before it acts and after it.
+    """
+    row = first.structure.levels[0]
+    if len(first.structure.levels) > 1 or len(row) < 3 or row[0] != LOWER or row[-1] != LOWER or first.course is None:
+        return None
+    structure, kept = first.structure.without_arc(0, 0)
+    wait = first.times[0] - instance.t0
+    costates = first.course.at(float(first.times[0]))[len(instance.initial) :]
+    course = Course(first.course.times - wait, first.course.z)
+    return replace(first, structure=structure, times=first.times[kept] - wait, costates=costates, course=course)
