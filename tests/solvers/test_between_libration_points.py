@@ -39,10 +39,15 @@ DIRECT = 0.020663
 to 0.169726 and 5 to 0.183676."""
 
 
-def asked() -> satsym.Instance:
+SOONER, PASSING = 3.8, 0.0221925
+"""Another duration, and the same for it with 120 steps: 92 of 269 drawn paths led to it, 118 to 0.1782 and 0.1963, and
+2 to 0.0147, which passes the Moon at 0.014: so close that starts are seldom led there."""
+
+
+def asked(lasting: float = LASTING) -> satsym.Instance:
     """From rest to rest, as seen in the frame that turns with both."""
     still = {"y": 0.0, "vx": 0.0, "vy": 0.0}
-    return satsym.Instance.of(TRANSFER, initial={"x": FIRST, **still}, final={"x": LAST, **still}, tf=LASTING)
+    return satsym.Instance.of(TRANSFER, initial={"x": FIRST, **still}, final={"x": LAST, **still}, tf=lasting)
 
 
 @pytest.mark.slow(in_turn=True)
@@ -53,3 +58,10 @@ def test_drawn_paths_lead_past_the_moon() -> None:
         found = within_bounds(problem, paths.bent(problem, rng, amplitude), Limits(200, float("inf"), work=15_000))
         costs.append(found.cost * problem.scale.cost if found.solved else np.inf)
     assert sum(cost == pytest.approx(DIRECT, rel=2e-3) for cost in costs) >= 3
+
+
+@pytest.mark.slow(in_turn=True)
+def test_what_does_not_pass_the_moon_is_not_certified() -> None:
+    """The first start that leads anywhere leads to 0.1782, and so do few: others are drawn near the straight line."""
+    found = satsym.solve(asked(SOONER))
+    assert found.objective < PASSING * (1.0 + 1e-5)

@@ -40,14 +40,18 @@ WORK = 15_000
 SEEDS = 4
 """Starts that are drawn, of each kind."""
 
-MORE, MORE_WORK = 12, 4 * WORK
-"""Further starts where the first ones lead to several minima, and the columns after which no other one is begun."""
+MORE, MORE_WORK, ROUNDS = 12, 4 * WORK, 3
+"""Further starts where the first ones lead to several minima or nowhere, the columns after which no other one is begun,
+and how often that is done as long as there are several minima."""
 
 PATIENT, DRAWN_WORK = 10 * WORK, 30 * WORK
 """Columns for one extremal that is drawn, and after which no other one is begun: long swings take many."""
 
-BENT = (0.3, 1.0)
-"""Amplitudes of what is added to a straight line, in sizes of the states."""
+BENT, ALSO_BENT = (0.3, 1.0), (0.03, 0.1, 1.0)
+"""Amplitudes of what is added to a straight line, in sizes of the states, at first and for further starts.
+
+Where ends are close together, or motions unstable, the smallest lead to the most minima.
+"""
 
 SOFT = (0.1, 0.01)
 """Softness of bounds with which saturated structures are looked for."""
@@ -88,9 +92,12 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
             drawn = tried(partial(drawn_extremals.searches, solution, found, seed)) or []
             more = _tried(solution, kind, drawn, deadline, DRAWN_WORK, PATIENT)
             found = found if more is None else found.joined(more)
-        several = found.several or seed > 0  # what led to the solution costs more
-        if smooth and several and found.margin >= 0.0 and not found.interrupted:
-            more = _tried(solution, kind, _from_more(solution, answer, seed), deadline, MORE_WORK)
+        several = found.several or seed > 0 or found.summary.solved < found.summary.tried
+        for number in range(ROUNDS if smooth else 0):
+            if not several or found.margin < 0.0 or found.interrupted:
+                break
+            more = _tried(solution, kind, _from_more(solution, answer, (seed, number)), deadline, MORE_WORK)
+            several = more is not None and more.several
             found = found if more is None else found.joined(more)
         if kind is Kind.STARTS and found.margin >= 0.0:
             far = _tried(solution, kind, _from_controls(solution, seed), deadline)
@@ -214,10 +221,10 @@ def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: floa
     return attempt
 
 
-def _from_more(solution: Solution, answer: Answer, seed: int) -> list[Search]:
+def _from_more(solution: Solution, answer: Answer, seed: tuple[int, int]) -> list[Search]:
     """The minima within the bounds to which further paths lead that are drawn."""
-    problem, rng = at_its_duration(solution), np.random.default_rng((seed, MORE))
-    paths = _bent(problem, rng, MORE)
+    problem, rng = at_its_duration(solution), np.random.default_rng((*seed, MORE))
+    paths = _bent(problem, rng, MORE, ALSO_BENT)
     return [from_path(problem, path, 1.0, solution.objective, answer=answer) for path in paths]
 
 
@@ -299,12 +306,14 @@ def _cold(problem: TwoPoint, cost: float) -> Search:
     return attempt
 
 
-def _bent(problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS) -> Iterator[Callable[[Any], Any]]:
-    """Paths that are drawn, of both amplitudes in turn."""
+def _bent(
+    problem: TwoPoint, rng: np.random.Generator, count: int = SEEDS, amplitudes: tuple[float, ...] = BENT
+) -> Iterator[Callable[[Any], Any]]:
+    """Paths that are drawn, of all amplitudes in turn."""
     from satsym.solvers.cold_start import paths
 
     for k in range(count):
-        yield paths.bent(problem, rng, BENT[k % len(BENT)])
+        yield paths.bent(problem, rng, amplitudes[k % len(amplitudes)])
 
 
 def _spirals(solution: Solution, problem: TwoPoint, rotations: Iterator[Rotation]) -> list[Spiral]:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.failures import FAILURES, unbroken
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
@@ -26,11 +28,18 @@ STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
-def smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact | homotopy.Stopped:
+def smoothed(
+    instance: Instance, limits: Limits, thorough: bool = True, begun: tuple[TwoPoint, Curve] | None = None
+) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
     Structures with an arc less or more are many, and those without an arc that seems to be singular seldom lead
     anywhere, so both are tried once all smoothed extremals show no better one.
+
+    Parameters
+    ----------
+    begun
+        See :func:`~satsym.solvers.switching.cold_start.homotopy.path`.
     """
     before: Sample | None = None
     levels: list[minimum_effort.Smoothed] = []
@@ -40,7 +49,7 @@ def smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact
     endless = bool(instance.model.spec.chattering)
     most = homotopy.LEVELS * (2 if endless else 1)
     try:
-        for level, near in enumerate(homotopy.path(instance, limits, most)):
+        for level, near in enumerate(homotopy.path(instance, limits, most, begun)):
             seen = sample(near.problem, near.curve)
             levels.append(near)
             smoothing = near.problem.control_set.smoothing

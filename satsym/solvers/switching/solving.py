@@ -18,6 +18,7 @@ from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.by_meetings import meetings
 from satsym.solvers.switching.by_smoothing import smoothed
 from satsym.solvers.switching.chattering import at_rest, chattered
 from satsym.solvers.switching.cold_start import by_costates, by_scouts, by_throttle, homotopy, minimum_effort
@@ -39,6 +40,9 @@ COMPARED = 100_000
 
 BESIDE, COMPARED_BESIDE = (0.02, 0.05, 0.12, 0.3, 0.7), (0.035, 0.08, 0.2, 0.45, 0.85, 1.3)
 """Shares of a duration that was found, at which others are looked for by the solver and by certificates."""
+
+MEETING = 5
+"""Seed of costates that are drawn; certificates draw others."""
 
 ADOPTED = 3
 """Times that something cheaper is looked for, as long as there is."""
@@ -226,13 +230,26 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
         return homotopy.Stopped(Status.INFEASIBLE, message)
     best = _by_effort(instance, limits)
     for _ in range(ADOPTED):
-        cheapest = None if isinstance(best, homotopy.Stopped) else best
-        done = limits.expired or (isinstance(best, homotopy.Stopped) and best.chattering)
-        better = None if done else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
+        if limits.expired or (isinstance(best, homotopy.Stopped) and best.chattering):
+            break
+        better = _cheaper(instance, None if isinstance(best, homotopy.Stopped) else best, limits)
         if better is None:
             break
-        best = replace(better, origin=Origin.DRAWN)
+        best = better
     return best
+
+
+def _cheaper(instance: Instance, known: Exact | None, limits: Limits) -> Exact | None:
+    """What costs less than an extremal, if that is known, by switching times or costates that are drawn."""
+    found = tried(partial(by_scouts.cheaper, instance, known, limits))
+    if found is not None:
+        return replace(found, origin=Origin.DRAWN)
+    if known is None or limits.expired:
+        return None
+    solution = answered(instance, known, (), 0.0)
+    least = solution.objective - by_scouts.APART * abs(solution.objective)
+    met = (one for one in meetings(solution, MEETING, limits) if one is not None)
+    return next((one for one in met if one.trajectory.cost(instance) < least), None)
 
 
 def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:

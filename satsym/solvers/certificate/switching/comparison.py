@@ -22,6 +22,9 @@ COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
 DRAWN, BESIDE = 20012, (0.75, 1.3)
 """Seed of other starts where vectors are throttled, and other durations as shares of the solution's."""
 
+MEETING = 20013
+"""Seed of costates that are drawn."""
+
 WORK = 400_000
 """Columns that smoothing may take."""
 
@@ -54,6 +57,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
         lambda: [needles(solution, limits)],
         lambda: switching_competitors.compared(solution, limits),
         lambda: [_smoothed(solution, limits)],
+        lambda: [_meeting(solution, limits)],
     )
     bounded = solution.method == BOUNDARY_ARCS
     if bounded:  # others know nothing of path constraints
@@ -106,6 +110,15 @@ def _drawn(solution: Solution, limits: Limits) -> Competitors:
     costs = [exact.trajectory.cost(instance) for exact in found]
     kind = allowed(instance)[0]
     return Competitors(kind, len(by_throttle.AMPLITUDES), len(costs), min(costs, default=float("nan")))
+
+
+def _meeting(solution: Solution, limits: Limits) -> Competitors | None:
+    """Extremals to which those lead that are drawn from both ends; ``None`` where none may cost less."""
+    from satsym.solvers.switching.by_meetings import meetings
+
+    found = list(meetings(solution, MEETING, limits))
+    costs = [one.trajectory.cost(solution.instance) for one in found if one is not None]
+    return Competitors(Kind.STARTS, len(found), len(costs), min(costs, default=float("nan"))) if found else None
 
 
 def _other_boundaries(solution: Solution, limits: Limits, seed: int) -> Competitors | None:

@@ -66,8 +66,15 @@ class Stopped(Exception):
     """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
 
-def path(instance: Instance, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
+def path(
+    instance: Instance, limits: Limits, most: int = LEVELS, begun: tuple[TwoPoint, Curve] | None = None
+) -> Iterator[Smoothed]:
     """Smoothed extremals, less and less smoothed, that many times.
+
+    Parameters
+    ----------
+    begun
+        The first without the weight of |u|, if it is known.
 
     Raises
     ------
@@ -75,18 +82,18 @@ def path(instance: Instance, limits: Limits, most: int = LEVELS) -> Iterator[Smo
         Where there is none, or the way to the bounds is blocked.
     """
     try:
-        first = _weighed(instance, limits)
+        first = _weighed(instance, limits, begun)
     except (Stopped, *FAILURES):
-        by_programme = _by_programme(instance, limits)
+        by_programme = None if begun else _by_programme(instance, limits)
         if by_programme is None:
             raise
         first = by_programme
     yield from less_and_less(instance, first, limits, most)
 
 
-def _weighed(instance: Instance, limits: Limits) -> Smoothed:
+def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None) -> Smoothed:
     """Well smoothed within the bounds, with the weight of |u|."""
-    problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
+    problem, curve = begun or (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
     def weighed(fraction: float) -> TwoPoint:
