@@ -31,11 +31,11 @@ hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
-FEW, SHARE = 2, 3
-"""Of a slow test with more than that many cases every third runs, unless all are asked for."""
+FEW, SHARE = 2, 5
+"""Of a slow test with more than that many cases every fifth runs, unless all are asked for."""
 
 IN_TURN = "in_turn"
-"""What says of a slow test that it runs, or its cases do, in a third of all revisions of satsym, unless asked for."""
+"""What says of a slow test that it runs, or its cases do, in a fifth of all revisions of satsym, unless asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -92,7 +92,7 @@ def whole(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture(scope="session")
 def sample(whole: bool) -> Callable[[Iterable[Any]], list[Any]]:
-    """What is looked at of many cases in one test: every third, or all if all are asked for."""
+    """What is looked at of many cases in one test: every fifth, or all if all are asked for."""
     step = 1 if whole else SHARE
     return lambda cases: list(cases)[::step]
 

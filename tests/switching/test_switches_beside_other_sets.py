@@ -170,7 +170,7 @@ def test_where_numbers_fail_on_one_way_another_is_taken(monkeypatch: pytest.Monk
     asked = satsym.Instance.of(polar(), initial=LAUNCH, final=ORBIT, tf=0.6, control={"T": (0, 2)})
     found = satsym.solve(asked).certificate
     assert found is not None
-    assert [check.name for check in found.checks if not check.passed] == [UNCOMPARED]  # competitors go that way, too
+    assert {check.name for check in found.checks if not check.passed} <= {UNCOMPARED}  # competitors go that way, too
     monkeypatch.setattr(by_throttle, "followed", lambda instance, limits: None)
     stopped = satsym.solve(asked)
     assert stopped.status is Status.NOT_CONVERGED

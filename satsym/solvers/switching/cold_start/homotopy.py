@@ -17,9 +17,11 @@ from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Reason
+from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
-from satsym.solvers.collocation.following import follow
+from satsym.solvers.collocation.following import ROUGHLY, follow
+from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
@@ -50,6 +52,12 @@ FINER = 1e-6
 
 MOST_INTERVALS = 240
 """Of a mesh, there."""
+
+SPLIT = 2, 4
+"""Into so many parts intervals are split where their errors cannot be corrected."""
+
+MOST_SPLIT = 500
+"""Intervals of such a mesh."""
 
 
 @dataclass(frozen=True)
@@ -141,8 +149,17 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int
 
 
 def _finer(problem: TwoPoint, curve: Curve) -> Curve:
-    """The same more accurately, if that is found: what is smoothed less changes ever more quickly where bounds end."""
+    """The same more accurately, if that is found: what is smoothed less changes ever more quickly where bounds end.
+
+    Corners that are near each other may lie too close for the intervals of a mesh; then one with more is tried.
+    """
     found = refine(problem, curve, FINER, keep_nodes=True)
+    for times in () if found.solved else SPLIT:
+        mesh = through(corners(problem, curve, ROUGHLY), min(times * (len(curve.mesh) - 1), MOST_SPLIT))
+        outcome = newton(System(problem, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=15)
+        if outcome is not None and outcome.solved:
+            found = refine(problem, outcome.curve, FINER, keep_nodes=True)
+            return found.curve if found.solved else outcome.curve
     return found.curve if found.solved else curve
 
 
