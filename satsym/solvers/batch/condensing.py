@@ -30,8 +30,8 @@ class Condensing(Protocol):
         Gaps of shape (2n, N, M) are added to the last column at the end of each segment.
         """
 
-    def combine(self, columns: Array, shares: Array, found: Array) -> None:
-        """Add shares (k, M) of the first k columns at all nodes, shape (2n, c, N+1, M), to others, (2n, N+1, M)."""
+    def combine(self, columns: Array, weights: Array, found: Array) -> None:
+        """Add weights (k, M) of the first k columns at all nodes, shape (2n, c, N+1, M), to others, (2n, N+1, M)."""
 
 
 @lru_cache(maxsize=16)
@@ -55,9 +55,9 @@ class _OnArrays:
                 after[:, -1] += gaps[:, s]
         return found
 
-    def combine(self, columns: Array, shares: Array, found: Array) -> None:
-        for k, share in enumerate(shares):
-            found += columns[:, k] * share
+    def combine(self, columns: Array, weights: Array, found: Array) -> None:
+        for k, weight in enumerate(weights):
+            found += columns[:, k] * weight
 
 
 class _Compiled:
@@ -85,10 +85,10 @@ class _Compiled:
         )
         return found.reshape(rows, columns, segments + 1, count)
 
-    def combine(self, columns: Array, shares: Array, found: Array) -> None:
+    def combine(self, columns: Array, weights: Array, found: Array) -> None:
         rows, count = columns.shape[:2]
         given = np.ascontiguousarray(columns).reshape(rows * count, *found.shape[1:])
-        self._combine(given, count, shares, found)
+        self._combine(given, count, weights, found)
 
 
 def text(rows: int) -> str:
@@ -133,10 +133,10 @@ def text(rows: int) -> str:
     adding = [
         "for i in range(len(found)):",
         "    for s in range(found.shape[1]):",
-        "        for k in range(len(shares)):",
+        "        for k in range(len(weights)):",
         "            for m in range(found.shape[2]):",
-        "                found[i, s, m] += given[i * columns + k, s, m] * shares[k, m]",
+        "                found[i, s, m] += given[i * columns + k, s, m] * weights[k, m]",
     ]
     lines = [*compiling.HEAD, *function("many(transition, start, gaps, columns, found)", body)]
-    lines += function("combine(given, columns, shares, found)", adding)
+    lines += function("combine(given, columns, weights, found)", adding)
     return "\n".join(lines) + "\n"
