@@ -36,6 +36,7 @@ from satsym.symbolic.analysis import (
 )
 from satsym.symbolic.analysis.field import certain_rank, never_zero, sign_of
 from satsym.symbolic.analysis.listing import exact_object
+from satsym.symbolic.analysis.stability import Cause
 from satsym.symbolic.linear import regulator as lqr
 from satsym.symbolic.linear import stability as stability_steps
 from satsym.symbolic.linear import structure as structure_steps
@@ -562,8 +563,8 @@ def with_wrong_kalman_form(found: Any) -> Any:
 
 FALSIFIED = {
     "no block": ("stability", "stability_of", lambda found: replace(found, block=1)),
-    "exponential growth": ("stability", "stability_of", lambda found: replace(found, cause="right")),
-    "decay": ("stability", "stability_of", lambda found: replace(found, cause="all left")),
+    "exponential growth": ("stability", "stability_of", lambda found: replace(found, cause=Cause.RIGHT)),
+    "decay": ("stability", "stability_of", lambda found: replace(found, cause=Cause.LEFT)),
     "another form": ("jordan_form", "jordan_of", lambda found: replace(found, form=shifted(found.form))),
     "no basis": ("jordan_form", "jordan_of", lambda found: replace(found, basis=0 * found.basis)),
     "another exponential": ("matrix_exponential", "exponential_of", lambda found: shifted(found, 2, 3)),

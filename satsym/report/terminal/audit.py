@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 from satsym.auditing import Judged, Ledger
@@ -18,7 +17,6 @@ from satsym.report.findings.review import (
     is_put_in_words,
     items,
     measured,
-    quote,
     recompute,
     where,
 )
@@ -30,8 +28,6 @@ WIDTH = 100
 _NARROWEST = 40
 _INDENT = "  "
 _LABEL = 10
-_QUOTED = 200
-"""Characters of what is printed that are quoted beside a finding told in a sentence."""
 _SHORT = 30
 """Characters of what is printed that stand behind a verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
@@ -116,12 +112,9 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
         yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
 
-def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
-    """A finding in a sentence, and what is printed there."""
-    yield from _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
-    key, quoted = quote(finding.places[0])
-    if quoted:
-        yield from _labelled(review.texts.get("audit", key), textwrap.shorten(quoted, _QUOTED, placeholder=" ..."))
+def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
+    """A finding in a sentence; what is printed there stands on pages, and in the list of all rows."""
+    return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
 
 
 def _row(review: Review, row: Judged) -> Iterator[str]:
