@@ -171,6 +171,7 @@ def test_what_leaves_the_path_constraints_is_neither_a_competitor_nor_a_fall(
         assert (found.margin < 0.0) != leaves
 
 
+@pytest.mark.slow(in_turn=True)
 def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end():
     """x'' = -q x with three conjugate points: without the constraint the cost is unbounded below."""
     given = in_the_plane().with_(parameters={"q": 100.0}, initial={"x": 0.3, "y": 5.0}, final={"x": 0.3, "y": 5.0})

@@ -227,6 +227,7 @@ def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(
         assert "unbounded below" in found.message
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_reward_of_the_distance_without_bounds_has_no_minimiser() -> None:
     polar = instance.load("soft-return")
     names = polar.model.spec.parameter_names

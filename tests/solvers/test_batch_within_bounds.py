@@ -107,6 +107,7 @@ def test_a_single_node_that_is_off_is_no_minimum(row: int) -> None:
     assert minima(many, replace(nodes, z=z)).tolist() == expected.tolist()
 
 
+@pytest.mark.slow(in_turn=True)
 def test_controls_that_a_bound_holds_the_wrong_way_are_no_minimum() -> None:
     """The same nodes with bounds that would let more through, or less."""
     _, many, nodes, _ = held(returns("return-to-orbit", 12))

@@ -61,6 +61,7 @@ def test_the_same_again_with_other_initial_states(pair: Pair, cold: bool):
             matches(answer, pair.solve(replace(case, initial=initial)))
 
 
+@pytest.mark.slow(in_turn=True)
 def test_the_same_again_with_other_parameters(pair: Pair):
     case = with_parameters(instance.load("return-to-orbit"), c2=3.0)
     matches(pair.plain.solve(parameters=case.parameters), pair.solve(case))

@@ -114,6 +114,7 @@ def margin(z: Array, widest: float) -> float:
     return float(-(z[7] * math.sin(turn) + z[8] * math.cos(turn)) / z[4] + z[9] / EXHAUST - 1.0)
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_landing_by_a_gimbal_between_bounds_that_weighs_the_square_of_its_thrust():
     found = landing(SMOOTH, 0.2)
 
@@ -160,6 +161,7 @@ def test_the_law_within_bounds_is_typeset_and_described(side: str):
     assert "terdekat dengan arah" in render(derived, language="id")
 
 
+@pytest.mark.slow(in_turn=True)
 def test_a_magnitude_beside_a_bounded_angle_is_not_negative():
     with pytest.raises(BadInput, match="b turns what it multiplies, so it is not negative"):
         satsym.Instance.of(THRIFTY, initial=START, tf=1, control={"T": (-1, 1), "b": (-1, 1)})

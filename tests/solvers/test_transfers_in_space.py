@@ -42,6 +42,7 @@ def axis(generator: Array) -> Array:
     return np.array([generator[2, 1], generator[0, 2], generator[1, 0]])
 
 
+@pytest.mark.slow(in_turn=True)
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_the_axis_lies_between_the_momenta_of_both_ends_however_they_are_turned(seed: int) -> None:
     turned = Rotation.random(random_state=seed)
