@@ -81,6 +81,9 @@ class Variable:
                 raise ValueError(f"variable {self.symbol!r}: {field} is {value!r}; write text in quotes")
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+        if not self.latex.strip() or not _closed(self.latex):
+            wanted = "write how it is typeset, each { closed"
+            raise ValueError(f"variable {self.symbol!r}: latex is {self.latex!r}; {wanted}")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
             raise ValueError(f"variable {self.symbol!r}: default is {self.default!r}; give a finite number")
         if self.typical is not None:
@@ -90,6 +93,16 @@ class Variable:
                 raise ValueError(
                     f"variable {self.symbol!r}: typical is {low:g} to {high:g}; give two numbers, {wanted}"
                 )
+
+
+def _closed(latex: str) -> bool:
+    """Whether braces that group are closed in turn; those after a backslash are printed."""
+    depth = 0
+    for brace in re.findall(r"\\.|[{}]", latex):
+        depth += {"{": 1, "}": -1}.get(brace, 0)
+        if depth < 0:
+            return False
+    return depth == 0
 
 
 @dataclass(frozen=True)

@@ -43,20 +43,20 @@ def convergence(scene: Scene) -> Figure | None:
         (_above_rounding(distances, max(_largest([*costs, last]), _largest(_saturated(scene)))), style.PURPLE),
         (_above_rounding(residuals, _largest(residuals)), style.GREEN),
     ]
-    told = [int(np.isfinite(values).sum()) > 1 for values, _ in panels]
-    if not any(told):
+    drawn = [int(np.isfinite(values).sum()) > 1 for values, _ in panels]
+    if not any(drawn):
         return None
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
     begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
-    columns = style.across(sum(told))
-    rows = sum(told) // columns
+    columns = style.across(sum(drawn))
+    rows = sum(drawn) // columns
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 4.1 if rows == 1 else 6.6)
     places = iter(page.subplots(rows, columns, squeeze=False).flat)
     saying = [_of_cost(scene, last), _of_residual(bool(begun.size))]
-    if not told[0]:  # the cost is said all the same
+    if not drawn[0]:  # the cost is said all the same
         saying[1] = f"{saying[0][0]}\n{saying[1][0]}", saying[1][1]
-    for (values, colour), (title, label), shown in zip(panels, saying, told, strict=True):
-        if shown:
+    for (values, colour), (title, label), has_values in zip(panels, saying, drawn, strict=True):
+        if has_values:
             axes = next(places)
             axes.set_title(title)
             axes.set_ylabel(label)

@@ -48,10 +48,10 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
     """
     passed: list[tuple[System, Curve, float]] = []
     found = _followed(problem, start, passed)
-    told = costs([(system, curve) for system, curve, _ in passed]) if found or limits.watch else []
-    for cost, (_, _, size) in zip(told, passed, strict=False):
+    cost_of_each = costs([(system, curve) for system, curve, _ in passed]) if found or limits.watch else []
+    for cost, (_, _, size) in zip(cost_of_each, passed, strict=False):
         limits.tell(cost * problem.scale.cost, size)
-    return replace(found, cost=told[-1]) if found else None
+    return replace(found, cost=cost_of_each[-1]) if found else None
 
 
 def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve, float]]) -> Attempt | None:
