@@ -122,7 +122,7 @@ def _read(path: Path) -> list[Judged] | None:
 
 def _digest(ledger: Ledger) -> str:
     digest = hashlib.blake2b(program().encode(), digest_size=16)
-    for path in documents.files_of(ledger.path):
+    for path in documents.read_from(ledger.path):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 

@@ -44,6 +44,8 @@ class Judged:
         Measured numbers, and the command that recomputes them.
     why, why_id
         Why it is not so, in a sentence for people, in English and Indonesian, where the ledger has one.
+    says_id
+        What it is about in Indonesian, where the ledger has that.
     form
         What rows with the same fault share: the edit that puts them right, or the form of the claim.
     by_formula
@@ -72,6 +74,7 @@ class Judged:
     why: str = ""
     why_id: str = ""
     diagnosis_id: str = ""
+    says_id: str = ""
     form: str = ""
     by_formula: bool = False
     vacuous: bool = False

@@ -80,7 +80,7 @@ def _pairs(table: str) -> dict[str, str]:
 
 def stated(said: Said, what: str = "") -> Said:
     """A sentence without its full stop, and after a colon what there is to it."""
-    return joined([said, f": {what}." if what else "."], "")
+    return joined([said, *([": ", what] if what else []), "."], "")
 
 
 def sentence(clause: str) -> Said:

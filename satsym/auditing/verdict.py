@@ -57,6 +57,7 @@ class _Context:
         return Judged(
             document=document,
             **{name: getattr(row.table, name) for name in AS_STATED},
+            says_id=row.says_id,
             derived=shown(outcome.plan, None) if outcome.plan and self._takes_over(outcome) else outcome.derived,
             verdict=verdict,
             diagnosis=str(said),
@@ -78,7 +79,7 @@ class _Context:
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
         if not row.table.legible:
-            return "illegible", [stated(say("unread"), row.table.says)]
+            return "illegible", [stated(say("unread"), row.says)]
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:

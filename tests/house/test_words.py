@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 
 from satsym import instance, kernels
+from satsym.auditing import read
+from satsym.auditing.ledger import documents
 from satsym.cli.app import program
 from satsym.report.said import translations
 from satsym.report.texts import languages
@@ -151,6 +153,12 @@ def test_translated_messages_use_the_words_of_their_glossary(language: str, glos
     texts = translations(language)
     assert len(texts) > 300
     assert complaints(texts.items(), avoided(glossaries[language])) == []
+
+
+def test_what_rows_of_ledgers_are_about_is_told_in_the_words_of_the_glossary(glossaries: dict[str, str]) -> None:
+    told = {text: text for path in documents.shipped() for text in (row.says_id for row in read(path).rows)}
+    assert len(told) > 600
+    assert complaints(told.items(), avoided(glossaries["id"])) == []
 
 
 def test_help_uses_the_words_of_the_glossary(english: list[Avoided]) -> None:

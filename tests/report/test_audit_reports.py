@@ -15,8 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from satsym.auditing import VERDICTS, Judged, Ledger, sentences
+from satsym.auditing import VERDICTS, Judged, Ledger, cache, read, sentences
 from satsym.auditing.causes import Weight
+from satsym.auditing.ledger import documents
 from satsym.auditing.sentences import sentence
 from satsym.report.findings.objects import audit_object
 from satsym.report.findings.review import Review
@@ -339,6 +340,23 @@ def test_whatever_a_ledger_holds_is_typeset(
     log = done.stdout.decode("utf-8", "replace")
     assert done.returncode == 0, log
     assert "Overfull" not in log, re.findall(r"Overfull.*", log)
+
+
+@pytest.mark.slow(in_turn=True)
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex to compile with")
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("path", documents.shipped(), ids=lambda path: path.name)
+def test_the_report_on_each_document_has_no_box_too_full_or_too_loose(
+    path: Path, language: str, tmp_path: Path
+) -> None:
+    own = read(path)
+    source = typeset.render([own], {own.document.key: cache.audit(own)}, language)
+    (tmp_path / "it.tex").write_text(source, encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape", "it.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
+    log = done.stdout.decode("utf-8", "replace")
+    assert done.returncode == 0, log
+    assert re.findall(r"(?:Over|Under)full.*", log) == []
 
 
 def test_every_verdict_and_weight_has_its_words_in_every_language() -> None:

@@ -25,7 +25,7 @@ from satsym.spec import ProblemSpec
 from satsym.status import Status, Verdict
 from satsym.symbolic.dimension_algebra import _TOLD
 from tests.cli.test_cli import Run, case, run
-from tests.support.said import HOLE, anonymous, looked_up, refused, written
+from tests.support.said import ENGLISH, HOLE, anonymous, looked_up, refused, written
 
 __all__ = ["case", "run"]
 
@@ -35,12 +35,6 @@ SAME = {
     *("model <name>", "<name>, model <model>"),
 }
 """Words of both languages."""
-
-
-ENGLISH = re.compile(
-    r"\b(the|of|and|with|for|from|to|by|at|are|has|no|not|on|states?|control|costs?|final|initial|unit|value|written|"
-    r"costate|given|free|eigenvalues?|iterations?|circle|ellipse|unstable|ok|failed|certified|converged)\b"
-)
 
 
 NAMES = re.compile(

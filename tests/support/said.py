@@ -14,6 +14,11 @@ import satsym
 
 SOURCE = Path(satsym.__file__).parent
 HOLE = re.compile(r"<([a-z_]+)>")
+ENGLISH = re.compile(
+    r"\b(the|of|and|with|for|from|to|by|at|are|has|no|not|on|states?|control|costs?|final|initial|unit|value|written|"
+    r"costate|given|free|eigenvalues?|iterations?|circle|ellipse|unstable|ok|failed|certified|converged)\b"
+)
+"""Words that no Indonesian text has."""
 
 
 @cache

@@ -11,6 +11,7 @@ from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.ledger.vocabulary import is_address
 from satsym.auditing.propositions.reading import Proposition
+from satsym.auditing.sentences import Said
 from satsym.formula.cells import Formula, calls_in, cells
 from satsym.formula.tree import Call, Equality, Node, Text, walk
 
@@ -41,6 +42,13 @@ class Row:
     """A sentence that explains why it is not so: texts, and terms to be measured between them."""
     why_id: tuple[str | Proposition, ...] = ()
     """The same in Indonesian, where the ledger has it."""
+    says_id: str = ""
+    """What it is about in Indonesian, where the ledger has it."""
+
+    @property
+    def says(self) -> Said:
+        """What it is about, in both languages."""
+        return Said(self.table.says, self.says_id)
 
     @property
     def uses(self) -> list[str]:

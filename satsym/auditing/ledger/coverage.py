@@ -16,7 +16,7 @@ from functools import partial
 from itertools import accumulate
 from pathlib import Path
 
-from satsym.auditing.ledger import schema
+from satsym.auditing.ledger import documents, schema
 from satsym.auditing.ledger.contents import Ledger
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import ContentsTable, WrongKey
@@ -96,7 +96,7 @@ class Coverage:
 
 def place(ledger: Ledger) -> Path:
     """Where the contents of a ledger's text are kept."""
-    return ledger.path / "contents.toml" if ledger.path.is_dir() else ledger.path.with_suffix(".contents.toml")
+    return documents.beside(ledger.path, "contents.toml")
 
 
 def kept(ledger: Ledger) -> Coverage | None:

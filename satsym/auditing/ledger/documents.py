@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 HEAD, CHAPTERS = source_files.LEDGER, "ledger_*.toml"
 """The files of a folder: a head, with rows or without, and chapters of rows alone, by name."""
+INDONESIAN = "says.id.toml"
+"""What its rows are about, in Indonesian; a ledger need not have it."""
 
 
 def shipped() -> list[Path]:
@@ -25,6 +27,17 @@ def shipped() -> list[Path]:
 def files_of(path: Path) -> list[Path]:
     """The files of a ledger, the head first."""
     return [path / HEAD, *sorted(path.glob(CHAPTERS))] if path.is_dir() else [path]
+
+
+def beside(path: Path, name: str) -> Path:
+    """A file that belongs to a ledger: in its folder, or for one file ``small.toml`` beside it, ``small.NAME``."""
+    return path / name if path.is_dir() else path.with_suffix(f".{name}")
+
+
+def read_from(path: Path) -> list[Path]:
+    """All files that reading a ledger reads."""
+    translated = beside(path, INDONESIAN)
+    return [*files_of(path), *([translated] if translated.exists() else [])]
 
 
 def named(path: Path) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from satsym.auditing import measurements, quantities
-from satsym.auditing.ledger import documents, rows, schema, vocabulary
+from satsym.auditing.ledger import documents, indonesian, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.positions import Part
@@ -95,6 +95,7 @@ class _Reader:
         found = [self._row(i, entry) for i, entry in enumerate(tables)]
         self._check_references(found)
         self._check_units(found)
+        found = indonesian.added(found, documents.beside(self._path, documents.INDONESIAN))
         return Ledger(self._path, name, document, self._scopes, self._symbols, self._inputs, tuple(found))
 
     def _refuse_unknown_tables(self) -> None:

@@ -47,6 +47,10 @@ class Review:
             rows = [_in_indonesian(row) for row in rows]
         return cls(ledger, rows, texts)
 
+    def translated(self, row: Judged) -> bool:
+        """Whether what a row is about is told in the language of the report; a ledger may have it in English alone."""
+        return self.texts.language == "en" or (self.texts.language == "id" and bool(row.says_id))
+
     @property
     def key(self) -> str:
         """Of the document."""
@@ -222,8 +226,8 @@ def items(judged: Sequence[Judged]) -> list[str]:
 
 
 def _in_indonesian(row: Judged) -> Judged:
-    derived = row.derived if row.by_formula else measured_in_indonesian(row.derived)
-    return replace(row, why=row.why_id or row.why, diagnosis=row.diagnosis_id or row.diagnosis, derived=derived)
+    told = {name: getattr(row, f"{name}_id") or getattr(row, name) for name in ("says", "why", "diagnosis")}
+    return replace(row, **told, derived=row.derived if row.by_formula else measured_in_indonesian(row.derived))
 
 
 def quote(row: Judged) -> tuple[str, str]:

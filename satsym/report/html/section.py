@@ -85,12 +85,16 @@ class Section:
         right = correction(row)
         return {
             "says": self._original(row),
-            "about": tag("span", row.says, lang="en") if row.says and not row.original else "",
+            "about": self._about(row) if row.says and not row.original else "",
             "printed": "" if row.kind == "claim" else self._printed(row),
             "in_fact": joined(*_formulas(self._review.fact(row))),
             "measured": measured(row),
             "right": _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else "",
         }
+
+    def _about(self, row: Judged) -> Markup:
+        """What a row is about, marked as English on a page in another language if it is."""
+        return tag("span", row.says, lang=False if self._review.translated(row) else "en")
 
     def _sources(self, key: str) -> dict[str, str]:
         """Links to what a row follows from, and to what it is held against."""

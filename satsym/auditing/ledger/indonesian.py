@@ -1,0 +1,41 @@
+"""What rows are about in Indonesian: a flat table beside the ledger, ``"what a row says" = "the same so"``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from satsym.auditing.ledger.contents import Row
+from satsym.auditing.ledger.positions import Part
+from satsym.instance import files
+from satsym.status import BadInput
+from satsym.wording import printable, shown
+
+_CLAUSE = re.compile(r"[;:] ")
+
+
+def added(rows: Iterable[Row], path: Path) -> list[Row]:
+    """The rows, each with what the table has for it; as they are where there is no such file.
+
+    Raises
+    ------
+    BadInput
+        With file and line, where an entry is no text or nothing that a row says.
+    """
+    rows = list(rows)
+    if not path.exists():
+        return rows
+    try:
+        part = Part(path, files.read(path), 0)
+    except BadInput as error:
+        raise BadInput(f"{printable(str(path), 200)}: {error}") from None
+    said = {row.table.says for row in rows if row.table.says}
+    for english, text in part.tree.items():
+        place, begins = part.place("", 0, english), shown(_CLAUSE.split(english)[0])
+        if not isinstance(text, str) or not text.strip():
+            raise BadInput(f"{place}: got {shown(text)} for {begins}; write the same in Indonesian, in quotes")
+        if english not in said:
+            raise BadInput(f"{place}: no row says {begins}; write it as a row has it, or take it out")
+    return [replace(row, says_id=part.tree.get(row.table.says, "")) for row in rows]
