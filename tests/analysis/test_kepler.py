@@ -56,7 +56,7 @@ def assert_kepler(start: State, tf: float, mu: float = 1.0, t0: float = 0.0) -> 
     assert abs(energies.initial - energy(mu, start)) <= 1e-14 * kinetic
     assert abs(momenta.initial / angular_momentum(start) - 1.0) <= 1e-14
     assert energies.drift <= 1e-9 * max(kinetic, mu / simulation.x[0].min())
-    assert momenta.drift <= 1e-9 * abs(momenta.initial)
+    assert momenta.drift <= 3e-9 * abs(momenta.initial)  # of r^2 theta_dot: r counts twice
     return simulation
 
 

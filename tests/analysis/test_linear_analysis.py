@@ -57,6 +57,13 @@ def test_jordan_blocks_are_found_in_any_basis(blocks, seed):
     assert max(abs(e.value - round(e.value.real)) for e in found) < 1e-6
 
 
+def test_a_mode_out_of_reach_that_rests_is_exactly_zero():
+    """The torque of a wheel moves satellite and wheel one against the other; together they turn on, or rest."""
+    found = controllability(linearise(instance.load("lapan-classical")).system)
+    assert found.rank == 2
+    assert [each.value for each in found.lost] == [0.0]
+
+
 @settings(max_examples=25)
 @given(SEEDS)
 def test_units_change_eigenvalues_by_the_unit_of_time_alone_and_no_rank_at_all(seed):

@@ -10,10 +10,13 @@ import sympy
 
 import satsym
 from satsym import instance as instances
+from satsym import kernels
+from satsym.analysis.linear.structure import analyse
 from satsym.instance import Instance
 from satsym.report.columns import on_axis
 from satsym.report.look import Look
 from satsym.report.plots import convergence, coordinates, figures, pages, phase_planes, series, style
+from satsym.report.plots.orbits import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
@@ -205,3 +208,18 @@ def test_phase_planes_show_where_the_motion_has_to_end() -> None:
     with style.applied():
         page = pages.phase(Scene.of(found))
     assert page is not None
+
+
+@pytest.mark.parametrize(("name", "scale"), [("roll_yaw", "symlog"), ("polar_orbit", "linear")])
+def test_eigenvalues_that_lie_decades_apart_are_not_drawn_on_one_spot(name: str, scale: str) -> None:
+    """Of a satellite whose wheel swings in sprung gimbals the furthest is millions of times the nearest."""
+    found = analyse(kernels.load(name))
+    (axes,) = eigenvalue_plane.of_analysis(found).axes
+    assert (axes.get_xscale(), axes.get_yscale()) == (scale, scale)
+    ends = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert len(ends) == len(found.eigenvalues)
+    shown = axes.transAxes.inverted().transform(axes.transData.transform(ends))
+    assert shown.min() >= 0.0
+    assert shown.max() <= 1.0
+    apart = np.linalg.norm(shown[:, None] - shown, axis=-1) + np.eye(len(ends))
+    assert apart.min() > 3e-3

@@ -136,12 +136,12 @@ MADE_OF_PARTS = {
 """Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
 
 
-@pytest.mark.parametrize("text", sorted(refused() - MADE_OF_PARTS))
-def test_no_refusal_stays_english(text: str) -> None:
+def test_no_refusal_stays_english() -> None:
     """With a name in each of its places, or a text that is translated where a place is a clause of its own."""
-    filled = re.sub(r"(^|; |: )<>(?=$|;)", r"\1converged", text).replace("<>", "X7")
+    assert len(refused()) > 400
+    filled = {re.sub(r"(^|; |: )<>(?=$|;)", r"\1converged", text) for text in refused() - MADE_OF_PARTS}
     with spoken("id"):
-        assert message(filled) != filled
+        assert [text for text in filled if message(text.replace("<>", "X7")) == text.replace("<>", "X7")] == []
 
 
 def test_all_titles_that_are_shipped_are_translated_and_meanings_of_the_satellites() -> None:

@@ -24,6 +24,9 @@ from satsym.arrays import Array
 
 TOLERANCE = 1e-10
 
+ROUNDING = 1e-15
+"""Of the staircase: entries below this for each state, relative to the size of the matrix, say nothing."""
+
 
 @dataclass(frozen=True, eq=False)
 class Reach:
@@ -54,7 +57,9 @@ def controllability(given: LinearSystem) -> Reach:
 
     def reach(inputs: list[int], alone: Mapping[str, Reach]) -> Reach:
         rank, _, form = staircase(fitted.A, fitted.B[:, inputs])
-        lost = spectrum(form[rank:, rank:] * fitted.rate) if rank < len(form) else ()
+        rest = form[rank:, rank:]
+        rest = np.where(np.abs(rest) > ROUNDING * len(form) * np.linalg.norm(fitted.A, 2), rest, 0.0)
+        lost = spectrum(rest * fitted.rate) if rank < len(form) else ()
         return Reach(np.hstack([block[:, inputs] for block in blocks]), rank, lost, alone)
 
     alone = {name: reach([j], {}) for j, name in enumerate(given.inputs)}

@@ -52,6 +52,11 @@ MARGIN = 1.25
 """Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
 SIDE = 6.6
 """Of the page, in inches."""
+APART, NOUGHT = 100.0, 1e-8
+"""How many times further from zero than the nearest eigenvalue the furthest lies where decades are as long as each
+other, and relative to the furthest what counts as zero, being so by rounding only."""
+MARKED = 3
+"""Of the decades, as many at most are named on each side."""
 
 
 def of_analysis(found: Analysis) -> Figure:
@@ -113,17 +118,36 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "")
     units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
     factor, unit = display.time_scale(units, 2.0 * np.pi / furthest)
     reach = MARGIN * furthest * factor
+    sizes = np.abs(values)[np.abs(values) > NOUGHT * furthest]
+    if furthest > APART * min(sizes, default=furthest):
+        reach = _decades(axes, float(sizes.min()) * factor, furthest * factor)
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal")
     axes.axvspan(-reach, 0.0, color=style.GREEN, alpha=0.07, linewidth=0.0, zorder=1.0)
     axes.axvline(0.0, color=style.INK, linewidth=1.1, zorder=2.0)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.text(-0.97 * reach, -0.97 * reach, left or say("stable"), color=style.GREEN, fontsize=style.points(10.0))
+    place: dict[str, Any] = {"transform": axes.transAxes, "fontsize": style.points(10.0)}
+    axes.text(0.015, 0.015, left or say("stable"), color=style.GREEN, **place)
     per_time = "" if unit == "1" else f"1/{unit}"
     axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,s$", per_time or "1"))
     axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,s$", per_time or "1"))
     return factor
+
+
+def _decades(axes: Axes, nearest: float, furthest: float) -> float:
+    """Scale both axes by decades from the nearest on, so that no eigenvalues lie on one another; how far they reach."""
+    first, last = (int(np.floor(np.log10(size))) for size in (nearest, furthest))
+    shown = range(last, first - 1, -max(1, -(-(last - first) // MARKED)))
+    ticks = [sign * 10.0**power for sign in (-1.0, 1.0) for power in shown]
+    names = [f"${'-' if tick < 0.0 else ''}10^{{{round(np.log10(abs(tick)))}}}$" for tick in ticks]
+    for axis, scaled in ((axes.xaxis, axes.set_xscale), (axes.yaxis, axes.set_yscale)):
+        scaled("symlog", linthresh=10.0**first)
+        axis.set_ticks([*ticks, 0.0], [*names, "0"])
+        axis.set_ticks([], minor=True)
+    said = say("linear within <limits>", limits=rf"$\pm 10^{{{first}}}$")
+    axes.text(0.985, 0.015, said, transform=axes.transAxes, ha="right", color=style.SOFT, fontsize=style.points(9.0))
+    return 10.0 * furthest
 
 
 def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
