@@ -19,7 +19,7 @@ from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import Compared, Comparison, Competitor, summed
-from satsym.solvers.certificate.directed import led
+from satsym.solvers.certificate.directed import led, led_far_round
 from satsym.solvers.certificate.drawn_controls import drawable, drawn_below
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.seeded import drawn_extremals
@@ -43,6 +43,9 @@ SEEDS = 4
 MORE, MORE_WORK, ROUNDS = 12, 4 * WORK, 3
 """Further starts where the first ones lead to several minima or nowhere, the columns after which no other one is begun,
 and how often that is done as long as there are several minima."""
+
+FAR_ROUND = 8
+"""First paths that are drawn far from the straight line, where the final time is free."""
 
 PATIENT, DRAWN_WORK = 10 * WORK, 30 * WORK
 """Columns for one extremal that is drawn, and after which no other one is begun: long swings take many."""
@@ -81,6 +84,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     """
     kinds, missing, spec, answer = [], [], solution.instance.model.spec, Answer(solution)
     for kind, attempts in _attempts(solution, answer, seed):
+        beside: Compared | None = None
         by_law = spec.directional or spec.stationary
         smooth = kind is Kind.STARTS and not by_law
         activity.tell(f"certificate: comparing with {kind.value} ...")
@@ -91,7 +95,9 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
         if (smooth or by_law) and not found.interrupted:
             drawn = tried(partial(drawn_extremals.searches, solution, found, seed)) or []
             more = _tried(solution, kind, drawn, deadline, DRAWN_WORK, PATIENT)
+            likely = kind is Kind.DURATIONS and drawn_extremals.several_likely(solution, found)
             found = found if more is None else found.joined(more)
+            beside = _from_far_round(solution, deadline, seed) if likely else None
         several = found.several or seed > 0 or found.summary.solved < found.summary.tried
         for number in range(ROUNDS if smooth else 0):
             if not several or found.margin < 0.0 or found.interrupted:
@@ -102,9 +108,10 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
         if kind is Kind.STARTS and found.margin >= 0.0:
             far = _tried(solution, kind, _from_controls(solution, seed), deadline)
             found = replace(found if far is None else found.joined(far), simulated=drawable(solution))
-        kinds.append(found)
-        if found.interrupted or not found.summary.solved:
-            missing.append(kind)
+        for one in (found,) if beside is None else (found, beside):
+            kinds.append(one)
+            if one.interrupted or not one.summary.solved:
+                missing.append(one.summary.kind)
     return Comparison(tuple(kinds), tuple(missing))
 
 
@@ -185,7 +192,7 @@ def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[K
     if instance.model.spec.directional or instance.model.spec.stationary:
         bent = tuple(BENT[k % len(BENT)] for k in range(SEEDS))
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
-            yield kind, [_rough(search, cost) for search in searches]
+            yield kind, _made_accurate(searches, cost)
         return
     yield Kind.STARTS, [from_path(problem, path, 1.0, cost, answer=answer) for path in _bent(problem, rng)]
     if instance.control_set.bounded:
@@ -211,14 +218,32 @@ def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[K
         yield Kind.EARLIER, [_cold(one, cost) for one in early]
 
 
-def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: float) -> Search:
-    """What a search finds, made accurate."""
+def _made_accurate(searches: list[Callable[[Limits], tuple[TwoPoint, Curve] | None]], cost: float) -> list[Search]:
+    """What searches find, made accurate; several may find the same."""
+    made: list[tuple[Curve, Competitor | None]] = []
 
-    def attempt(limits: Limits) -> Competitor | None:
+    def attempt(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], limits: Limits) -> Competitor | None:
         found = search(limits)
-        return None if found is None else accurate(*found, cost)
+        if found is None:
+            return None
+        if not any(found[1] is curve for curve, _ in made):
+            made.append((found[1], accurate(*found, cost)))
+        return next(competitor for curve, competitor in made if found[1] is curve)
 
-    return attempt
+    return [partial(attempt, search) for search in searches]
+
+
+def _from_far_round(solution: Solution, deadline: float, seed: int) -> Compared | None:
+    """What paths lead to that are far from the straight line; more are drawn where the first disagree or fail."""
+    lasting, rng = float(solution.times[-1]) - solution.instance.t0, np.random.default_rng((seed, MORE))
+    found: Compared | None = None
+    for searches in led_far_round(solution.instance, lasting, rng, (FAR_ROUND, MORE)):
+        attempts = _made_accurate(searches, solution.objective)
+        more = _tried(solution, Kind.STARTS, attempts, deadline, DRAWN_WORK)
+        found = more if found is None or more is None else found.joined(more)
+        if found is None or (not found.several and found.summary.solved == found.summary.tried) or found.interrupted:
+            break
+    return found
 
 
 def _from_more(solution: Solution, answer: Answer, seed: tuple[int, int]) -> list[Search]:

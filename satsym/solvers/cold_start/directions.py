@@ -18,6 +18,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.duration_trials import Trials
 from satsym.solvers.cold_start.durations import free_duration, time_scale
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.from_path import from_path
@@ -59,6 +60,10 @@ FAR = 0.03
 FULL, BRIEF = 1e-9, 0.03
 """By this share a direction may be short of its length, and for this share of the time it may be shorter: where the
 slope of H vanishes for an instant only, such as at an end that leaves velocities free, smoothing never ends to show."""
+
+FINER, FINELY = (30, 60), 3
+"""Intervals that are tried besides those of a smoothed extremal, and how often: a direction that turns round where the
+slope of H is small does so in less time than these take, and Newton's method then finds nothing on them."""
 
 
 Exact = TypeVar("Exact")
@@ -192,18 +197,42 @@ def _in_direction(instance: Instance, direction: float) -> Array:
 
 
 def bent(
-    instance: Instance, rng: np.random.Generator, amplitude: float, limits: Limits, unsmoothed: Unsmoothed[Exact]
+    instance: Instance,
+    rng: np.random.Generator,
+    amplitude: float,
+    limits: Limits,
+    unsmoothed: Unsmoothed[Exact],
+    lasting: float | None = None,
+    known: Callable[[Curve], Exact | Extremal | None] = lambda _: None,
 ) -> Exact | Extremal:
-    """The same from a path that is drawn, for a final time that is given."""
-    assert instance.tf is not None
+    """The same from a path that is drawn.
+
+    Parameters
+    ----------
+    lasting
+        Its duration, where the final time is free.
+    known
+        To what an extremal without bounds in that duration has led before, if it has.
+    """
+    lasting = instance.tf - instance.t0 if instance.tf is not None else lasting
+    assert lasting is not None
     waves = rng.integers(2**32)
     for factor in SMOOTHER:
         eased = regularised(instance, factor * full_length_smoothing(instance), _first_share(instance))
-        problem = two_point(eased, instance.tf - instance.t0)
-        path = paths.bent(problem, np.random.default_rng(waves), amplitude)
-        found = from_path(problem.relaxed(float("inf")), path, limits)
-        if found.minimum:
-            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits, unsmoothed)
+        trials = Trials(eased, limits, lasting)
+        problem = trials.given(lasting)
+        found = from_path(problem, paths.bent(problem, np.random.default_rng(waves), amplitude), limits)
+        if not found.minimum:
+            continue
+        if (before := known(found.curve)) is not None:
+            return before
+        start = Start(found, Origin.DRAWN, found.iterations)
+        if instance.tf is not None:
+            return directed_from(problem, start, instance, limits, unsmoothed)
+        chosen = trials.freed_from(problem, start)
+        if chosen is None:
+            break
+        return directed_from(chosen.problem, chosen.start, instance, limits, unsmoothed)
     return stopped(problem, instance, found.curve, found.message, limits)
 
 
@@ -262,15 +291,14 @@ def full_length(
     problem: TwoPoint, instance: Instance, curve: Curve, start: Start, limits: Limits
 ) -> tuple[TwoPoint, Start] | Extremal:
     """An extremal of low order with directions of full length all the time, and its problem, from a smoothed one."""
-    exact, count = _exact(problem, instance), 0
+    exact, count, brief = _exact(problem, instance), 0, 0
     for near in levels(problem, instance, curve, limits):
         (problem, curve), count = near, count + 1
         if _share_short(problem, curve) <= BRIEF:
-            outcome = newton(System(exact, curve.mesh, STAGES), curve.on(curve.mesh, STAGES))
-            if outcome is not None and outcome.solved:
-                cost = System(exact, curve.mesh, STAGES).cost(outcome.curve)
-                found = Attempt(outcome.curve, Reason.MINIMUM, 1, cost)
-                return exact, replace(start, found=found, steps=start.steps + outcome.iterations)
+            brief += 1
+            found = _nearby(exact, curve, (0, *FINER) if brief <= FINELY else (0,))
+            if found is not None:
+                return exact, replace(start, found=found, steps=start.steps + found.iterations)
     message = "the slope of H by a direction vanishes for some time, and no law is known there"
     if count <= LEVELS:
         message = f"a regularisation below {problem.control_set.smoothing:.1e} was not reached"
@@ -279,6 +307,18 @@ def full_length(
     if instance.model.spec.throttled:
         message = 'a vector has not its full length all the time: use method "bang-bang"'
     return stopped(problem, instance, curve, message, limits)
+
+
+def _nearby(exact: TwoPoint, curve: Curve, intervals: tuple[int, ...]) -> Attempt | None:
+    """The extremal next to a smoothed one, on its own mesh or on one of so many intervals."""
+    for count in intervals:
+        mesh = np.linspace(0.0, 1.0, count + 1) if count else curve.mesh
+        outcome = newton(System(exact, mesh, STAGES), curve.on(mesh, STAGES))
+        if outcome is not None and outcome.solved:
+            return Attempt(
+                outcome.curve, Reason.MINIMUM, outcome.iterations, System(exact, mesh, STAGES).cost(outcome.curve)
+            )
+    return None
 
 
 def _exact(problem: TwoPoint, instance: Instance) -> TwoPoint:

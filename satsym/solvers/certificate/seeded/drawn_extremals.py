@@ -42,8 +42,8 @@ def searches(solution: Solution, first: Compared, seed: int) -> list[Search]:
     from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.drawn_beside import about
 
-    instance, agree = solution.instance, first.summary.solved == first.summary.tried and not first.several
-    if not instance.final or (agree and not far_from_linear(solution) and not may_swing(solution)):
+    instance = solution.instance
+    if not instance.final or not several_likely(solution, first):
         return []
     problem, by_law = at_its_duration(solution), instance.model.spec.directional or instance.model.spec.stationary
     found, free = list[Search](), by_law and instance.tf is None
@@ -56,6 +56,12 @@ def searches(solution: Solution, first: Compared, seed: int) -> list[Search]:
         path = paths.through(lasting, one.states * problem.scale.state[:, None])
         found.append(from_path(lasting, path, SOFTNESS, solution.objective, STEPS))
     return found
+
+
+def several_likely(solution: Solution, first: Compared) -> bool:
+    """Whether there may be minima that few starts show, by what the first ones came to and by the motion."""
+    agree = first.summary.solved == first.summary.tried and not first.several
+    return not agree or far_from_linear(solution) or may_swing(solution)
 
 
 def far_from_linear(solution: Solution) -> bool:
