@@ -31,11 +31,8 @@ hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
-FEW, SHARE = 2, 5
-"""Of a slow test with more than that many cases every fifth runs, unless all are asked for."""
-
-IN_TURN = "in_turn"
-"""What says of a slow test that it runs, or its cases do, in a fifth of all revisions of satsym, unless asked for."""
+SHARE = 8
+"""Of the cases of slow tests every eighth runs, unless all are asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -51,20 +48,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave a sample of slow tests that have many cases or take turns, and no studies: those are for who has the time.
+    """Leave a sample of slow tests, and no studies: those are for who has the time.
 
     Each revision of satsym has its own sample, which is the same in all processes and on all machines.
     """
     if config.getoption("--whole"):
         return
     spared = {item for item in items if item.get_closest_marker("study")}
-    groups: dict[str, list[pytest.Item]] = {}
-    for item in items:
-        slow = item.get_closest_marker("slow")
-        if slow and item not in spared:
-            groups.setdefault("" if slow.kwargs.get(IN_TURN) else item.nodeid.partition("[")[0], []).append(item)
-    turn = revision() % SHARE
-    spared |= {item for own in groups.values() if len(own) > FEW for item in set(own) - set(own[turn::SHARE])}
+    slow = [item for item in items if item.get_closest_marker("slow") and item not in spared]
+    spared |= set(slow) - set(slow[revision() % SHARE :: SHARE])
     config.hook.pytest_deselected(items=[item for item in items if item in spared])
     items[:] = [item for item in items if item not in spared]
 
@@ -92,7 +84,7 @@ def whole(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture(scope="session")
 def sample(whole: bool) -> Callable[[Iterable[Any]], list[Any]]:
-    """What is looked at of many cases in one test: every fifth, or all if all are asked for."""
+    """What is looked at of many cases in one test: every eighth, or all if all are asked for."""
     step = 1 if whole else SHARE
     return lambda cases: list(cases)[::step]
 

@@ -24,7 +24,7 @@ def driver():
     return Driver(case.instance, spans_of(case.instance, case.times, case.x, case.u, case.switching_times), 0.0)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_from_rest_nothing_reaches_roll_yaw_and_their_modes_and_offsets_let_it_in(driver):
     given = instance.load("lapan-coupling")
     names = given.model.spec.state_names

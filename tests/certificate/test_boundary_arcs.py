@@ -171,7 +171,7 @@ def test_what_leaves_the_path_constraints_is_neither_a_competitor_nor_a_fall(
         assert (found.margin < 0.0) != leaves
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end():
     """x'' = -q x with three conjugate points: without the constraint the cost is unbounded below."""
     given = in_the_plane().with_(parameters={"q": 100.0}, initial={"x": 0.3, "y": 5.0}, final={"x": 0.3, "y": 5.0})
@@ -266,7 +266,7 @@ def test_a_form_without_numbers_is_not_positive(form: np.ndarray, pure: np.ndarr
     assert second_variation._least(form, pure, ties) == pytest.approx(least, nan_ok=True)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_rounding_grows_along_the_flow_it_is_followed_part_by_part():
     """A return that stays above a floor for long: one flow misses the end by twice what it may, its parts do not."""
     given = satsym.Instance.of(

@@ -117,7 +117,7 @@ def test_what_did_not_converge_has_no_certificate(returned: Solution) -> None:
     assert certify(replace(returned, status=Status.NOT_CONVERGED)) is None
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("tf", "first"), [(2.5, None), (4.0, np.pi), (7.0, np.pi)])
 def test_the_conjugate_time_of_the_oscillator_is_pi(tf: float, first: float | None, tmp_path: Path) -> None:
     case = oscillator(tf, {"y": float(np.cos(tf) + 0.3 * np.sin(tf))}, tmp_path / "oscillator.toml")

@@ -159,7 +159,7 @@ def defect(problem: TwoPoint, curve: Curve) -> float:
     return float(system.infeasibility(system.residual(curve)).sum())
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:
     """A solver that starts at the wrong corner at first, and then from whatever it is given."""
     numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
@@ -210,7 +210,7 @@ def test_a_saddle_is_left_for_what_lies_below_it(tmp_path: Path) -> None:
     assert certificate(found).verdict == "certified"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("tf", "bounded"), [(3.0, True), (4.0, False), (7.0, False)])
 @pytest.mark.parametrize("method", ["auto", "linear", "shooting"])
 def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(
@@ -227,7 +227,7 @@ def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(
         assert "unbounded below" in found.message
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_reward_of_the_distance_without_bounds_has_no_minimiser() -> None:
     polar = instance.load("soft-return")
     names = polar.model.spec.parameter_names
@@ -255,7 +255,7 @@ def dearest(start: float, weight: float, bounds: tuple[float, float], tf: float)
     return {u: u * u * tf / 2 + weight * (start + u * tf) ** 2 / 2 for u in bounds}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_what_exists_only_within_bounds_is_found(seed: int, tmp_path: Path) -> None:
     rng = np.random.default_rng(seed)
@@ -267,7 +267,7 @@ def test_what_exists_only_within_bounds_is_found(seed: int, tmp_path: Path) -> N
     assert Kind.SATURATION in compared(found)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_guess_is_honoured_and_what_is_cheaper_is_said(tmp_path: Path) -> None:
     numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
     costs = dearest(*numbers)

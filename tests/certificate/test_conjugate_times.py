@@ -139,7 +139,7 @@ def test_unequal_axes_are_conjugate_each_at_its_own_times(
     assert (near.margin < 0.0) is (count > 0)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_final_time_that_is_conjugate_is_no_strict_minimum(equal: Instance) -> None:
     solution = swinging(equal, np.pi, (1.0, 1.0))
     found, _ = second_order(solution)

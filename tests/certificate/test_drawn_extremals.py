@@ -60,7 +60,7 @@ def _certified(case: Instance) -> Solution:
     return found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "end", "duration", "bound", "cost"),
     # Gauss collocation with CasADi and Ipopt from the answer, 400 intervals; the first extremals that are found, strict
@@ -74,7 +74,7 @@ def test_what_all_starts_lead_to_is_not_certified_beside_a_cheaper_swing(
     assert found.objective == pytest.approx(cost, rel=2e-7)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_push_at_once_is_not_certified_where_swinging_once_costs_less(tmp_path: Path) -> None:
     """The push takes 0.14 and costs 0.6775; Ipopt from 30 drawn starts: 0.09204528304, in 3.5497."""
     found = _certified(_case(tmp_path, STIFF, "-1.49 -0.514", "-1.49 0.268", None))

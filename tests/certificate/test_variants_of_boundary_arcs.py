@@ -35,7 +35,7 @@ def test_contacts_are_those_that_the_answer_states(name: str):
     assert found.message.removeprefix("structure ").startswith(structure)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_structures_near_the_answer_are_among_the_competitors():
     found = solve(instance.load("return-above"))
     assert found.certificate is not None

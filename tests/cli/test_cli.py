@@ -261,7 +261,7 @@ def test_options_replace_those_of_the_instance(run: Run, case: Path, monkeypatch
     assert given == [SolverOptions(steps=77, tolerance=1e-5, method="sweep"), SolverOptions()]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_no_answer_is_4_and_prints_the_object_all_the_same(run: Run, case: Path, tmp_path: Path) -> None:
     hopeless = INSTANCE.replace("r = 1.1", "r = 1e-3") + "[solver]\nmax_seconds = 0.5\n"
     case.write_text(hopeless, encoding="utf-8")

@@ -210,7 +210,7 @@ def test_simulate_follows_the_law(run: Run, tmp_path: Path) -> None:
     assert found["metrics"]["lqr_cost"] > 0.0
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_files_and_pictures_go_where_they_are_asked_for(run: Run, tmp_path: Path) -> None:
     code, out, _ = run("lqr", weighted(tmp_path), "--plot", "--out", "there")
     assert code == 0

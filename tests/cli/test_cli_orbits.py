@@ -250,7 +250,7 @@ def test_eigenvalues_and_multipliers_are_drawn_where_they_are() -> None:
         assert unit_circle.page(survey(instance.load("itb-earth-escape"))) is None
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_orbit_needs_neither_sympy_nor_matplotlib(tmp_path: Path) -> None:
     loaded = run_satsym(["analyse", "itb-earth", "--json"], tmp_path)
     assert "numpy" in loaded

@@ -99,7 +99,7 @@ def test_a_file_that_another_reaches_counts_too(derived: Callable[..., list[str]
     assert (tmp_path / "made" / "hiking.py").read_bytes() != before
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_file_that_comes_first_in_the_search_counts_too(
     derived: Callable[..., list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,7 +133,7 @@ def test_an_engine_that_changed_derives_everything(
     assert derived() == []
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("content", [b"", b"{}", b"\xff\xfe", b'{"engine": 3}', b"[" * 100_000])
 def test_a_damaged_stamp_is_none(derived: Callable[..., list[str]], tmp_path: Path, content: bytes) -> None:
     (kept,) = (tmp_path / "cache").rglob("own-*.json")

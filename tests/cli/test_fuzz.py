@@ -28,7 +28,7 @@ def sound(bench: Bench, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 20, 10))
 def test_damaged_results_are_drawn_or_refused_in_a_line(
     bench: Bench, sound: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: int
@@ -77,14 +77,14 @@ def test_what_a_bomb_promises_is_never_taken(sound: Path, tmp_path: Path) -> Non
             tracemalloc.stop()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 40, 20))
 def test_instances_that_went_wrong_are_used_or_refused_in_a_line(bench: Bench, tmp_path: Path, first: int) -> None:
     tried = [bench("fuzz_instances").tried(seed, tmp_path) for seed in range(first, first + 20)]
     assert [(kind, faults) for kind, _, _, faults in tried if faults] == []
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, pytest.param(10, marks=pytest.mark.study)])
 def test_kills_leave_the_old_result_or_the_new_one_and_nothing_for_long(bench: Bench, count: int) -> None:
     assert bench("kills").main(count, 3, draw=count > 1) == 0

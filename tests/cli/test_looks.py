@@ -28,7 +28,7 @@ DRAWING = (
 )
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("command", DRAWING)
 def test_pictures_of_every_kind_of_file_come_with_any_command_that_draws(
     run: Run, tmp_path: Path, command: str
@@ -87,7 +87,7 @@ def written(pictures: dict[str, Content]) -> dict[str, bytes]:
     return {name: stream.getvalue() for name, stream in streams.items()}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_page_without_title_has_none_is_the_same_when_drawn_again_and_leaves_no_style_behind() -> None:
     from satsym import instance
     from satsym.solvers import simulate

@@ -28,7 +28,7 @@ def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp
     return run
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_commands_that_new_names_run_as_they_stand(run: Run, tmp_path: Path):
     code, out, _ = run("new", "my_model")
     assert code == 0
@@ -43,7 +43,7 @@ def test_the_commands_that_new_names_run_as_they_stand(run: Run, tmp_path: Path)
     assert ended.returncode == 0, ended.stdout.decode()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_test_of_a_new_model_notices_another_model(run: Run, tmp_path: Path):
     run("new", "my_model")
     model = tmp_path / "my_model" / "my_model.py"

@@ -30,7 +30,7 @@ def shell(command: str, folder: Path) -> tuple[int, str]:
     return done.returncode, done.stderr.decode()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "code"),
     [

@@ -57,7 +57,7 @@ def test_type_checkers_are_told_the_same_names_from_the_same_places() -> None:
         assert getattr(importlib.import_module(str(home)), name) is getattr(satsym, name)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_solutions_are_those_of_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     theirs = printed(capsys, "solve", "return-to-orbit", "--steps", "50")
     ours = satsym.solve(satsym.load("return-to-orbit"), steps=50).to_dict()
@@ -88,7 +88,7 @@ def test_other_objects_are_those_of_the_command_line(
     assert capsys.readouterr().out.strip() == repr(found).strip()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_audit_is_that_of_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     found = satsym.audit("its_thesis", items=["4.27"])
     assert found.to_dict() == printed(capsys, "audit", "its_thesis", "--item", "4.27")
@@ -99,7 +99,7 @@ def test_an_audit_is_that_of_the_command_line(capsys: pytest.CaptureFixture[str]
         satsym.audit("its_thesis", items=["77.7"])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_problem_in_memory_is_the_one_that_is_generated_into_files(tmp_path: Path) -> None:
     satsym.derive(PUSH).save(tmp_path)
     (tmp_path / "sled.toml").write_text(TOML)

@@ -36,7 +36,7 @@ def ending_in_a_singular_arc(problem: satsym.Problem, initial: dict[str, float])
     return satsym.Instance.of(problem, initial=initial, tf=4, control={"u1": [-1, 1]}, name="singular")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "steps", "limit"),
     [
@@ -246,7 +246,7 @@ def test_html_holds_no_foreign_markup_and_nothing_from_elsewhere() -> None:
     assert "certified" in named._repr_html_()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_pictures_are_figures_files_and_html(tmp_path: Path) -> None:
     pictures = solved("double-integrator-time", steps=11).plot(tmp_path / "there", formats=("pdf",))
     assert next(iter(pictures)) == "overview"

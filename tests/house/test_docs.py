@@ -53,7 +53,7 @@ def test_commands_print_what_the_page_says(
         assert doctest.OutputChecker().check_output(printed, told, ELLIPSIS), f"{command}\n{told}"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
 def test_commands_print_what_the_readme_says_but_for_times(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -70,7 +70,7 @@ def test_commands_print_what_the_readme_says_but_for_times(
         assert doctest.OutputChecker().check_output(wanted, told, ELLIPSIS), f"{command}\n{told}"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
 def test_what_the_readme_shows_of_python_runs_and_answers_what_its_comments_say(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

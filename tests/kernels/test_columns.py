@@ -95,7 +95,7 @@ print(time.process_time() - began)
 """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_machine_code_is_kept_for_the_next_process(tmp_path: Path) -> None:
     pytest.importorskip("numba")
 

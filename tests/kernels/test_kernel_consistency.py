@@ -100,7 +100,7 @@ def test_a_shipped_module_is_examined_as_well(monkeypatch: pytest.MonkeyPatch):
         loading._load_shipped.__wrapped__("saddle")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", shipped())
 def test_shipped_modules_agree_with_themselves_to_rounding(name: str):
     kernels = load(name)
@@ -137,7 +137,7 @@ def is_equivalent_form(mutant: Mutant) -> bool:
     return is_equivalent(mutant)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("model", SAMPLED)
 def test_one_changed_number_or_sign_in_any_function_is_noticed(model: str):
     found = list(mutants(model, each=1))
@@ -153,7 +153,7 @@ def test_the_same_change_in_both_forms_of_a_function_is_noticed(model: str):
     assert not missed(found)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_files_with_a_changed_function_and_a_new_digest_are_refused(tmp_path: Path):
     for k, mutant in enumerate(mutants("double_integrator_energy", each=1)):
         if is_equivalent_form(mutant):
@@ -169,7 +169,7 @@ def solutions() -> dict[str, Solution]:
     return {(found := solve(instance.load(name))).instance.model.spec.name: found for name in names}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "model", ["polar_orbit", "polar_orbit_ball", "double_integrator_energy", "double_integrator_time"]
 )

@@ -69,7 +69,7 @@ def test_a_shipped_model_is_loaded_once():
     assert load("polar_orbit") is load("polar_orbit")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_every_shipped_model_passes_the_check_of_files_loaded_by_path(repository: Path):
     for name in shipped():
         by_path, by_name = load(f"generated/{name}", repository), load(name)
@@ -109,7 +109,7 @@ def test_an_unknown_name_is_refused_with_the_nearest_one():
         load("polar_orbt")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("control_set", ["free", "box", "ball", None])
 def test_what_the_generator_writes_for_other_models_passes_the_check(control_set: str | None, tmp_path: Path):
     from sympy import Rational, atan2, cos, exp, pi, sqrt, tanh
@@ -283,7 +283,7 @@ def test_compiling_happens_once_and_leaves_the_batch_form_alone(orbit: Kernels, 
     assert compiled.dynamics_batch is orbit.dynamics_batch
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_model_loaded_by_path_compiles_and_leaves_nothing_on_disk(repository: Path, tmp_path: Path, orbit: Kernels):
     pytest.importorskip("numba")
     shutil.copy(repository / "generated/polar_orbit.py", tmp_path / "mine.py")

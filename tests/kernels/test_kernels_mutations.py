@@ -87,7 +87,7 @@ def test_the_legal_module_is_harmless(legal: str):
     assert_harmless(ast.parse(legal))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @examples(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_whatever_mutation_passes_the_check_is_harmless(legal: str, data: st.DataObject):

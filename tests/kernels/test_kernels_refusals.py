@@ -221,7 +221,7 @@ ATTACKS = {
 }
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_what_the_generator_does_not_write_is_refused_and_never_runs(
     attack: str, legal: str, tmp_path: Path, trap: Trap

@@ -50,7 +50,7 @@ def generated(case: Problem, folder: Path) -> kernels.Kernels:
     return found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("k", range(0, len(CLASHING) - 3, 4))
 def test_any_name_may_be_used_for_a_variable(k: int, tmp_path: Path) -> None:
     names = CLASHING[k : k + 4]

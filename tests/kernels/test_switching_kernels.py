@@ -61,7 +61,7 @@ def test_a_regular_problem_does_not() -> None:
     assert model.control_hessian(0.0, (1.0, 0.0), (0.5,), (1.0, 1.0), ()) == (1.0,)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROBLEMS)
 @given(data=st.data())
 def test_no_admissible_control_makes_h_smaller(built: dict[str, Kernels], name: str, data: st.DataObject) -> None:

@@ -73,7 +73,7 @@ def test_what_it_says_is_typeset(folder: Path, derivation: Derivation) -> None:
         assert said not in render(derivation, "en")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_command_line_lists_and_takes_it(folder: Path) -> None:
     finished(folder)
 

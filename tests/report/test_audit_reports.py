@@ -342,7 +342,7 @@ def test_whatever_a_ledger_holds_is_typeset(
     assert "Overfull" not in log, re.findall(r"Overfull.*", log)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex to compile with")
 @pytest.mark.parametrize("language", languages())
 @pytest.mark.parametrize("path", documents.shipped(), ids=lambda path: path.name)

@@ -27,7 +27,7 @@ def title(solution: Solution) -> str:
     return str(page.axes[0].get_title("left"))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*IN_ARCS, *SWITCHING])
 def test_iterations_end_at_the_cost_of_the_answer_and_the_picture_says_it(name: str) -> None:
     solution = solve(instance.load(name), examined=False)

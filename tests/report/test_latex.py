@@ -170,7 +170,7 @@ def test_document_compiles_by_itself(name: str, language: str, tmp_path: Path) -
 
 
 @needs_tex
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_compiled_twice_a_document_has_the_same_bytes_title_and_bookmarks(tmp_path: Path) -> None:
     text, folders = render(derived("double_integrator_energy")), (tmp_path / "one", tmp_path / "two")
     for folder in folders:
@@ -211,7 +211,7 @@ def test_widths_are_estimated_as_tex_measures_them(tmp_path: Path) -> None:
     assert 0.97 < min(ratios) <= max(ratios) < 1.4
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("language", languages())
 @pytest.mark.parametrize("name", shared.each(*OWN))
 def test_every_equation_has_one_label_and_every_reference_a_label(name: str, language: str) -> None:
@@ -225,7 +225,7 @@ def test_every_equation_has_one_label_and_every_reference_a_label(name: str, lan
     assert not re.search(r"<\w+>", re.sub(r"%.*", "", text))  # a place that nothing was filled into
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("file", ["double_integrator", pytest.param("polar_orbit", marks=pytest.mark.study)])
 def test_rendering_is_byte_identical_for_every_hash_seed(file: str) -> None:
     code = (

@@ -296,6 +296,7 @@ def test_awkward_expressions_read_back(toy: Derivation, expression: sp.Expr) -> 
     assert_reads_back(toy, expression)
 
 
+@pytest.mark.slow
 @examples(300, suppress_health_check=[HealthCheck.too_slow])
 @given(expressions())
 def test_any_expression_reads_back(toy: Derivation, expression: sp.Expr) -> None:

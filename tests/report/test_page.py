@@ -63,7 +63,7 @@ def text(solution: Solution) -> str:
     return render(solution, derived(loader.problem("polar_orbit")[0]), "soft-return")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_it_loads_nothing_and_all_its_links_lead_somewhere_in_it(text: str) -> None:
     page = Page(text)
     assert not page.tags & {"script", "link", "img", "iframe"}
@@ -84,7 +84,7 @@ def test_it_says_what_the_result_says(text: str, solution: Solution) -> None:
     assert given.replace('"', "&quot;").replace("'", "&#x27;") in text
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_facts_have_the_times_of_points_on_the_way() -> None:
     found = solve(instance.load("inspection"))
     (event,) = found.events
@@ -165,7 +165,7 @@ PROBLEMS = (FirstOrder(name="sled", title="sled", rates={q: -q}, states=(S,), co
 """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_pictures_take_their_colours_from_the_page_and_know_no_others(solution: Solution) -> None:
     drawn = "".join(pictures(solution, load("en")))
     named = set(re.findall(r"var\(--([a-z]+)\)", drawn))

@@ -187,7 +187,7 @@ def png_size(path: Path) -> tuple[int, int]:
     return width, height
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.usefixtures("full_resolution")
 def test_a_solution_gives_all_pictures_as_png_of_sane_size(soft_return: Solution, tmp_path: Path) -> None:
     written = save(soft_return, tmp_path / "new" / "folder")
@@ -200,7 +200,7 @@ def test_a_solution_gives_all_pictures_as_png_of_sane_size(soft_return: Solution
         assert 10_000 < path.stat().st_size < 400_000
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_pictures_are_the_same_bytes_each_time_whatever_the_user_s_settings(tmp_path: Path) -> None:
     import matplotlib
 
@@ -215,7 +215,7 @@ def test_pictures_are_the_same_bytes_each_time_whatever_the_user_s_settings(tmp_
         assert one.read_bytes() == other.read_bytes(), one.name
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_simulation_without_control_has_no_pictures_of_controls(tmp_path: Path) -> None:
     assert stems(save(simulate(instances.load("soft-return")), tmp_path)) == [
         "overview",
@@ -229,7 +229,7 @@ def test_a_simulation_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "phase", "states", "controls"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "pictures"),
     [
@@ -253,7 +253,7 @@ def broken(values: float, first: int) -> np.ndarray:
     return x
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "x",
     [
@@ -293,7 +293,7 @@ def test_title_and_facts_of_an_overview_are_whole_at_any_size(size: str) -> None
     assert all(fact in facts for fact in ("iteration", "$J$", "$t_f$"))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_failed_run_gives_all_pictures_if_it_had_a_trajectory(tmp_path: Path) -> None:
     given = case(model(2, 1, position=2, reference=True, invariant=True))
     left = solution(given, x=broken(math.nan, 30), status=Status.NON_FINITE, objective=math.nan)
@@ -316,7 +316,7 @@ def test_iterations_without_a_number_that_can_be_drawn_have_no_picture(residual:
     assert "convergence" not in stems(save(solution(case(model(1)), history=history), tmp_path))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_pyplot_is_never_imported_and_matplotlib_only_to_draw(repository: Path) -> None:
     code = """
 import sys

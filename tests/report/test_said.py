@@ -64,7 +64,7 @@ def test_every_text_that_is_looked_up_has_a_translation_with_the_same_places() -
         assert text != english or english in SAME, english
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_nothing_is_translated_that_is_nowhere_said() -> None:
     known = {*AUTHORED, *written(), *(one.value for one in EVERY), *(anonymous(text) for text in COMPOSED)}
     helping = said.group("id", "help")
@@ -273,7 +273,7 @@ def words(pages: dict) -> set[str]:
     return {text.get_text() for page in pages.values() for text in page.findobj(Text) if text.get_text()}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["soft-return", "double-integrator-fuel"])
 def test_pictures_speak_indonesian_with_decimal_commas(name: str) -> None:
     found = solve(instance.load(name))
@@ -316,7 +316,7 @@ def test_files_are_the_same_in_every_language(run: Run, tmp_path: Path) -> None:
     assert (tmp_path / "en" / "result.json").read_bytes() == (tmp_path / "id" / "result.json").read_bytes()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [

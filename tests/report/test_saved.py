@@ -73,7 +73,7 @@ def plotted(*arguments: str | Path) -> str:
     return done.stdout
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_motion_that_begins_with_an_impulse_comes_back(tmp_path: Path) -> None:
     """Its first state is not the initial one of the instance, which has not changed all the same."""
     found = under_law(instance.load("lapan-classical"), "classical")
@@ -86,6 +86,7 @@ def test_a_motion_that_begins_with_an_impulse_comes_back(tmp_path: Path) -> None
         trajectory.read(other, tmp_path)
 
 
+@pytest.mark.slow
 def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path) -> None:
     files = trajectory_files(tmp_path / "run", solution, look=SCREEN)
     first = save(tmp_path / "run", solution_object(solution), files)
@@ -96,7 +97,7 @@ def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path
         assert (tmp_path / "again" / path.name).read_bytes() == path.read_bytes(), path.name
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [

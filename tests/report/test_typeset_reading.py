@@ -93,7 +93,7 @@ def test_the_boundary_value_problem_has_the_points_on_the_way() -> None:
     assert "no path constraint is active" not in collected
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_of_several_constraints_those_with_the_same_equations_share_them() -> None:
     text = render(shipped("shuttle_heating"))
     costates = text.partition(r"\satsymstep{shuttle_heating:mixed_costates}")[2].partition(r"\satsymstep")[0]
@@ -188,7 +188,7 @@ def test_laws_list_what_they_are_made_of_and_no_more() -> None:
     assert "parts are named $q$" in parts
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
     text = render(shipped("reorientation"))
     arcs = text.partition(r"\satsymstep{reorientation:singular_arcs}")[2].partition(r"\satsymstep")[0]

@@ -61,7 +61,7 @@ def levelled(folder: Path, cost: Expr | int, text: str) -> Solution:
     return found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_levelling_costs_what_it_costs_a_direct_method(tmp_path: Path) -> None:
     """CasADi and Ipopt, straight lines between 800 and 1600 knots: 0.01964853975 and 0.01964853626, to fourth order."""
     start = "[initial]\nalpha = 0.3\ntheta = 0.0\nrate = 0.0\n[time]\ntf = 10.0\n[control]\nelevator = [-0.5, 0.5]\n"
@@ -90,7 +90,7 @@ def follows(case: Instance, costates: tuple[float, ...], times: Array) -> tuple[
     return z, np.asarray(model.control_law_batch(times, z[:3], z[3:], p, bounds))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_extremals_drawn_beside_a_levelling_lead_to_one_that_is_far_quicker(tmp_path: Path) -> None:
     """To the slow one lead most starts; nothing that a descent of states finds tells of the other, whose law jumps."""
     case = f8(tmp_path, 1, HURRIED)

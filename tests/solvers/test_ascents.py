@@ -101,7 +101,7 @@ def moved(costates: np.ndarray, arcs: list[tuple[float, float]]) -> tuple[np.nda
     return z, grown
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_least_mass_is_burnt_where_only_the_end_costs(tmp_path: Path) -> None:
     """All thrust all the time: the costates' size is free, and the Hamiltonian of the least time vanishes."""
 
@@ -132,7 +132,7 @@ def coasted(start: np.ndarray, end: float) -> tuple[float, np.ndarray]:
     return FLOW * THRUST * (end - found[3] + found[2]) - 1.0, found[2:]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_hardly_any_time_to_spare_is_no_failure(tmp_path: Path) -> None:
     """In a coast so short the switching function is flat: its sign tells the times of the switches to nine digits."""
     end = 0.40609721

@@ -108,7 +108,7 @@ def test_no_extremal_beyond_its_conjugate_time_is_a_minimum(tf: float, minimum: 
     assert (positive(transitions(many, nodes.z) * units) == minimum).all()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("row", range(8))
 def test_a_single_node_that_is_off_is_no_minimum(row: int) -> None:
     many, nodes = together(returns(3))

@@ -97,7 +97,7 @@ def test_a_target_that_moves_is_met_soonest() -> None:
     assert minima(found).all()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("problems", "size"), [(chain.PROBLEMS, 1.0), (oscillator.PROBLEMS, 6.0)], ids=["chain", "spring"]
 )

@@ -255,6 +255,7 @@ def test_a_tape_makes_equal_operations_once_and_refuses_what_is_no_line_of_them(
         Arithmetic(tape).lines(ast.parse("for i in range(3):\n    a = b").body, {})
 
 
+@pytest.mark.slow
 def test_of_models_with_many_states_fewer_columns_are_taken_at_a_time() -> None:
     blocks = [OnTape(load(name)).block for name in ("polar_orbit", "reorientation", "roll_yaw")]
     assert blocks == sorted(blocks, reverse=True)

@@ -95,6 +95,7 @@ def test_bounds_do_not_make_a_minimum_of_what_is_none(tf: float, minimum: bool, 
     assert (minima(many, nodes) == (nodes.solved & minimum)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", range(8))
 def test_a_single_node_that_is_off_is_no_minimum(row: int) -> None:
     _, many, nodes, _ = held(returns("return-to-orbit", 12))
@@ -107,7 +108,7 @@ def test_a_single_node_that_is_off_is_no_minimum(row: int) -> None:
     assert minima(many, replace(nodes, z=z)).tolist() == expected.tolist()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_controls_that_a_bound_holds_the_wrong_way_are_no_minimum() -> None:
     """The same nodes with bounds that would let more through, or less."""
     _, many, nodes, _ = held(returns("return-to-orbit", 12))

@@ -50,7 +50,7 @@ def asked(lasting: float = LASTING) -> satsym.Instance:
     return satsym.Instance.of(TRANSFER, initial={"x": FIRST, **still}, final={"x": LAST, **still}, tf=lasting)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_drawn_paths_lead_past_the_moon() -> None:
     """Where the motion is unstable a penalty allows ever shorter steps, and Newton's method ends what it began."""
     problem, rng, costs = two_point(asked().case, LASTING), np.random.default_rng(1), []
@@ -60,7 +60,7 @@ def test_drawn_paths_lead_past_the_moon() -> None:
     assert sum(cost == pytest.approx(DIRECT, rel=2e-3) for cost in costs) >= 3
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_does_not_pass_the_moon_is_not_certified() -> None:
     """The first start that leads anywhere leads to 0.1782, and so do few: others are drawn near the straight line."""
     found = satsym.solve(asked(SOONER))

@@ -107,7 +107,7 @@ def agrees(solution: Solution, truth: Linear, near: Array) -> None:
     assert solution.certificate.verdict is Verdict.CERTIFIED, solution.certificate.checks
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("excess", BEYOND)
 def test_a_bound_that_is_met_at_an_end_only(excess: float) -> None:
     costates = np.array([0.8, 1.0]) * (1.0 + excess)
@@ -115,7 +115,7 @@ def test_a_bound_that_is_met_at_an_end_only(excess: float) -> None:
     agrees(solvers.solve(one), BODY, costates)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("excess", BEYOND)
 @pytest.mark.parametrize("highest", [0.71, 1.234, 1.5])
 def test_a_bound_that_is_touched_on_the_way(spring: Instance, excess: float, highest: float) -> None:
@@ -128,7 +128,7 @@ def test_a_bound_that_is_touched_on_the_way(spring: Instance, excess: float, hig
     agrees(solvers.solve(one), SPRING, costates)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("where", np.linspace(0.0, 1.0, 7))
 def test_one_that_failed_its_certificate(where: float) -> None:
     initial = np.array([0.784819558635354, 0.039975108020007616]) + where * np.array([0.01, -0.01])

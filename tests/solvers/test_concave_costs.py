@@ -33,7 +33,7 @@ def test_the_deeper_of_two_wells_at_the_end_is_found_from_beside_the_other(
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("duration", [3.3, 4.0, 5.0])
 def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: Path, duration: float) -> None:
     """From zero and back, rewarded for the square of the distance: at full speed, and on an arc of a cosine between."""
@@ -50,7 +50,7 @@ def test_beyond_a_conjugate_time_bounds_of_the_control_keep_a_minimum(tmp_path: 
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_of_a_control_whose_square_is_paid_for_the_better_bound_is_taken(tmp_path: Path) -> None:
     """At full speed towards zero; an instance without both bounds has no such law."""
     problem = scalar("paid_for_speed", w, q**2 - w**2, 0, "box")

@@ -73,7 +73,7 @@ def channel(current: float, width: float, length: float) -> tuple[float, bool]:
     return 2 * brentq(lambda slope: 2 * across(slope) - length, 0.0, steepest) / current, False
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [Angle("beta"), Box("beta")])
 @pytest.mark.parametrize(("current", "width", "length"), [(2.0, 0.2, 2.0), (0.5, 1.0, 6.0)])
 def test_a_boat_in_a_channel_goes_along_its_far_bank(kind: Any, current: float, width: float, length: float):
@@ -92,7 +92,7 @@ def test_a_boat_in_a_channel_goes_along_its_far_bank(kind: Any, current: float, 
     assert [one.t for one in found.events] == pytest.approx([slope / current, lasting - slope / current], abs=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_channels_at_random(seed: int):
     """Wherever the far bank is met it is followed, and else only the current decides."""
@@ -110,7 +110,7 @@ def test_channels_at_random(seed: int):
     assert kinds(found) == ([("entry", "bank"), ("exit", "bank")] if met else [])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_boat_that_may_not_steer_far_out_does_so_longer():
     """The costates do not know of the bound: the course is that without it, or the largest that is allowed."""
     current, steepest, length = 2.0, 0.5, 3.0
@@ -142,7 +142,7 @@ def test_a_boat_that_may_not_steer_far_out_does_so_longer():
     assert found.events[1].t == pytest.approx((first - math.tan(math.asin(steepest))) / current, abs=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("height", [0.2, 0.6])
 def test_the_shortest_way_over_a_hill_leaves_on_tangents(height: float):
     """x' = u, the length as the cost, over h (1 - (2 t - 1)^2) from a level of h / 2."""
@@ -206,7 +206,7 @@ def test_the_shuttle_that_may_not_be_heated_too_much_glides_as_far_as_by_direct_
     assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_end_beyond_a_bank_is_refused_whenever_it_is_reached_unless_the_bank_moves():
     given = {"parameters": {"c": 0.2}, "initial": {"x": 0.0, "y": 0.0}, "final": {"x": 2.0, "y": 0.5}, "tf": "free"}
     with pytest.raises(BadInput, match=r"final: path constraint bank is 0\.3 there and may not be positive"):

@@ -60,7 +60,7 @@ def bounced(wall: float) -> float:
 
 @settings(max_examples=6, deadline=None)
 @given(st.integers(8, 24), st.integers(8, 24))
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_in_a_corner_each_wall_costs_what_it_costs_alone(right: int, top: int):
     found = certified(CORNER, *BOUNCE, parameters={"a": right / 100, "b": top / 100})
     assert found.objective == pytest.approx(bounced(right / 100) + bounced(top / 100), rel=1e-9)
@@ -117,7 +117,7 @@ CASES = [
 ]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("of", "ends", "numbers", "bounds", "together"), CASES, ids=[case[0].name for case in CASES])
 def test_what_is_active_at_once_agrees_with_a_direct_method(
     of: Problem, ends: Any, numbers: dict[str, float], bounds: Any, together: set[str]

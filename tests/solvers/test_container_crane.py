@@ -84,7 +84,7 @@ def moved(unknown: NDArray[np.float64]) -> NDArray[np.float64]:
     return z
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_container_is_lowered_at_the_largest_speed_first(tmp_path: Path) -> None:
     """What no bound holds is stationary beside a bound of another control, but for rounding of its terms."""
     found = solve(build(tmp_path, CRANE, GIVEN))

@@ -38,7 +38,7 @@ def solved(of: Problem, way: dict[str, Any], **given: Any) -> Solution:
     return satsym.solve(satsym.Instance.of(of, **given, continuation=way))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_long_way_is_gone_by_shares_of_its_logarithm() -> None:
     found = solved(SOFT, {"c": [1.0, 1e-6]}, initial={"x": 1.0}, tf=1.0)
     said = found.to_dict()
@@ -52,7 +52,7 @@ def test_a_long_way_is_gone_by_shares_of_its_logarithm() -> None:
     assert said["objective"] == pytest.approx(5e-4, rel=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_folds_are_passed() -> None:
     given = {"initial": {"x": -0.1}, "tf": 3.0, "solver": {"steps": 100}}
     found = solved(WELLS, {"a": [-1.0, 1.0]}, **given)
@@ -86,7 +86,7 @@ def test_times_and_ends_change_as_well() -> None:
     )
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_the_way_ends_is_said_with_the_reason() -> None:
     case = satsym.load("double-integrator-energy").with_(continuation={"tf": [3.0, 1.5]})
     found = satsym.solve(case)

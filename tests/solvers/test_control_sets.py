@@ -181,7 +181,7 @@ def of_the_bend() -> float:
     return min(float(path(k)[2]) for k in slopes)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_sets_are_minimised_over_side_by_side(tmp_path: Path):
     left = brentq(lambda s: s * math.tanh(s) - 1.0, 0.5, 2.0, xtol=1e-15)
     saturated = 2.0 - left
@@ -322,14 +322,14 @@ def given(expression: Expr, at: dict[str, float]) -> dict[Symbol, Float]:
     return {s: Float(at[s.name], 30) for s in expression.free_symbols}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_coasting_is_found(tmp_path: Path):
     found = solve(build(tmp_path, thrusting("spare", 0, -symbols_of(SATELLITE)[3]), ORBITS.format("4.0")))
     assert found.status is Status.CONVERGED
     assert (np.hypot(*found.u) == 0.0).any()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_geodesics_are_minima_up_to_the_antipode_only(tmp_path: Path):
     """On a sphere neighbouring geodesics meet half way round: a conjugate point, where minimum time ends."""
     latitude, longitude = (Variable(name, name) for name in ("phi", "l"))

@@ -160,7 +160,7 @@ tf = "free"
 """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_straight_run_is_steered_straight(tmp_path: Path):
     """From rest over a distance of one at acceleration one: sqrt(2), along x all the time."""
     found = solve(build(tmp_path, steered(sympify(1), PUSHED), START))

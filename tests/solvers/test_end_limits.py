@@ -105,7 +105,7 @@ def test_the_end_that_is_nearest_without_control_is_met(begun: float, limits: li
     assert found.found.x[0, -1] == pytest.approx(end)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.lists(st.integers(-20, 20), min_size=4, max_size=4))
 def test_of_two_ranges_the_least_effort_of_all_ends_is_found(corners: list[int]):
@@ -164,7 +164,7 @@ def test_an_end_that_would_come_too_late_comes_at_the_latest_time(of: Problem, k
     assert pushes(solution)["late"] * pace == pytest.approx(18.0 / k**4 - c, rel=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_latest_time_presses_by_the_cost_it_causes_where_a_constraint_holds_the_control_too():
     """Braking is bounded until the end, where H under its law is not H; the multiplier is the slope of the cost."""
 
@@ -239,6 +239,7 @@ def test_an_end_that_pulls_and_a_range_that_is_left_fail():
         assert [check.name for check in certificate.checks if not check.passed] == [name]
 
 
+@pytest.mark.slow
 def test_of_two_ends_that_are_local_optima_the_cheaper_is_found():
     """J = 3 x^2 / 2 - k (x - 1/10)^2 / 2 falls to both sides, more to the negative one."""
     found = certified(HILL, final={"x": [-1.0, 1.0]}, parameters={"k": 6.0}, **AT_REST)
@@ -264,7 +265,7 @@ def test_with_a_free_final_time_a_range_is_reached_when_that_is_cheapest():
     assert ends(found) == {"x": "lower"}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_before_a_wall_too():
     """From (0, 1) to v = -1 before a wall the end is as far back as the range allows (Bryson and Ho, 3.11)."""
     given = {"initial": {"x": 0.0, "v": 1.0}, "tf": 1.0, "parameters": {"l": 0.1}}

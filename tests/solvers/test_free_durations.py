@@ -105,7 +105,7 @@ def test_the_best_final_time_is_what_golden_section_finds(name, c0, near):
     assert_least(found, name, c0)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("c0", WEIGHTS[:3])
 def test_free_ends_have_a_best_final_time_where_moving_pays(c0, fraction):

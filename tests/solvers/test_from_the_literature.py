@@ -79,7 +79,7 @@ def test_the_control_that_makes_h_a_polynomial_is_asked_for():
         derive(reactor("1", heated, (298.0, 398.0)))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_most_of_an_intermediate_product():
     """The same by the rate of the first reaction, which starts where the second has none; 0.610775 is printed.
 
@@ -104,7 +104,7 @@ def test_most_of_an_intermediate_product():
     assert found.objective == pytest.approx(end(costates)[1], rel=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_arm_of_two_links_by_its_mass_matrix():
     """Least time with bounded torques (Luus, Iterative Dynamic Programming, 2000), who has 2.98; M(q) w' = Q."""
     states = tuple(Variable(name, name, "rad/s" if name[0] == "w" else "rad") for name in ("w1", "w2", "q1", "q2"))

@@ -101,7 +101,7 @@ def test_curvature_that_is_added_makes_it_convex():
     assert Factors.of(slopes, own, 1e4).convex
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("begun", [0.0, 0.05, -0.2, 0.4])
 def test_a_saddle_is_left(begun: float):
     """Uphill as fast as allowed, x' = 1 + 0.3 x to the side of the start, then x = a cos 4 (1 - t)."""

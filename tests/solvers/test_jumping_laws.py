@@ -45,7 +45,7 @@ def certified(found: Solution, jumps: int) -> None:
     assert [(one.kind, one.name) for one in found.events] == [("jump", "w")] * jumps
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_jump_is_where_quadrature_has_it(tmp_path: Path) -> None:
     """q' = w at the cost of the double well and of q: lambda = a - t, and w jumps at t = a, where lambda vanishes."""
     found = solve(build(tmp_path, scalar("wells", w, WELL + q, 0, "box"), GIVEN))
@@ -65,7 +65,7 @@ def test_the_jump_is_where_quadrature_has_it(tmp_path: Path) -> None:
     assert (before, after) == pytest.approx((-1.0, 1.0), abs=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_begins_with_a_jump_is_followed_to_its_end(bent: Solution) -> None:
     """Begun at the node just before its jump, a solution goes on as it did."""
     node = int(np.searchsorted(bent.times, bent.events[0].t)) - 1
@@ -99,7 +99,7 @@ def flow(z: Array) -> tuple[Array, list[float]]:
     return second.y[:, -1], [float(jump)]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_neighbouring_extremals_jump_at_times_of_their_own(bent: Solution) -> None:
     """The linearised flow across the jump against differences of a flow that locates it anew each time."""
     certified(bent, 1)
@@ -118,7 +118,7 @@ def test_neighbouring_extremals_jump_at_times_of_their_own(bent: Solution) -> No
     assert len(along.jumped) == 1
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_no_other_steering_is_as_cheap(bent: Solution) -> None:
     """CasADi and Ipopt: speeds constant on as many pieces before the jump as after it, whose time is free."""
     ca = pytest.importorskip("casadi")
@@ -160,7 +160,7 @@ def test_phases_go_on_across_a_jump_and_by_less_than_a_turn(weak: float) -> None
     assert 0.0 <= phases.values[-1, 0] - phases.values[-2, 0] < 2.0 * np.pi * FULL
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_jump_at_the_last_instant_changes_nothing(tmp_path: Path) -> None:
     """With a free end lambda = tf - t vanishes there, where both wells become equally good."""
     text = f"[initial]\nq = {START}\n[time]\ntf = {LASTING}\n[control]\nw = [-2, 2]\n"

@@ -79,7 +79,7 @@ TURN = 2 * np.pi
 START, BACK = [1.1, 0.0, 0.0, 0.9], [1.0, 0.0, TURN, 1.0]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_satellite_touches_its_floor_and_then_follows_it():
     def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
         touch, push, entry, first, second, leave = v[4:]
@@ -153,13 +153,13 @@ def damped(arcs: Sequence[str], bound: float, near: Sequence[float]) -> tuple[fl
     return simulated(found)[0][4], found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_rayleighs_oscillator_is_damped_with_its_control_bounded_by_the_state():
     cost, found = damped(["state", "free", "state", "free"], 0.0, [-10.678, -4.191, 1.27, 2.978, 4.295])
     check("rayleigh-mixed", cost, [0.0, *found[2:]])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_a_bound_and_a_constraint_cross_one_follows_the_other():
     arcs = ["upper", "state", "free", "lower", "free", "state", "free"]
     near = [-12.94158, -4.79831, 1.08886, 1.27113, 1.71322, 3.26966, 3.4852, 4.30121]

@@ -41,7 +41,7 @@ def along(
     return np.asarray(end)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["hypersensitive", "hypersensitive-10000"])
 def test_in_a_long_time_the_state_rests_in_between(name: str):
     """H vanishes in endless time: lambda = -x^3 +- x sqrt(1 + x^4), and its integrals from 1 to 0 and from 0 to 1.5."""
@@ -67,7 +67,7 @@ def test_rayleighs_oscillator_is_damped_as_by_shooting():
     found("rayleigh", ends(shot.x)[4])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_van_der_pols_oscillator_is_damped_as_by_multiple_shooting():
     """u = 1 on an arc whose ends are unknown, -lambda_1 / 2 elsewhere."""
 
@@ -107,7 +107,7 @@ def test_van_der_pols_oscillator_is_damped_as_by_multiple_shooting():
     assert ours.switching_times[0] == pytest.approx(switches, abs=1e-3)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_pole_is_swung_up_at_less_than_is_printed():
     """Kelly's 58.8076675 is a local optimum. Shooting from these costates, slopes of H by complex steps."""
 
@@ -136,7 +136,7 @@ def test_the_pole_is_swung_up_at_less_than_is_printed():
     assert np.abs(ours.u).max() < 20.0
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_catalysts_are_mixed_in_a_constant_ratio_in_between():
     """For a constant share the motion is linear: the least of a closed form in two lengths and that share."""
 

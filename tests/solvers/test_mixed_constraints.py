@@ -82,7 +82,7 @@ def test_a_bound_that_grows_with_time_is_left_where_it_exceeds_the_mean():
     assert found.events[-1].t == pytest.approx(k / 2, abs=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("bound", [1.51, 1.6])
 def test_a_power_that_is_bounded_makes_the_body_slower_the_farther_it_is(bound: float):
     """x x' <= a, from 1 to 2 in unit time: x' = k until x = a / k, then x^2 grows by 2 a."""
@@ -171,7 +171,7 @@ def test_beside_a_box_its_bounds_have_arcs_like_constraints(bound: float):
     assert found.to_dict()["switching_times"] == ([] if free else pytest.approx([s, 1 - s], abs=1e-8))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_free_duration_ends_where_h_vanishes_under_the_active_constraint():
     """At u = 2 time would be worth it; with u <= 1 the way of 1 takes a time of 1, and costs 2 + 1/2."""
     problem, ends = kept("timed", cost=u**2 / 2 + 2, cap=u - a), {"initial": {"x": 0.0}, "final": {"x": 1.0}}
@@ -182,7 +182,7 @@ def test_a_free_duration_ends_where_h_vanishes_under_the_active_constraint():
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY  # the second variation with a free time is not seen to
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_can_hardly_be_kept_is_not_said_to_be_infeasible():
     """Only u = 1 reaches the end within the bound, and nothing is between it and the boundary."""
     problem, ends = kept("hurried", cap=u - a), {"initial": {"x": 0.0}, "final": {"x": 1.0}, "tf": 1.0}
@@ -193,7 +193,7 @@ def test_what_can_hardly_be_kept_is_not_said_to_be_infeasible():
     assert "cap" in found["message"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_from_the_top_of_a_hill_it_goes_to_one_side_and_not_on_for_ever():
     """Without the bounds the cost is unbounded below; u = 0 is stationary, and no minimum."""
     problem = replace(kept("hill", up=u - 1, low=-1 - u), terminal_cost=-2 * x**2)
@@ -202,7 +202,7 @@ def test_from_the_top_of_a_hill_it_goes_to_one_side_and_not_on_for_ever():
     assert np.ptp(found.found.u) == 0.0
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", ["later", "without", "longer"])
 def test_the_certificate_sees_arcs_that_are_none(damage: str):
     problem = kept("damaged", second=True, up=u - a, low=-a - u)

@@ -95,7 +95,7 @@ def failing(found: Certificate) -> list[str]:
     return [check.name for check in found.checks if not check.passed]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("form", "method", "state"),
     [

@@ -111,7 +111,7 @@ def test_before_a_moving_wall_it_is_as_before_one_at_rest_and_the_hamiltonian_ju
     assert h[first] - h[first + 1] == pytest.approx(pace * jump, rel=1e-7)  # -zeta g_t, with g_t = -pace
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_free_duration_ends_where_the_wall_is_touched():
     """With time weighed, J(T) = c T + (2 + 6 (1 - 4 l / T)^2) / T while the wall is touched, from T = 4 l to 6 l."""
     wall, weight = 0.1, 8.0
@@ -151,7 +151,7 @@ def of_speed(limit: float) -> tuple[Any, Any, Any]:
     )
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["wall", "limit"])
 @pytest.mark.parametrize(("share", "least"), [(0.0, True), (0.98, True), (1.02, False), (1.5, False)])
 def test_a_free_duration_is_a_minimum_where_the_cost_is_convex_in_it(name: str, share: float, least: bool):
@@ -175,7 +175,7 @@ def test_a_free_duration_is_a_minimum_where_the_cost_is_convex_in_it(name: str, 
     assert certificate.verdict is (Verdict.LOCAL_MINIMUM if least else Verdict.EXTREMAL_ONLY)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_motion_that_ends_on_a_boundary_at_a_free_time_is_extremal_only():
     found = solved(
         SPEED, initial={"x": 0.0, "v": 0.0}, final={"x": 1.0}, tf="free", tf_guess=1.5, parameters={"l": 1.0, "c": 1.0}
@@ -230,7 +230,7 @@ def test_a_start_along_a_boundary_is_no_violation_by_rounding(angle: float):
         refuse(begun(-1e-6).case)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_constraints_against_each_other_are_infeasible():
     found = solved(GATE, **AT_REST)
     said = found.to_dict()
@@ -246,7 +246,7 @@ def test_a_motion_that_rests_on_its_boundary_is_admissible():
     assert found.objective == pytest.approx(0.0, abs=1e-20)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_only_a_coarse_mesh_cannot_reach_is_not_infeasible():
     """v <= 0.1 + sin(pi t) reaches 0.1 + 2 / pi = 0.73662 and not more, 0.73657 on a hundred trapezoids."""
     ends = {"initial": {"x": 0.0, "v": 0.1}, "tf": 1.0}
@@ -292,7 +292,7 @@ def test_arcs_between_nodes_follow_the_boundary():
     assert np.allclose(found.x["x"](first), 1 / 9 * (1 - (1 - 3 * first) ** 3))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", ["multiplier", "later", "without", "violated"])
 def test_the_certificate_sees_what_is_no_extremal(damage: str):
     """Jumps of the wrong sign, junctions at other times, and trajectories that pass the wall."""
@@ -375,7 +375,7 @@ def test_the_second_variation_of_an_effort_is_that_of_the_control(wall: float):
     assert curvature(found, again) == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_along_a_continuation_the_structure_changes():
     case = satsym.Instance.of("bryson_denham", parameters={"l": 0.3}, **THERE_AND_BACK)
     case = case.with_(continuation={"l": [0.3, 0.05]})
@@ -385,7 +385,7 @@ def test_along_a_continuation_the_structure_changes():
     assert {(), ("entry", "exit")} <= kinds
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_arc_from_which_the_multiplier_lifts_begins_later_after_a_touch_point():
     """Pinned: 0.011195977 by Ipopt on 640 intervals, whose last doubling changed it by a millionth."""
     case = satsym.Instance.of(

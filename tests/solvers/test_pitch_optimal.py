@@ -156,7 +156,7 @@ def test_instances_of_different_systems_are_not_compared() -> None:
 
 
 @pytest.mark.usefixtures("full_resolution")
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_compare_prints_a_table_and_draws_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ["lapan-classical", "lapan-minimum-time"]
     assert main(["compare", *names, "--range", "--out", str(tmp_path), "--plot"]) == 0

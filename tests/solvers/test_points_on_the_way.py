@@ -91,7 +91,7 @@ ON_BOUNDARIES = {"off the boundary on a boundary arc", "negative multiplier", "m
 """What only a motion that meets a boundary is checked for."""
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_point_on_a_line_is_where_it_turns():
     """From rest at 0 to rest at 0 by way of 1: u = 6 - 12 t and back, each at half the effort of 12."""
     found = solution(plane("turning", interior={"mark": (x - 1,)}), [0] * 4, [0] * 4, 2.0)
@@ -99,14 +99,14 @@ def test_a_point_on_a_line_is_where_it_turns():
     assert found.objective == pytest.approx(12.0, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_point_that_lies_on_the_way_costs_nothing():
     found = solution(plane("straight_on", interior={"mark": (x - 1,)}), [0] * 4, [2, 0, 0, 0], 2.0)
     certified(found)
     assert found.objective == pytest.approx(3.0, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_spline_through_a_point_at_its_best_time():
     found = solution(plane("spline", interior={"mark": (x - 1, y - 1)}), [0] * 4, [3, 0, 0, 0], 2.0)
     ends = np.zeros(4), np.array([3.0, 0.0, 0.0, 0.0])
@@ -119,7 +119,7 @@ def test_a_spline_through_a_point_at_its_best_time():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_two_points_are_passed_in_order():
     problem = plane("two_points", interior={"first": (x - 1, y - 1), "second": (x + 1, y - 2)})
     found = solution(problem, [0] * 4, [3, 0, 0, 0], 2.0)
@@ -134,7 +134,7 @@ def test_two_points_are_passed_in_order():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_best_of_many_times_on_a_long_way():
     """Springs bring a body to the point again and again."""
     problem, begun = plane("swinging", interior={"mark": (x - 1, y - 1)}), [0.5, 0.0, 0.0, 0.3]
@@ -150,7 +150,7 @@ def test_the_best_of_many_times_on_a_long_way():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_point_that_moves_lets_h_jump():
     problem = plane("chasing", interior={"mark": (x - 1 - t / 2, y - 1)})
     found = solution(problem, [0] * 4, [3, 0, 0, 0], 2.0)
@@ -165,7 +165,7 @@ def test_a_point_that_moves_lets_h_jump():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_free_final_time_is_found_beside():
     found = solution(
         plane("paid", 1 + (f**2 + g**2) / 2, interior={"mark": (x - 1, y - 1)}), [0] * 4, [3, 0, 0, 0], "free"
@@ -181,7 +181,7 @@ def test_a_free_final_time_is_found_beside():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_bounds_on_both_sides_of_a_point_have_arcs():
     """From rest to rest in unit time within |u| <= 5: saturated arcs last s, with 6 / (1 + 2 s - 2 s^2) = 5."""
     problem = plane("within", interior={"mark": (x - 1,)}, control_set="box")
@@ -195,7 +195,7 @@ def test_bounds_on_both_sides_of_a_point_have_arcs():
     assert found.objective == pytest.approx(25.0 * 2.0 * s + free, rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_controls_jump_from_bound_to_bound_where_a_velocity_is_to_be_met():
     problem = plane("met", interior={"mark": (x - 1, v)}, control_set="box")
     found = solution(problem, [0] * 4, [-1, 0, 0, 0], 2.5, control={"f": [-5.2, 5.2]})
@@ -203,7 +203,7 @@ def test_controls_jump_from_bound_to_bound_where_a_velocity_is_to_be_met():
     assert found.found.x[:2, np.searchsorted(found.found.times, time)] == pytest.approx([1.0, 0.0], abs=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_inspection_is_that_of_the_table():
     matrix = np.array([[0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0.0]])
     inputs = np.array([[0, 0], [1, 0], [0, 0], [0, 1.0]])
@@ -220,7 +220,7 @@ def test_the_inspection_is_that_of_the_table():
     assert KNOWN["inspection"]["optimum"] == pytest.approx(best.fun, rel=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [0.6, 1.7])
 def test_a_time_at_which_the_cost_is_largest_is_no_minimum(stiffness: float):
     """Stationary times of a swinging body alternate: the certificate tells which are minima, as the cost does."""
@@ -253,7 +253,7 @@ def test_a_time_at_which_the_cost_is_largest_is_no_minimum(stiffness: float):
     assert seen == {True, False}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_point_that_is_best_passed_at_once_has_no_answer():
     found = solution(plane("at_once", interior={"mark": (x - 2, y + 0)}), [2, 0, 0, 0], [0, 0, 1, 0], 2.0)
     assert found.to_dict()["status"] == "not converged"

@@ -39,7 +39,7 @@ def scaled(number: int) -> TwoPoint:
     return to_scaled(case, case.tf).relaxed(float("inf"))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "first",
     [
@@ -51,7 +51,7 @@ def test_hard_returns_are_solved_from_a_cold_start(first: int) -> None:
     check(HARD, range(first, first + EACH))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_easy_returns_are_solved_from_a_cold_start() -> None:
     check(EASY, range(20))
 

@@ -48,7 +48,7 @@ def matches(answer: Answer, other: Solution) -> None:
     assert answer.times[-1] == pytest.approx(other.times[-1], rel=1e-11)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("cold", [False, True])
 def test_the_same_again_with_other_initial_states(pair: Pair, cold: bool):
     rng = np.random.default_rng(7)
@@ -61,13 +61,13 @@ def test_the_same_again_with_other_initial_states(pair: Pair, cold: bool):
             matches(answer, pair.solve(replace(case, initial=initial)))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_same_again_with_other_parameters(pair: Pair):
     case = with_parameters(instance.load("return-to-orbit"), c2=3.0)
     matches(pair.plain.solve(parameters=case.parameters), pair.solve(case))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_answer_can_be_had_in_full(pair: Pair):
     answer = pair.bounded.solve(initial=(1.101, 0.0, 0.0, 0.901))
     found = pair.bounded.solution(answer)
@@ -78,7 +78,7 @@ def test_an_answer_can_be_had_in_full(pair: Pair):
     assert certificate.verdict == "certified"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_start_too_far_away_is_no_reason_to_fail(pair: Pair):
     far = (2.2, 0.2, -1.0, 0.25)
     answer = pair.plain.solve(initial=far)
@@ -147,7 +147,7 @@ def test_without_a_compiler_nothing_heavy_is_loaded(tmp_path: Path):
     assert not imported_by(code, tmp_path) & {"numba", "scipy", "sympy", "matplotlib"}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("means", MEANS)
 @pytest.mark.parametrize(
     ("name", "nudge"), [("return-to-orbit-ball", 0.002), ("ends-4-rendezvous", 0.05), ("return-to-geo", 0.1)]

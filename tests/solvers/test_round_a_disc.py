@@ -40,7 +40,7 @@ def taut(start: tuple[float, float], end: tuple[float, float], radius: float) ->
     return sum(np.sqrt(d**2 - radius**2) for d in distances) + radius * arc
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "end", "radius"),
     [

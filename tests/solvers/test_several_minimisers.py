@@ -30,7 +30,7 @@ LAWS: dict[str, tuple[Expr, tuple[float, float] | None]] = {
 }
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LAWS)
 def test_the_law_is_the_least_of_all_minimisers(tmp_path: Path, name: str) -> None:
     cost, ends = LAWS[name]
@@ -65,7 +65,7 @@ def test_beyond_both_wells_the_best_speed_is_steady(tmp_path: Path) -> None:
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_jump_from_one_well_to_the_other_is_certified(tmp_path: Path) -> None:
     """q' = w at the cost of the double well and of q: lambda = 1 - t, and w jumps at t = 1."""
     found = within(tmp_path, WELL + q, 0.0, 0.0, 2.0)
@@ -97,7 +97,7 @@ def test_where_both_wells_stay_as_good_neither_is_certified(tmp_path: Path) -> N
     assert [c.name for c in found.certificate.checks if not c.passed] == ["another minimiser of H stays as good"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_between_the_wells_there_is_no_best_speed(tmp_path: Path) -> None:
     """Slower than one it pays to go to and fro, as often as one likes: nothing is found, and it is said why."""
     found = within(tmp_path, WELL, 0.0, 0.5, 1.0)

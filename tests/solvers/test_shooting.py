@@ -56,7 +56,7 @@ def again(found: Solution) -> float:
     return boundary_residual(found, there)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*ORBIT, *GEO, *ENDS])
 def test_it_finds_what_collocation_finds(name: str):
     """The rounding of 42164 km is 1e-12 of the 5 km that the geostationary satellite is off."""
@@ -185,7 +185,7 @@ def test_a_return_from_nearby_is_a_small_problem_not_a_hard_one(displaced: float
     assert found.objective == pytest.approx(larger.objective * (displaced / 1e-4) ** 2, rel=1e-3)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_cannot_be_done_is_never_called_converged():
     quick = replace(instance.load("return-to-orbit"), lower=(-0.03, -0.03), upper=(0.03, 0.03), tf=3.0)
     found = shooting.solve(options(quick, max_seconds=1.0))
@@ -207,7 +207,7 @@ def test_no_compiler_is_started_for_one_solve(tmp_path: Path):
     assert not loaded & {"numba", "sympy", "matplotlib"}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_compiled_arcs_are_the_same_arcs():
     """On a corner the law has two derivatives, and which of them a first stage takes is a matter of rounding."""
     pytest.importorskip("numba")

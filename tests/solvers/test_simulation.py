@@ -66,7 +66,7 @@ def test_a_circular_orbit_stays_circular():
     assert abs(simulated.metrics["theta_error"]) <= 1e-12
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_steps_too_long_for_a_close_passage_are_halved_until_they_are_not():
     """500 equal steps take this ellipse (eccentricity 0.96) through the centre, to numbers that are not finite."""
     case = replace(from_start(1.0, 0.0, 0.0, 0.2, steps=500), tf=2.5)

@@ -89,7 +89,7 @@ LAWS: dict[str, tuple[Expr, tuple[float, float] | None]] = {
 }
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LAWS)
 def test_the_law_is_the_least_of_h_in_both_forms(tmp_path: Path, name: str):
     cost, ends = LAWS[name]
@@ -129,7 +129,7 @@ def test_an_angle_between_bounds_takes_the_nearer_end(tmp_path: Path):
             assert h <= least_on_a_grid(case, lam, (1.0, 1.0), ends) + 1e-12
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_heading_is_held_at_its_bound_from_the_time_it_meets_it(tmp_path: Path):
     """Straight on along the bound after the switch; before it the costates obey the law of the free angle."""
     start = "[initial]\nx = 3.66\ny = -1.86\n[final]\nx = 0.0\ny = 0.0\n[time]\ntf = "

@@ -50,6 +50,7 @@ def landing(problem: Problem, widest: float) -> satsym.Solution:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [(-0.3, 0.3), (0.5, 1.2), (-3.0, 1.0), (2.0, 7.0)])
 @pytest.mark.parametrize(("problem", "weight"), [(THRIFTY, 0.0), (SMOOTH, 1.0)], ids=["linear", "square"])
 def test_no_thrust_within_both_bounds_is_better(
@@ -76,7 +77,7 @@ def test_no_thrust_within_both_bounds_is_better(
     assert angles & set(ends)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_the_bounds_leave_every_angle_it_is_the_vector():
     """The same rates, derivatives and costs as without bounds, also of regularised problems at any share of norms."""
     free, bounded = (satsym.derive(p).kernels for p in (lander("turned", T, Angle("b")), THRIFTY))
@@ -114,7 +115,7 @@ def margin(z: Array, widest: float) -> float:
     return float(-(z[7] * math.sin(turn) + z[8] * math.cos(turn)) / z[4] + z[9] / EXHAUST - 1.0)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_landing_by_a_gimbal_between_bounds_that_weighs_the_square_of_its_thrust():
     found = landing(SMOOTH, 0.2)
 
@@ -130,7 +131,7 @@ def test_a_landing_by_a_gimbal_between_bounds_that_weighs_the_square_of_its_thru
     assert len(found.switching_times["b"]) == 2
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_landing_of_least_fuel_by_a_gimbal_between_bounds():
     """Full thrust, none, full thrust; the gimbal is held at a bound for a while."""
     found = landing(THRIFTY, 0.15)
@@ -161,7 +162,7 @@ def test_the_law_within_bounds_is_typeset_and_described(side: str):
     assert "terdekat dengan arah" in render(derived, language="id")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_magnitude_beside_a_bounded_angle_is_not_negative():
     with pytest.raises(BadInput, match="b turns what it multiplies, so it is not negative"):
         satsym.Instance.of(THRIFTY, initial=START, tf=1, control={"T": (-1, 1), "b": (-1, 1)})

@@ -117,7 +117,7 @@ def test_the_cost_never_increases_while_far_from_the_optimum(case):
     assert [entry.number for entry in history] == list(range(len(history)))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", [((-math.inf,) * 2, (math.inf,) * 2), ((-0.005, -0.004), (0.006, 0.005))])
 def test_no_admissible_perturbation_of_the_optimum_costs_less(bounds):
     case = replace(shipped("soft-return", steps=400, tolerance=1e-10), lower=bounds[0], upper=bounds[1])

@@ -67,7 +67,7 @@ def slopes(steps: tuple[int, ...], errors: list[list[float]]) -> np.ndarray:
     return -np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", BOUNDS)
 def test_switching_times_cost_and_costates_are_those_of_shooting(bounds):
     solution = solved(bounds)
@@ -95,7 +95,7 @@ def test_the_control_is_admissible_everywhere_and_its_corners_are_nodes(bounds):
         assert np.abs(solution.times - t).min() <= 1e-8 * horizon
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", SEPARATE)
 def test_with_nodes_at_the_corners_bounds_leave_it_fourth_order(bounds):
     steps, errors = (40, 80, 160, 320, 640), []

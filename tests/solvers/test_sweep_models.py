@@ -159,7 +159,7 @@ class Rendezvous:
         return effort + 0.5 * self.weight * float(end @ end)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "limit", "switches"),
     [
@@ -183,7 +183,7 @@ def test_a_control_in_a_ball_is_shortened_where_it_would_leave_it(tmp_path, star
     assert np.abs(solution.u - right.control(right.final_costate, solution.times)).max() <= 1e-7
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", [0.015, 0.0125, 0.01, 0.005])
 def test_a_satellite_with_one_engine_turns_it_as_collocation_does(limit):
     """Its thrust is at the limit for most of the time or all of it, and turns all the while."""

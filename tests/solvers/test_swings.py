@@ -46,7 +46,7 @@ def _case(
     return build(folder, problem, f"{ends}[time]\ntf = {duration}\n[control]\nw = {list(bounds)}\n")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("torque", "duration", "cost"),
     # Radau collocation with CasADi and Ipopt on 120 intervals, the best of starts from motions that were simulated
@@ -61,7 +61,7 @@ def test_a_pendulum_is_swung_up_by_a_torque_that_cannot_lift_it(
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_starts_lead_to_several_swings_further_ones_find_the_cheapest(tmp_path: Path) -> None:
     """With any torque; the first swing that is found costs 0.58805, a strict minimum, but not the least.
 
@@ -74,6 +74,7 @@ def test_where_starts_lead_to_several_swings_further_ones_find_the_cheapest(tmp_
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
+@pytest.mark.slow
 def test_an_end_that_one_control_alone_reaches_is_not_called_out_of_reach(tmp_path: Path) -> None:
     """Pushes to one side, none longer than half a swing: they add up to two units, all of them at the bound."""
     found = solve(_case(tmp_path, OSCILLATOR, -1.0, 8.0, (0.0, 0.5)))
@@ -82,7 +83,7 @@ def test_an_end_that_one_control_alone_reaches_is_not_called_out_of_reach(tmp_pa
     assert beyond.status is Status.INFEASIBLE
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("force", "duration", "cost"),
     # Hermite-Simpson with CasADi and Ipopt on 800 intervals, from states and controls of the answer
@@ -97,7 +98,7 @@ def test_a_weak_force_pumps_a_mass_from_one_well_into_the_other(
     assert found.objective == pytest.approx(cost, rel=1e-5)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_force_that_is_too_weak_for_any_pumping_is_infeasible(tmp_path: Path) -> None:
     """Energy grows by -v^2/20 + w v at most, which is never above 5 w^2: in 20 by 0.01, and 0.25 is asked for."""
     found = solve(_case(tmp_path, WELLS, 1.0, 20.0, (-0.01, 0.01), start=-1.0))

@@ -42,7 +42,7 @@ def axis(generator: Array) -> Array:
     return np.array([generator[2, 1], generator[0, 2], generator[1, 0]])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_the_axis_lies_between_the_momenta_of_both_ends_however_they_are_turned(seed: int) -> None:
     turned = Rotation.random(random_state=seed)
@@ -61,7 +61,7 @@ def test_the_axis_lies_between_the_momenta_of_both_ends_however_they_are_turned(
 DIRECT = {0.3: (0.0107003, 0.0481, 0.516), 2.0: (0.186845, 0.2443, 0.288)}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", DIRECT)
 def test_a_transfer_costs_the_same_however_it_is_turned_in_space(tilt: float) -> None:
     """The least of several numbers of revolutions, for each of which a direct method has another cost."""
@@ -80,7 +80,7 @@ def test_a_transfer_costs_the_same_however_it_is_turned_in_space(tilt: float) ->
             assert ours == pytest.approx(turned.apply(place), abs=1e-7)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_transfer_in_space_is_that_of_shooting() -> None:
     case = asked(0.3, Rotation.identity())
     found = satsym.solve(case)
@@ -123,7 +123,7 @@ def test_rotations_do_not_depend_on_units(radius: float) -> None:
     assert found @ found @ found == pytest.approx(-found, abs=1e-9 * radius)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_revolutions_are_tried_round_an_oblate_centre_though_only_one_axis_is_left() -> None:
     """Its least cost is that round a sphere but for some per cent, as its bulge is a perturbation of some permille."""
     (bulge,), (mu,) = symbols_of((BULGE,)), symbols_of(MOTION.parameters)

@@ -102,7 +102,7 @@ def missed(found: Solution) -> float:
     return float((np.abs(simulated(found)[:4] - goal) / size)[given].max(initial=0.0))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "cost"),
     [
@@ -316,7 +316,7 @@ def test_the_thesis_can_be_answered_with_thrusts_both_ways():
     assert found.objective < 0.08
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "changed"),
     [
@@ -352,7 +352,7 @@ def test_what_can_be_done_is_reached_by_the_search_for_the_nearest_end(name, bou
     assert found.arrives
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_time_limit_ends_the_search_for_the_nearest_end():
     case = options(instance.load("its-thesis-return"), max_seconds=5.0)
     began = time.thread_time()

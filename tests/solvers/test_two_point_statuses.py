@@ -47,7 +47,7 @@ def test_numbers_beyond_arithmetic_end_as_not_finite(case: Instance, method: Any
     assert np.isnan(found.objective)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [two_point.solve, shooting.solve], ids=["collocation", "shooting"])
 def test_where_a_control_can_only_brake_too_much_speed_is_not_reached(method: Any) -> None:
     """The angular momentum h cannot grow, and without it growing the end asked for is out of reach.
@@ -93,7 +93,7 @@ def test_weights_next_to_nothing_leave_no_warnings() -> None:
 INFINITE = float("inf")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("initial", "tf", "lower", "upper"),
     [

@@ -114,7 +114,7 @@ def test_bounds_of_the_control_are_kept_on_the_way() -> None:
     assert said["objective"] == pytest.approx(steep**2 * until**3 / 6 + bound**2 * (1 - until) / 2, rel=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_free_height_of_a_brachistochrone_is_that_of_half_a_cycloid() -> None:
     far, g = 10.0, 9.80665
     case = satsym.load("brachistochrone").with_(initial={"y": "free"}, guess={"state": {"y": 10.0}})
@@ -155,7 +155,7 @@ WEIGHED = problem("weighed", CART, (u**2 + a * x**2) / 2, terminal_cost=w * (v -
 TIED = problem("tied", CART, u**2 / 2 + 1, terminal_cost=a * v, terminal_constraints=(x - a * w + v / 5,))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("of", "final", "tf"),
     [(WEIGHED, {"x": "reference"}, 1.3), (WEIGHED, {"x": "reference", "v": "reference"}, "free"), (TIED, {}, 1.3)],
@@ -200,7 +200,7 @@ def test_an_earlier_start_that_is_always_cheaper_is_no_minimiser() -> None:
     assert math.isnan(found.objective)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_corner_of_the_least_cost_is_said() -> None:
     ends = {"initial": {"q": "free", "q_dot": 1.0}, "final": {"q": 0.0, "q_dot": 0.0}}
     found = solved("double_integrator_time", **ends, tf="free", control={"u1": [-1, 1]})

@@ -56,7 +56,7 @@ def test_each_row_of_a_map_has_the_deeper_of_two_wells_and_says_on_which_side_it
     assert f"{found['changed']} rows changed to one that costs less" in repr(mapped)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_branches_come_out_the_same_with_any_number_of_workers(mapped: Study, case: Path) -> None:
     again = study(case, case.parent / "again", vary=MAP, workers=2)
     for name in ("table.csv", "result.json", "study.json"):

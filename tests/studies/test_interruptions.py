@@ -351,7 +351,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_study_that_is_killed_says_nothing_of_what_is_cleaned_up_behind_it() -> None:
     done = subprocess.run([sys.executable, "-c", ORPHANED], capture_output=True, check=False, timeout=60)
     assert (done.returncode, done.stderr) == (-signal.SIGKILL, b"")

@@ -40,7 +40,7 @@ def here() -> Here:
     return Here(None)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_each_row_is_what_solving_it_alone_gives(tmp_path: Path) -> None:
     vary = {"initial.r": (0.95, 1.1, 2), "parameters.c1": "log:1:10:2"}
     found = study(NAME, tmp_path, vary=vary, executor=here, workers=1)
@@ -58,7 +58,7 @@ def test_each_row_is_what_solving_it_alone_gives(tmp_path: Path) -> None:
     assert "initial.r [km],parameters.c1,status" in first
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_some_rows_are_compared_with_competitors_and_the_others_stay_as_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

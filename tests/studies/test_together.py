@@ -39,7 +39,7 @@ def computed(study: Study) -> list[Row]:
     return [row for number in range(study.chunks) for row in chunks.computed(packed, study.chunk(number))]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_rows_together_are_those_of_the_single_solver() -> None:
     study = asked(**SAMPLE)
     found = computed(study)
@@ -69,7 +69,7 @@ def test_what_is_not_solved_together_is_solved_alone() -> None:
     assert not any(together(one.task) for one in (kept, full, timed))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_without_certificates_rows_are_minima_all_the_same() -> None:
     found = computed(asked(**SAMPLE | {"certificate": "none"}))
     assert {row.numbers["verdict"] for row in found} == {None}
@@ -158,7 +158,7 @@ def test_bounds_of_single_controls_vary_and_each_row_is_judged_by_its_own() -> N
         asking(written, written.instance(), {"vary": {"control.u2.lower": "0:9:2"}}, bounded)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_workers_change_no_byte(tmp_path: Path) -> None:
     study = asked(**SAMPLE | {"certificate": "local"})
     for name, count in (("one", 1), ("two", 2)):

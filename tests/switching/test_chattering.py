@@ -80,7 +80,7 @@ def test_a_narrower_interval_than_the_motion_allows_is_refused() -> None:
     assert [c.name for c in again.checks if not c.passed] == ["cost interval too narrow", CHATTERS]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "end", "tf"),
     [
@@ -137,7 +137,7 @@ def test_the_closed_form_is_fullers_where_bounds_are_alike() -> None:
     assert coefficient(ratios(1.0, 1.0)[0]) == pytest.approx(xi, rel=1e-12)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("a", "b", "tf", "width", "apart"),
     [

@@ -53,7 +53,7 @@ def turns_opposed(x: float, y: float, heading: float) -> float:
     return sqrt(apart**2 - 4.0) + line % (2.0 * pi) + (line - heading) % (2.0 * pi)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("end", "structure", "length"),
     [

@@ -70,7 +70,7 @@ GIVEN = """
     """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_throttled_jets_are_cheaper_than_what_is_printed(tmp_path: Path) -> None:
     """The controls are integrated apart: they bring the robot to its place, for less."""
     found = solve(build(tmp_path, ROBOT, GIVEN))

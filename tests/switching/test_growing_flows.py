@@ -132,7 +132,7 @@ def read(folder: Path, start: float = 0.0) -> Instance:
 
 
 @pytest.mark.parametrize("start", [0.0, pytest.param(-7.0, marks=pytest.mark.study)])
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_fishing_is_singular_up_to_the_end(tmp_path: Path, start: float) -> None:
     """The control comes as near to its bound as it likes, and is never on it: 1.34408 in Sager's collection."""
     found = solve(read(tmp_path, start))
@@ -146,7 +146,7 @@ def test_fishing_is_singular_up_to_the_end(tmp_path: Path, start: float) -> None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_one_flow_does_not_find_is_found_where_it_begins_anew(tmp_path: Path) -> None:
     """A guess that is off by a percent; where arcs begin anew no time is listed twice, as those of switches are."""
     instance = read(tmp_path)
@@ -164,7 +164,7 @@ def test_what_one_flow_does_not_find_is_found_where_it_begins_anew(tmp_path: Pat
     assert found.times[1:][np.diff(found.times) == 0.0] == pytest.approx(times, abs=1e-8)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_extremal_that_begins_anew_has_no_gaps(tmp_path: Path) -> None:
     """Costates that are wrong from some node on are no extremal, wherever it is integrated again."""
     _, times, course = least()

@@ -43,7 +43,7 @@ def swung(folder: Path) -> Solution:
     return solve(build(folder, PENDULUM, text))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_no_more_swings_than_pay(tmp_path: Path) -> None:
     """Seven switches lead up for 2.879, a strict minimum, which was certified; four do for less."""
     found = swung(tmp_path)

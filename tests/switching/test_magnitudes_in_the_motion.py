@@ -65,7 +65,7 @@ def braking(time: float) -> tuple[float, float, float]:
     return lasting, way, speed * lasting - gone(lasting, mass)[1]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_fuel_that_is_burnt_lightens_the_body():
     """Thrust, coast, thrust: by the rocket equation, without costates."""
 
@@ -80,7 +80,7 @@ def test_fuel_that_is_burnt_lightens_the_body():
     assert found.objective == pytest.approx(1.0 - FLOW * (first + last), rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_fuel_that_weighs_is_better_burnt_than_carried():
     """In least time the weight of |u| is negative: a law that knows only thresholds would rest, or thrust both ways."""
     first = brentq(lambda time: sum(braking(time)[1:]) - 1.0, 0.1, 2.0, xtol=1e-15)
@@ -92,7 +92,7 @@ def test_fuel_that_weighs_is_better_burnt_than_carried():
     assert found.objective == pytest.approx(first + braking(first)[0], rel=1e-10)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", [(-1.0, 1.0), (-0.5, 2.0)])
 @pytest.mark.parametrize(("cost", "tf"), [(Integer(1), "free"), (Abs(u), LASTING)], ids=["time", "fuel"])
 def test_thrust_that_drags_is_worth_less_forwards(cost: Expr, tf: float | str, bounds: tuple[float, float]):

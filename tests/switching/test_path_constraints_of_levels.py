@@ -48,7 +48,7 @@ def solved(of: Problem, **given: Any) -> Solution:
     return found
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("top", "braking"), [(0.3, 1.0), (1.0, 1.0), (1.2, 2.0), (0.5, 0.25)])
 def test_a_car_goes_as_fast_as_it_may_and_brakes(top: float, braking: float):
     found = solved(CAR, **(ACROSS | {"control": {"u": [-braking, 1.0]}, "parameters": {"v_top": top}}))
@@ -67,7 +67,7 @@ def test_a_limit_that_is_never_met_changes_nothing():
     assert found.certificate.verdict == "certified"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("top", "distance"), [(1.0, 10.0), (0.7, 4.0)])
 def test_a_lift_keeps_to_the_acceleration_that_its_passengers_bear(top: float, distance: float):
     """Jerk one: up to the acceleration and down again twice, the second half mirrored."""
@@ -79,7 +79,7 @@ def test_a_lift_keeps_to_the_acceleration_that_its_passengers_bear(top: float, d
     assert [one.name for one in found.events] == ["push", "push", "brake", "brake"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("fast", "hard", "distance"), [(1.0, 1.0, 10.0), (1.5, 0.8, 6.0), (0.7, 2.0, 4.0)])
 def test_limits_of_speed_and_acceleration_make_an_s_curve(fast: float, hard: float, distance: float):
     """Rest to rest with jerk one (order two: costates jump): up to the speed, along it, and down again."""
@@ -93,7 +93,7 @@ def test_limits_of_speed_and_acceleration_make_an_s_curve(fast: float, hard: flo
     assert failed == ["not resolved: second variation where costates jump"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_limit_may_rise_while_it_is_kept():
     """To v = 1 + t / 10 with the control one, along that, and with minus one to rest."""
     found = solved(line({x: v, v: u}, path_constraints={"limit": v - v_top - t / 10}), **ACROSS)
@@ -107,7 +107,7 @@ def test_a_limit_may_rise_while_it_is_kept():
     assert found.certificate.verdict == "certified"
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [0.7, -0.3])
 def test_a_motion_may_end_and_begin_on_a_boundary(start: float):
     given = ACROSS | {"initial": {"x": 0.0, "v": start}, "final": {"x": 3.0, "v": 0.7}, "parameters": {"v_top": 0.7}}
@@ -116,7 +116,7 @@ def test_a_motion_may_end_and_begin_on_a_boundary(start: float):
     assert found.objective == pytest.approx(speeding + (3.0 - (0.7 + start) / 2.0 * speeding) / 0.7, rel=1e-12)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_arc_too_brief_to_be_seen_leads_to_the_boundary():
     """A start next to a boundary is not on it: no arc there begins with the motion."""
     box, start = {"u": [-1.0, 1.0]}, {"x": 0.0, "v": 0.65}
@@ -138,7 +138,7 @@ def test_an_arc_beside_its_boundary_fails_the_certificate():
     assert certify(higher).verdict is Verdict.FAILED
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_second_variation_is_that_of_the_top_where_all_else_is_given():
     """Below a pressure of 8 no arc is singular: entry and fuel fix all times but the last, at which h'' = -1/h^2."""
     case = satsym.load("goddard-pressure").with_(parameters={"q_max": 5.0})
@@ -210,6 +210,7 @@ def test_a_start_beyond_the_limit_is_refused():
         satsym.solve(satsym.Instance.of(CAR, **(ACROSS | {"initial": {"x": 0.0, "v": 1.5}})))
 
 
+@pytest.mark.slow
 def test_a_certificate_sees_a_limit_that_is_broken_and_a_boundary_that_pulls():
     """The answer of one limit held against a lower one, and against one whose motion would rather be faster still."""
     found = solved(CAR, **ACROSS).found

@@ -63,7 +63,7 @@ def boat() -> Problem:
     return Problem(name="crossing", title="B", model=moving, running_cost=1 + k / 2, control_sets=sets)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_throttle_beside_a_direction_in_a_free_time():
     found = satsym.solve(
         satsym.Instance.of(
@@ -123,7 +123,7 @@ def cartesian() -> Problem:
     return ascent("cartesian", ux, uy, sqrt(ux**2 + uy**2), {"ux": "real", "uy": "real"}, {"engine": Ball("ux", "uy")})
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_magnitude_and_direction_apart_are_the_vector():
     """The same laws, rates, derivatives and costs, also of regularised problems and at any share of what norms cost."""
     apart, whole = (satsym.derive(p).kernels for p, _ in BOTH)
@@ -144,7 +144,7 @@ def test_magnitude_and_direction_apart_are_the_vector():
         )
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_ascent_by_thrust_and_heading_is_that_by_components():
     apart, whole = (
         satsym.solve(satsym.Instance.of(p, initial=LAUNCH, final=ORBIT, tf=0.6, control=c)) for p, c in BOTH
@@ -161,7 +161,7 @@ LAUNCH, ORBIT = {"r": 1.0, "v_r": 0.0, "v_t": 0.0, "m": 1.0}, {"r": 1.01065, "v_
 BOTH = ((polar(), {"T": (0, 2.009328897)}), (cartesian(), {"max_norm": 2.009328897}))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_where_numbers_fail_on_one_way_another_is_taken(monkeypatch: pytest.MonkeyPatch):
     def failing(*given: Any, **more: Any) -> None:
         raise ZeroDivisionError("division by zero")

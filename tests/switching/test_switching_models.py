@@ -111,7 +111,7 @@ def test_a_pendulum_is_brought_to_rest_with_the_arcs_it_was_led_away_by(tmp_path
     assert_certified(found)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_two_controls_switch_each_at_its_own_times(tmp_path: Path) -> None:
     # Costates of the rotation turn with it: with the final ones at an angle, both switching functions are sines.
     angle, duration = 0.6, 2.4
@@ -243,7 +243,7 @@ def test_what_is_not_convex_is_an_extremal_only_along_a_singular_arc(tmp_path: P
     assert failed == ["no proof of a minimum along singular arcs: not convex"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_an_extremal_is_found_again_from_any_of_its_points(tmp_path: Path) -> None:
     # Bellman: what is left of an optimum is optimal.
     base = case(tmp_path, PENDULUM, (2.0, 1.0), (0.0, 0.0), FREE)

@@ -36,7 +36,7 @@ def instance(folder: Path, one: Problem, start: tuple[float, ...], tf: float) ->
     return case(folder, one, start, None, str(tf))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("one", [VAN_DER_POL, TWISTED, TIMED], ids=lambda one: one.name)
 def test_a_singular_feedback_and_its_slope_are_those_of_the_formulas(tmp_path: Path, one: Problem) -> None:
     # The control that keeps the second derivative of the switching function at zero, by symbolic differentiation.
@@ -81,7 +81,7 @@ def cost_of(start: tuple[float, float], tf: float, signs: tuple[float, float], t
     return float(state[2])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "tf", "signs", "about"),
     [((-1.0, 0.3), 3.0, (1.0, -1.0), (0.1, 1.9))],
@@ -132,7 +132,7 @@ HUMP = problem("hump", {x: v}, x**2 / (1 + x**4), ("v",))
 """Back to zero over the hump at x = 1, or away from it for good: either is an extremal."""
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_cheaper_arc_at_rest_is_found_beside_a_control_held_at_a_bound(tmp_path: Path) -> None:
     found = solve.solve(instance(tmp_path, HUMP, (1.2,), 10.0))
     known = float(sp.Integral(HUMP.running_cost, (x, 0, 1.2)).evalf())
@@ -141,7 +141,7 @@ def test_a_cheaper_arc_at_rest_is_found_beside_a_control_held_at_a_bound(tmp_pat
     assert found.switching_times[0] == pytest.approx((1.2,), abs=1e-9)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_running_away_is_not_certified_where_coming_to_rest_is_cheaper(tmp_path: Path) -> None:
     base = solving.solve(instance(tmp_path, HUMP, (1.2,), 10.0))
     cost = sp.lambdify(x, HUMP.running_cost)

@@ -56,7 +56,7 @@ def cartesian(t: float, y: np.ndarray, thrust: float) -> np.ndarray:
     return np.concatenate([speed, push, [-thrust], turn, -pull, [-thrust * size / mass**2]])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_transfer_of_minimum_fuel_agrees_with_shooting_in_cartesian_coordinates():
     """Coast, burn, coast, burn, coast, burn: ten conditions on five costates and five switching times."""
     radius, angle = 1.5, 8.5
@@ -83,7 +83,7 @@ def test_the_transfer_of_minimum_fuel_agrees_with_shooting_in_cartesian_coordina
     assert found.switching_times == (pytest.approx(expected.x[5:], abs=1e-10),) * 2
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_transfer_of_minimum_fuel_is_a_strict_minimum():
     found = shipped("transfer-fuel")
     assert found.certificate is not None
@@ -149,7 +149,7 @@ def simulated(
     return y, times
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_follows_the_singular_surface():
     """Half the initial weight of drag, then the surface, 0.6 of the mass, and the top: nothing has to be iterated."""
     legs = (
@@ -170,7 +170,7 @@ def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_follo
     assert failed(found) == ["no proof of a minimum along singular arcs: not convex"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_thrust_that_comes_to_its_bound_on_the_boundary_stays_there_until_the_fuel_is_spent():
     """At a pressure of 9 the bound on thrust is met before the singular surface: costates jump there."""
     legs = (
@@ -190,7 +190,7 @@ def test_thrust_that_comes_to_its_bound_on_the_boundary_stays_there_until_the_fu
     assert failed(found) == ["not resolved: second variation where costates jump"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_goddards_rocket_agrees_with_events_alone():
     """Full thrust up to the singular surface, along it until 0.6 of the mass is left, and a coast to the top."""
     legs = (
@@ -240,7 +240,7 @@ max_norm = 1.0
 """
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_point_is_pushed_coasts_and_is_stopped(tmp_path: Path):
     """In a time T over a distance d with thrust one each push lasts b with b (T - b) = d, and costs that."""
     burn = (7.0 - math.sqrt(49.0 - 4.0 * math.sqrt(5.0))) / 2.0
@@ -250,7 +250,7 @@ def test_a_point_is_pushed_coasts_and_is_stopped(tmp_path: Path):
     assert failed(found) == []
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_fuel_alone_has_no_minimiser_in_a_free_time_and_has_one_where_time_is_weighed(tmp_path: Path):
     """The longer it takes the shorter are the pushes; with a weight w of time T / sqrt(T^2 - 4 d) = 1 + w."""
     free = BETWEEN.replace("tf = 10.0", 'tf = "free"')
@@ -271,7 +271,7 @@ def test_fuel_alone_has_no_minimiser_in_a_free_time_and_has_one_where_time_is_we
     assert failed(timed) == []
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_vector_in_an_annulus_has_its_least_or_its_largest_norm(tmp_path: Path):
     ring = pushed("ring", FREELY, control_sets={"thrust": Annulus("ux", "uy")})
     start = BETWEEN.replace("vy = 0.0\n[final]", "vy = 0.3\n[final]").replace("x = 1.0", "x = 2.0")
@@ -367,7 +367,7 @@ def critical_gain() -> float:
     return 1.0 / float(np.linalg.eigvals(np.linalg.solve(cost, gained)).real.max())
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_a_minimum_ends_where_leaving_the_straight_line_pays(tmp_path: Path):
     """The straight way satisfies the minimum principle whatever y^2 earns."""
     gain = Variable("q", "q", default=0.0)
@@ -389,7 +389,7 @@ def test_a_minimum_ends_where_leaving_the_straight_line_pays(tmp_path: Path):
         assert passed["second variation in lengths of arcs and directions"] == (share < 1.0)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_the_form_in_the_lengths_of_arcs_is_that_of_differences(tmp_path: Path):
     """A spring along the way; costs and what the end misses, weighed with its costates, over other lengths."""
     sprung = pushed("sprung", {**FREELY, vx: ux - x / 2, vy: uy - y / 2})
@@ -418,7 +418,7 @@ def test_the_form_in_the_lengths_of_arcs_is_that_of_differences(tmp_path: Path):
     assert in_lengths == pytest.approx(np.array(hessian), rel=1e-4, abs=1e-4)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("arrived", [0, 1])
 def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
     arrived: int, monkeypatch: pytest.MonkeyPatch

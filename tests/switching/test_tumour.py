@@ -91,7 +91,7 @@ def followed(tumour: float, vessels: float, amount: float, first: float) -> tupl
     return float(y[0]), times
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tumour", "vessels", "amount", "structure"),
     [

@@ -72,7 +72,7 @@ def _inside(a: Array, b: Array, c: Array) -> Array:
     return np.abs(side(a, b) + side(b, c) + side(c, a)) == 3.0
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bound", "structure"),
     [(0.25, "-+-+"), (0.2, "+-+-+-"), pytest.param(0.15, "-+-+-+-", marks=pytest.mark.study)],

@@ -62,7 +62,7 @@ def test_the_routh_array_and_the_spectrum_both_count_what_was_constructed(kind: 
         assert sum(e.algebraic for e in values if e.value.real == 0.0) == on_axis, seed
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_verdict_spectrum_and_routh_array_of_a_matrix_never_contradict_each_other(kind: str):
     """Also in coordinates in which nothing is zero any more."""
@@ -121,7 +121,7 @@ def error(P: np.ndarray, truth: mp.matrix) -> float:
 CASES = [(True, seed) for seed in range(6)] + [(False, seed) for seed in (26, 61, 90, 167, 169, 171, 254, 263, 281)]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("weights_in_new_units", "seed"), CASES)
 def test_extreme_regulators_are_right_to_the_last_digits_and_say_so(weights_in_new_units: bool, seed: int):
     A, B, Q, R = extreme(seed, weights_in_new_units)

@@ -120,6 +120,7 @@ LONG = {"shuttle", "shuttle_heating", "reorientation"}
 """Problems that take more than ten seconds to derive: studies, drawn or not."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [case for case in shared.each(left=LONG) if case.values[0] in STATED])
 def test_every_shipped_problem_can_be_told_in_the_other_convention(name: str) -> None:
     (other,) = set(get_args(Convention)) - {STATED[name].convention}

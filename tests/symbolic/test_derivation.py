@@ -228,7 +228,7 @@ def accelerations_by_lagrange(model: Newton) -> tuple[list[sp.Symbol], Callable[
     return symbols, solve
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [POLAR.name, "cartesian 2-D", "rotating axes", "driven, stretched line"])
 def test_equations_of_motion_are_those_of_lagrange(name: str) -> None:
     found = derived(name)
@@ -331,7 +331,7 @@ def kept(name: str) -> set[str]:
     return {e.name for e in found.step("conserved").equations} if "conserved" in found else set()
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
@@ -369,7 +369,7 @@ def test_energy_of_an_ellipse_is_that_of_vis_viva(polar: Derivation) -> None:
         np.testing.assert_allclose(quantities(r=r, r_dot=0.0, theta_dot=h / r**2), [-g / (2 * a), h], rtol=1e-14)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("force", "expected"),
     [

@@ -167,7 +167,7 @@ UNTIDIED = {"control_rates", "newton", "first_order", "reference", "second_deriv
 UNTIDIED |= {"state_equations", "minimised_hamiltonian"}  # these have tests of their own
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "step", [name for name, f in STEPS.items() if hasattr(sys.modules[f.__module__], "tidy") and name not in UNTIDIED]
 )

@@ -77,14 +77,14 @@ def searched(inertias, h):
     return kept
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(("h", "count"), [("1/2", 24), ("5/2", 16), ("5", 8)])
 def test_a_gyrostat_of_inertias_3_2_1_has_24_then_16_then_8_equilibria(h, count):
     found, equilibria = all_of(gyrostat().at(numbers(3, 2, 1, h)))
     assert (found.real, found.complex, len(equilibria)) == (count, 24, count)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("h", ["1/2", "5/2", "5"])
 def test_an_independent_search_finds_the_same_equilibria(h):
     _, equilibria = all_of(gyrostat().at(numbers(3, 2, 1, h)))
@@ -113,7 +113,7 @@ def test_each_is_an_equilibrium_of_the_motion_with_those_eigenvalues():
     assert kinds == {Kind.STABLE, Kind.GYROSCOPIC, Kind.UNSTABLE}
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_number_and_stability_change_in_brackets_about_one_and_four():
     letters = {s: v for s, v in numbers(3, 2, 1, 0).items() if s.name != "h"}
     changes = follow(gyrostat(), letters, 2.0).changes

@@ -266,7 +266,7 @@ def as_numbers(vector: sp.MatrixBase) -> np.ndarray:
     return np.array([complex(e) for e in vector])
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @settings(max_examples=10)
 @given(st.integers(0, 10**6), st.integers(1, 3), st.integers(1, 2))
 def test_ranks_modes_and_kalman_forms_agree_with_each_other_and_with_numeric_ones(seed: int, reached: int, inputs: int):
@@ -469,6 +469,7 @@ def test_systems_of_models_and_matrices_can_be_analysed():
     assert analyse(linear_system(found.system.a)).stability == found.stability
 
 
+@pytest.mark.slow
 def test_the_analysis_is_quick_and_can_be_printed():
     system = system_of(satellite())
     began = time.process_time()
@@ -591,7 +592,7 @@ FALSIFIED = {
 """What is wrong -> the step that must notice, the function whose result is falsified, and how."""
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize("wrong", FALSIFIED)
 def test_falsified_results_are_caught(wrong: str, monkeypatch: pytest.MonkeyPatch):
     step, function, falsify = FALSIFIED[wrong]

@@ -27,7 +27,7 @@ def hill() -> Derivation:
     return library.derivation("hill")
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_equations_are_those_of_the_textbook(hill: Derivation) -> None:
     """Clohessy and Wiltshire 1960; Curtis, Orbital Mechanics for Engineering Students, 7.4."""
     xi, _eta, zeta, xi_dot, eta_dot, _zeta_dot = symbols_of(HILL.states)
@@ -40,7 +40,7 @@ def test_equations_are_those_of_the_textbook(hill: Derivation) -> None:
     assert all(sp.expand(a - b) == 0 for a, b in zip(hill.rhs("first_order")[3:], expected, strict=True))
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_reference_is_a_motion_exactly_for_keplers_third_law(hill: Derivation) -> None:
     assert hill.equation("reference_condition.mu").rhs == sigma**3 * omega**2
 

@@ -71,6 +71,7 @@ def test_the_voltage_of_the_motor_overcomes_what_the_turning_wheel_induces(wheel
     assert sp.diff(voltage, s["wheel_speed"]) == 1 / s["K_m"]
 
 
+@pytest.mark.slow
 def test_the_closed_loop_has_the_zero_of_proportional_and_differential_action(loop: Derivation) -> None:
     s = symbols(loop)
     body, k1, k2, z = s["I_y"], s["K1"], s["K2"], s["s"]

@@ -84,6 +84,7 @@ def test_terms_are_counted_before_they_are_multiplied_out() -> None:
     assert terms_of(x * sin((x + y) ** 3)) == 4
 
 
+@pytest.mark.slow
 def test_what_would_grow_when_multiplied_out_is_parted_by_what_it_is_linear_in_and_no_more() -> None:
     lam = sp.symbols("lambda_1:3", real=True)
     long = (1 + x + y + q + x * q) ** 8

@@ -119,7 +119,7 @@ def test_singular_arcs_have_their_known_order_control_and_sign(
     assert list(said(found.step("generalised_legendre_clebsch"))) == [f"Legendre-Clebsch {verdict}"]
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_decimals_neither_hide_nor_slow_down_a_singular_arc() -> None:
     """Along F-8's own motion, whose decimals have tens of digits once they are multiplied."""
 

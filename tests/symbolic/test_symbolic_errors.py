@@ -81,7 +81,7 @@ def complaint(subject: Problem | Model) -> str:
     return text
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "subject",
     [first_order(), plane(), problem(), problem(plane())],
