@@ -6,14 +6,17 @@ Trajectories are read back; of these commands the numbers behind pictures are no
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from satsym import instance
 from satsym.cli.output import live
+from satsym.cli.saving import DRAWN
 from satsym.instance import Instance
 from satsym.instance.numbers import changed
+from satsym.report.results import sets
 from satsym.report.results.objects import file_of, head, head_about
 from satsym.report.results.set_list import LIST, unusable
 from satsym.status import Status
@@ -49,6 +52,21 @@ Drawn = tuple[dict[str, Any], str, dict[str, "Content"]]
 """What an object about pictures begins with, a title, and the pictures."""
 
 
+def named_in(folder: Path) -> str | None:
+    """The instance or the model that the result in a folder is of, as a command takes it; ``None`` without a result.
+
+    Raises
+    ------
+    BadInput
+        If its result.json cannot be read.
+    """
+    if sets.command_of(folder) not in DRAWN:
+        return None
+    written = _written(sets.read(folder))
+    file = written.instance_file.name if written.instance_file else ""
+    return file if file and Path(file).is_file() else written.instance or written.model
+
+
 def redrawn(subject: str, found: Found, look: Look) -> Drawn:
     """Pictures of a result of ``satsym analyse``, ``lqr`` or ``compare``.
 
@@ -64,16 +82,19 @@ def redrawn(subject: str, found: Found, look: Look) -> Drawn:
     BadInput
         If the result cannot be read, is of something else, or of an instance that has changed since.
     """
-    listing = found.folder / LIST
-    try:
-        written = msgspec.json.decode(found.result, type=_Written)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise unusable(listing, f"cannot be read ({printable(str(error))})", found.command) from None
+    written = _written(found)
     return (
         _of_several(subject, written, found, look)
         if found.command == "compare"
         else _of_one(subject, written, found, look)
     )
+
+
+def _written(found: Found) -> _Written:
+    try:
+        return msgspec.json.decode(found.result, type=_Written)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise unusable(found.folder / LIST, f"cannot be read ({printable(str(error))})", found.command) from None
 
 
 def _of_one(subject: str, written: _Written, found: Found, look: Look) -> Drawn:

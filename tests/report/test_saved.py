@@ -119,7 +119,7 @@ def test_what_was_found_without_a_trajectory_is_drawn_again(command: str, tmp_pa
         assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "run" / name).read_bytes(), name
 
 
-def test_what_is_of_something_else_is_not_drawn(tmp_path: Path) -> None:
+def test_what_is_of_something_else_is_not_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case, run = tmp_path / "own.toml", tmp_path / "run"
     case.write_bytes(instance.load("uny-lqr").path.read_bytes())
     assert CliRunner().invoke(program, ["lqr", str(case), "--out", str(run)], standalone_mode=False).return_value == 0
@@ -129,6 +129,8 @@ def test_what_is_of_something_else_is_not_drawn(tmp_path: Path) -> None:
         assert done.return_value == 3
         assert re.search(message, done.stderr), done.stderr
 
+    monkeypatch.chdir(tmp_path)
+    assert json.loads(plotted("run", "--out", tmp_path / "named", "--json"))["instance"] == "own"
     refused("uny-lqr", "is of own .*, not of uny-lqr .*; `satsym lqr X")
     refused("clohessy_wiltshire", "is of own .*, not of clohessy_wiltshire .*; `satsym lqr X")
     case.write_text(case.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
@@ -142,6 +144,16 @@ def test_what_is_of_something_else_is_not_drawn(tmp_path: Path) -> None:
 
 
 @pytest.mark.study
+def test_a_folder_names_what_its_result_is_of(folder: Path) -> None:
+    drawn = json.loads(plotted(folder, "--out", folder.parent / "drawn", "--json"))
+    assert drawn["instance"] == NAME
+    assert [Path(name).parent for name in drawn["pictures"]] == [folder.parent / "drawn"] * len(drawn["pictures"])
+    (folder / "result.json").write_text("{", encoding="utf-8")
+    done = CliRunner().invoke(program, ["plot", str(folder)], standalone_mode=False)
+    assert (done.return_value, done.stderr.count("\n")) == (3, 1)
+    assert "result.json: cannot be read" in done.stderr
+
+
 def test_pictures_are_drawn_for_print_too(folder: Path) -> None:
     plotted(NAME, "--from", folder, "--format", "pdf")
     pictures = list(folder.glob("*.pdf"))

@@ -24,7 +24,7 @@ Examples:
   satsym solve soft-return --plot       results and pictures
   satsym plot soft-return --format pdf --format png    the pictures again, for print and screen
   satsym plot soft-return/simulate      of another command than the last one
-  satsym plot soft-return --from run    of what `satsym solve soft-return --out run` wrote"""
+  satsym plot run                       of what `satsym solve soft-return --out run` wrote"""
 
 
 @command(epilog=EXAMPLES)
@@ -42,10 +42,11 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
     """Draw a saved result, without solving again.
 
     X is the instance or the model whose results were saved with --out or --plot, or X/COMMAND for what that command
-    wrote, or the folder of a study. A result that is not whole any more is refused. What analyse, lqr and compare show
-    is found again.
+    wrote, or a folder with results, also of a study. A result that is not whole any more is refused. What analyse, lqr
+    and compare show is found again.
     """
     from satsym import instance
+    from satsym.cli.redrawing import named_in
     from satsym.report import plots
     from satsym.report.results import trajectory
     from satsym.report.results.files import check_writable
@@ -60,6 +61,8 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
         about = say("<name>: study of <number> rows", name=said["instance"], number=said["rows"])
         answer(as_json, shown, lambda: with_files(about, drawn))
         return ExitCode.DONE
+    if source is None and (named := named_in(Path(subject))):
+        subject, source = named, Path(subject)
     name, command = split(subject)
     home = source or newest(Path(name).stem, command)
     if home and (wrote := command_of(home)) in DRAWN and wrote not in READ:
