@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar, root
 from sympy import Expr, Rational, cos, cosh, exp, log, sin, sqrt
 
 from satsym import instance
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers import solve
 from satsym.status import BadInput, Status, Verdict
@@ -376,3 +377,50 @@ def test_decimals_are_what_is_written():
 
 def test_a_terminal_cost_may_have_a_term_that_is_constant():
     assert "boundary_residual" in derive(scalar("shifted", -q + w, w**2 + q**2, q**2 + k, "free"))
+
+
+CLIMB = tuple(Variable(name, name) for name in ("far", "v", "up"))
+
+
+def soonest_by_quadrature(distance: float, rise: float, widest: float) -> float:
+    """Least time of the climb below: costates are known but for two numbers, which the two ends determine.
+
+    That of the distance is constant, that of v falls to zero at the end, that of the rise is constant; the attitude
+    maximises H at Gauss's nodes, and both ends are integrals of it.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+
+    def ends(unknown: Array) -> Array:
+        tf, share = unknown
+        left = tf * (1.0 - nodes) / 2.0
+        turned = np.array(
+            [
+                minimize_scalar(
+                    lambda u, own=own: -(own * (math.cos(u) - 2.0 * u**2) + share * (math.sin(u) + u)),
+                    bounds=(-widest, widest),
+                    method="bounded",
+                    options={"xatol": 1e-13},
+                ).x
+                for own in left
+            ]
+        )
+        pull, lift = np.cos(turned) - 2.0 * turned**2, np.sin(turned) + turned
+        return tf / 2.0 * np.array([weights @ (left * pull), weights @ lift]) - (distance, rise)
+
+    found = root(ends, [1.4, 0.05], tol=1e-12)
+    assert found.success
+    return float(found.x[0])
+
+
+@pytest.mark.slow
+def test_a_law_that_newton_finds_has_no_slope_where_costates_vanish(tmp_path: Path):
+    """Thrust along an attitude that costs drag; its scale was zero, and the certificate ended in an error."""
+    far, v, up = symbols_of(CLIMB)
+    motion = made("climbing", CLIMB, ("w",), {far: v, v: cos(w) - 2 * w**2, up: sin(w) + w})
+    problem = Problem(name="climb", title="A climb", model=motion, running_cost=1, control_set="box")
+    text = "[initial]\nfar = 0.0\nv = 0.0\nup = 0.0\n[final]\nfar = 1.0\nup = 0.2\n[time]\ntf = 'free'\n"
+    found = solve(build(tmp_path, problem, f"{text}[control]\nw = [-0.6, 0.6]\n"))
+    assert found.status is Status.CONVERGED
+    assert found.objective == pytest.approx(soonest_by_quadrature(1.0, 0.2, 0.6), rel=1e-6)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate

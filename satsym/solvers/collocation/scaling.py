@@ -74,7 +74,8 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
     with np.errstate(all="ignore"):
         model.canonical_jacobian_batch(times, path, none, instance.parameters, free, out=slopes)
     slopes = np.abs(slopes).max(axis=2)
-    slopes[~(slopes >= NO_SLOPE)] = 0.0  # some laws say nothing of costates that vanish
+    # some laws say nothing of costates that vanish, and there some that Newton finds jump
+    slopes[~((slopes >= NO_SLOPE) & np.isfinite(slopes))] = 0.0
     size = np.abs(path).max(axis=1)
     table = slopes[:n, :n].tolist()
     for j in range(n):

@@ -85,11 +85,11 @@ def segments(solution: Solution) -> Segments | None:
     lasting, unit = float(times[-1] - times[0]), unit_sizes(solution)
     scale = balanced(unit, np.abs(slopes).max(axis=0), lasting)
     turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
-    if turned[-1] > MOST * TURN:
+    if not turned[-1] <= MOST * TURN:
         # What is steep for a moment is not what units are for where there is far more time without it.
         scale = balanced(unit, np.trapezoid(np.abs(slopes), times, axis=0) / lasting, lasting)
         turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
-    if turned[-1] > MOST * TURN:
+    if not turned[-1] <= MOST * TURN:
         return None
     nodes = _nodes(solution, turned)
     steps = max(1, int(np.ceil(np.diff(turned[nodes]).max() / TURN)))
