@@ -482,6 +482,11 @@ def test_the_norm_of_a_set_of_controls_is_drawn_and_listed_with_its_bounds_and_u
     assert "norm of thrust" in solution_text(whole)
 
 
+@pytest.mark.parametrize(("seconds", "written"), [(0.0123, "0.012 s"), (9.96, "10 s"), (162.3, "162 s")])
+def test_seconds_are_written_whole_where_they_are_many(seconds: float, written: str) -> None:
+    assert f", {written})" in solution_text(solution(case(model(2, 1)), wall_s=seconds)).splitlines()[0]
+
+
 def test_bounds_of_a_control_that_rests_are_in_sight() -> None:
     shown = read(quantity(np.zeros(5), lower=0.0, upper=700.0, from_zero=True))
     assert shown.low < 0.0

@@ -197,7 +197,8 @@ def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list
 
 
 def _effort(solution: Solution) -> str:
-    return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, 2)} s"
+    whole = len(f"{solution.wall_s:.0f}")
+    return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, max(2, whole))} s"
 
 
 def _message(status: Status, reason: str) -> list[str]:
