@@ -82,7 +82,7 @@ def test_paths_far_from_the_straight_line_lead_the_other_way_round() -> None:
     assert max(costs) == pytest.approx(STRAIGHT, rel=1e-5)
 
 
-@pytest.mark.slow(in_turn=True)
+@pytest.mark.slow
 def test_what_goes_straight_across_is_not_certified_beside_the_other_way_round() -> None:
     found = satsym.solve(asked((1.0, 0.0, 0.0, 0.0), (0.158323, -1.365052, 0.0, 0.0), 0.860088))
     assert found.objective < ROUND
