@@ -307,7 +307,12 @@ def _regular_law(derivation: Derivation) -> list[Function]:
 
 
 def _law(derivation: Derivation) -> sp.Matrix:
-    """The law as it is stated, control by control, without named parts."""
+    """The law as it is stated, control by control, without named parts; of directions that of the regularised one."""
+    if product.STEP in derivation:
+        problem, every = set_laws.problem_of(derivation), set_laws.found(derivation)
+        pairs = [zip(one.part.symbols, set_laws.continuous_law(problem, one), strict=True) for one in every]
+        laws = {u: law for pair in pairs for u, law in pair}
+        return sp.Matrix([laws[u] for u in symbols_of(derivation.model.controls)])
     return sp.Matrix([derivation.equation(f"control_law.{v.symbol}").rhs for v in derivation.model.controls])
 
 

@@ -185,6 +185,12 @@ def never_below(
     return Check(claim, _largest(deficits), LIMIT)
 
 
+def positive(claim: str, symbols: Iterable[sp.Symbol], expressions: Sequence[sp.Expr]) -> Check:
+    """Check that expressions are positive at random points."""
+    values = numeric(expressions)
+    return never_below(claim, symbols, lambda point, _: [v if v != v or v > 0 else mp.mpf(-1) for v in values(point)])
+
+
 def _largest(values: Iterable[Any]) -> float:
     """The largest of some non-negative numbers; NaN if any of them is, which ``max`` alone may pass over."""
     found = list(values)

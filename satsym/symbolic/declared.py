@@ -232,7 +232,8 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
-    return notation | model.names(problem) | (principle_notation.names(model) if problem else {})
+    notation |= model.names(problem)
+    return notation | (principle_notation.names(model, notation[n.TIME.name]) if problem else {})
 
 
 def _entries(model: Model) -> Iterable[str]:

@@ -21,6 +21,7 @@ from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
 from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls
+from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import boundary, singular
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
@@ -141,7 +142,11 @@ def _derived(model: Model, problem: Problem | None) -> Derivation:
     if problem is not None:
         _refuse_unsolved(problem.name, derivation)
     derivation = _with_quantities(derivation)
-    return _taken(derivation, known, (*OUTPUTS, *_principle(derivation)))[0]
+    principle = _principle(derivation)
+    if problem is not None and principle is SWITCHING_PRINCIPLE:  # whose bounds are in the law
+        names = path_notation.names(problem, with_bounds=False)
+        derivation = replace(derivation, notation={**derivation.notation, **names})
+    return _taken(derivation, known, (*OUTPUTS, *principle))[0]
 
 
 def _moving(

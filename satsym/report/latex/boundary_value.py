@@ -20,6 +20,8 @@ ASIDE = (
     *("mixed_constraints", "mixed_costates"),
 )
 """Steps for stretches on which a path constraint is active."""
+SINGULAR = ("singular_arcs", "generalised_legendre_clebsch")
+"""Steps that say what is known of singular arcs."""
 DEFINING = ("switching_function", "control_parts")
 """Steps that define what control laws are stated in."""
 
@@ -40,10 +42,13 @@ def collected(context: Context) -> Iterator[str]:
     steps = [rf"\ref{{{tex.label(context.address(derivation.step(name)))}}}" for name in ASIDE if name in derivation]
     if steps and _constrained(problem):
         yield said("aside", steps=texts.listed(steps))
+    if arc := _singular(context):
+        yield said("singular", step=arc)
     if "interior_conditions" in derivation:
         passed = derivation.step("interior_conditions")
         address = tex.label(context.address(passed))
-        yield said("interior", step=rf"\ref{{{address}}}") + "\n" + _shown(_passing(context, passed))
+        key = "interior" if len(problem.interior) > 1 else "interior_one"
+        yield said(key, step=rf"\ref{{{address}}}") + "\n" + _shown(_passing(context, passed))
     ends = derivation.step("boundary_conditions")
     states = symbols_of(derivation.model.states)
     yield said("start") + "\n" + _shown(_at(context, ends, "t_0", [s.name for s in states]))
@@ -73,6 +78,15 @@ def _parts(context: Context, law: Step) -> list[Row]:
     within = set[Any]().union(*(e.rhs.free_symbols for e in law.equations))
     steps = [derivation.step(name) for name in DEFINING if name in derivation]
     return [row_of(context, step, e) for step in steps for e in step.equations if e.lhs in within]
+
+
+def _singular(context: Context) -> str:
+    """The step that states controls on singular arcs, where there may be such arcs that are optimal."""
+    derivation = context.derivation
+    found = [step for name in SINGULAR if name in derivation for step in (derivation.step(name),)]
+    keys = [c.key.partition(",")[0] for step in found for c in step.conclusions]
+    stated = keys.count("singular arc") > keys.count("Legendre-Clebsch violated")
+    return rf"\ref{{{tex.label(context.address(found[0]))}}}" if stated else ""
 
 
 def _constrained(problem: Problem) -> bool:

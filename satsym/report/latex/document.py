@@ -11,14 +11,16 @@ from collections.abc import Iterator, Mapping
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
 from satsym.report.latex.references import cited
+from satsym.report.latex.rules import listed_sources, rule
 from satsym.report.latex.statement import statement
-from satsym.report.latex.steps import Context, Shown, conclusion, listed_sources, numbers_of, rule, shown
+from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, shown
 from satsym.report.texts import PHRASES, Texts, load
 from satsym.symbolic import Derivation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import translated
 from satsym.symbolic.notation import TIME
+from satsym.symbolic.principle.path.notation import holds_controls
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
@@ -100,7 +102,8 @@ def _timed(table: Mapping[str, str], letter: str) -> dict[str, str]:
 class _Composer:
     def __init__(self, derivation: Derivation, texts: Texts) -> None:
         self._derivation, self._texts = derivation, texts
-        self._context = Context(derivation, texts, Typesetter(derivation))
+        comma = texts.get("words", "point") != "."
+        self._context = Context(derivation, texts, Typesetter(derivation, comma=comma))
         self._declared = statement(derivation, texts, self._context.typeset)
         self._shown: dict[str, Shown] = {}
         kind = "problem" if derivation.problem else "model"
@@ -109,14 +112,16 @@ class _Composer:
 
     def abstract(self) -> str:
         """What each section does."""
-        places = {key: self._place(key) for key in (*self._sections, "checks")}
-        if (
-            "structure" in places
-            and "controllability" not in self._derivation
-            and "observability" not in self._derivation
-        ):
-            places = {"stability" if key == "structure" else key: place for key, place in places.items()}
+        places = {self._examined(key): self._place(key) for key in (*self._sections, "checks")}
         return " ".join(self._texts.get("abstract", key, section=place) for key, place in places.items())
+
+    def _examined(self, section: str) -> str:
+        """The key of what a section is said to do: that on structure may be about less."""
+        if section == "motion":
+            first = self._derivation.steps[0]
+            return "motion, stated" if (first.name, first.rule) == ("first_order", "given") else section
+        examined = [step for step in ("controllability", "observability") if step in self._derivation]
+        return section if section != "structure" or len(examined) == 2 else "".join(examined) or "stability"
 
     def paragraphs(self) -> list[str]:
         """Everything from the statement to what it leads to."""
@@ -138,13 +143,15 @@ class _Composer:
         return tex.label(f"{self._derivation.name}:section.{section}")
 
     def _section(self, key: str) -> str:
-        return rf"\section{{{self._texts.get('sections', key)}}}\label{{{self._place(key)}}}"
+        heading = key if self._examined(key) != "stability" else "stability"
+        return rf"\section{{{self._texts.get('sections', heading)}}}\label{{{self._place(key)}}}"
 
     def _opening(self, key: str) -> Iterator[str]:
         """The head of a section, and what it builds on."""
         problem = self._derivation.problem
         yield self._section(key)
-        yield self._texts.get("openings", worded(key, problem) if problem else key)
+        opening = "stability" if self._examined(key) == "stability" else key
+        yield self._texts.get("openings", worded(opening, problem) if problem else opening)
 
     def _step(self, step: Step) -> str:
         """Heading, rule, equations, what they come to; the sources are the steps before this one."""
@@ -154,7 +161,17 @@ class _Composer:
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
         said = [conclusion(self._context, c) for c in step.conclusions]
         further = [found for key in (step.name, *step.kinds) if (found := self._texts.find("further", key))]
-        return "\n".join((heading, stated, self._shown[step.name].body, *said, *further))
+        return "\n".join((heading, stated, self._shown[step.name].body, *said, *self._while(step), *further))
+
+    def _while(self, step: Step) -> list[str]:
+        """What is said of a step that leaves path constraints out."""
+        problem = self._derivation.problem
+        if problem is None or not problem.path_constraints:
+            return []
+        if step.name == "control_law" and holds_controls(problem):
+            held = tex.label(f"{self._derivation.name}:mixed_constraints")
+            return [self._texts.get("groups", "held", step=rf"\ref{{{held}}}")]
+        return [self._texts.get("groups", "unconstrained")] if step.name == "least_effort" else []
 
     def _sources(self, step: Step) -> str:
         return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})

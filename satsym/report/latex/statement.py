@@ -20,7 +20,7 @@ from satsym.symbolic.model import Line, Problem, variables_of, with_origins
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path.interior import condition, named
-from satsym.symbolic.principle.path.notation import rate
+from satsym.symbolic.principle.path.notation import holds_controls, rate
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,8 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     whole = Row(_address(derivation, "J"), plain("J"), plain(functional))
     wanted = ("maximise" if problem.maximise else "minimise") + ("" if len(controls) > 1 else "_one")
     task = texts.get("statement", wanted, controls=r",\, ".join(controls))
-    where = texts.get("statement", "where_terminal" if terminal else "where")
+    at_end = "where_terminal" if n.TIME in getattr(problem.terminal_cost, "free_symbols", ()) else "where_end"
+    where = texts.get("statement", at_end if terminal else "where")
     paragraphs = [f"{task}\n{display([whole])}\n{where}\n{display(rows)}"]
     paragraphs += [texts.get("statement", worded("negative", problem))] if problem.maximise else []
     if "first_order" in derivation:
@@ -96,12 +97,15 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
 
 def admissible(problem: Problem, texts: Texts) -> tuple[str, list[str]]:
     """What is said of the control set, and the inequalities that controls obey; none where they are free."""
-    shown = [line for part in parts_of(problem) for line in _limited(part)]
+    parts = parts_of(problem)
+    shown = [line for part in parts for line in _limited(part)]
     if not shown:
-        return texts.get("statement", "free" if len(problem.model.controls) > 1 else "free_one"), []
-    kind: str = PRODUCT if problem.control_sets else problem.control_set
-    kind += "_one" if kind == "box" and len(shown) == 1 else ""
-    return texts.get("statement", kind), shown
+        kind = "free_but" if holds_controls(problem) else "free"
+        return texts.get("statement", kind if len(problem.model.controls) > 1 else f"{kind}_one"), []
+    if len(parts) == 1:
+        kind = "ball" if parts[0].kind == "annulus" else parts[0].kind
+        return texts.get("statement", f"{kind}_one" if kind == "box" and len(shown) == 1 else kind), shown
+    return texts.get("statement", PRODUCT if len(shown) > 1 else f"{PRODUCT}_one"), shown
 
 
 def _limited(part: ControlPart) -> list[str]:
@@ -153,7 +157,7 @@ def conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Ite
         if rows:
             yield texts.get("statement", _one(key, rows)), rows
     if on_the_way:
-        yield texts.get("statement", "interior"), on_the_way
+        yield texts.get("statement", "interior" if len(problem.interior) > 1 else "interior_one"), on_the_way
 
 
 def _one(key: str, rows: Sequence[Row]) -> str:

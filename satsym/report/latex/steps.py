@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from satsym.report.latex import tex
@@ -15,6 +15,7 @@ from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.principle.path.notation import mixed, of_states, rate
+from satsym.symbolic.principle.transversality import on_a_reference
 
 LONGEST = 12
 """Lines of an equation that is shown where a step has several of no other use, at most."""
@@ -62,26 +63,21 @@ def _as_they_stand(context: Context, step: Step) -> Shown:
 
 
 def _by_constraint(context: Context, step: Step) -> Shown:
-    """What holds while each constraint is active apart, where there are several; together where it is the same."""
+    """What holds while each constraint is active apart, where there are several."""
     problem = context.derivation.problem
     names = [*of_states(problem), *mixed(problem)] if problem else []
     groups: dict[str, list[Row]] = {}
     for e in step.equations:
         of = max((name for name in names if e.name == name or e.name.startswith(f"{name}_")), key=len)
         groups.setdefault(of, []).append(row_of(context, step, e))
-    if len(groups) < 2:
+    if len(names) < 2 or (len(groups) < 2 and step.name != "mixed_costates"):  # which only some may have
         return _as_they_stand(context, step)
-    alike: dict[tuple[object, ...], list[str]] = {}
-    for name, rows in groups.items():
-        alike.setdefault(tuple((row.left, row.right) for row in rows), []).append(name)
-    parts, shown = [], []
-    for place, (first, *others) in enumerate(alike.values()):
-        heads = context.texts.listed([f"${context.typeset.tex(rate(name, 0))}$" for name in (first, *others)])
-        last = place and place == len(alike) - 1
-        parts.append(context.texts.get("groups", "constraint_next" if last else "constraint", of=heads))
-        same = [(row, old) for name in others for row, old in zip(groups[name], groups[first], strict=True)]
-        parts += [display(groups[first]), *_also(groups[first], same)]
-        shown += groups[first]
+    parts = []
+    for place, (name, rows) in enumerate(groups.items()):
+        last = place and place == len(groups) - 1
+        of = f"${context.typeset.tex(rate(name, 0))}$"
+        parts += [context.texts.get("groups", "constraint_next" if last else "constraint", of=of), display(rows)]
+    shown = [row for rows in groups.values() for row in rows]
     return Shown("\n".join(parts), shown[0].address, shown[-1].address)
 
 
@@ -138,24 +134,6 @@ def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
     return Row(address, context.typeset.terms(equation.lhs), tuple(context.typeset.by_powers(equation.rhs)))
 
 
-def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
-    """What a step follows from, by name: as an enumeration, after which come the constants that are put in."""
-    listed = texts.listed([text for name, text in named.items() if text and name != "definitions"])
-    constants = named.get("definitions")
-    return texts.get("references", "besides", listed=listed, constants=constants) if constants else listed
-
-
-def rule(context: Context, step: Step, sources: str) -> str:
-    """The sentence by which a step follows: that for free controls or for a single one, where there is such a form."""
-    texts, problem, controls = context.texts, context.derivation.problem, context.derivation.model.controls
-    kinds = texts.listed([texts.get("kinds", kind) for kind in step.kinds])
-    fill = {"sources": sources, "quantities": quantities(context, step), "kinds": kinds}
-    free = problem is None or (problem.control_set == "free" and not problem.control_sets)
-    forms = [form for form, meant in (("free", free), ("one control", len(controls) == 1)) if meant]
-    keys = [f"{step.rule}, {form}" for form in forms if texts.find("rules", f"{step.rule}, {form}")]
-    return texts.get("rules", [*keys, step.rule][0], **fill)
-
-
 def conclusion(context: Context, said: Conclusion) -> str:
     """The sentence of a conclusion, with its expressions filled in; tuples as enumerations."""
     fill = {
@@ -209,7 +187,8 @@ def costate_rows(context: Context, step: Step) -> list[Row]:
 
 def _at_the_end(context: Context, step: Step) -> Shown:
     end = context.typeset.at("t_f")
-    return _display([row_of(context, step, e, typeset=end) for e in step.equations])
+    stated = on_a_reference(context.derivation.model, step.equations)
+    return _display([row_of(context, step, e, typeset=end) for e in stated])
 
 
 def _boundary_conditions(context: Context, step: Step) -> Shown:
@@ -239,15 +218,6 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
         parts.append(texts.get("boundary", "inequalities"))
     rows = [row for group in groups.values() for row in group]
     return Shown("\n".join(parts), rows[0].address, rows[-1].address)
-
-
-def quantities(context: Context, step: Step) -> str:
-    """What the step names, in words where the texts have some: the conserved quantities."""
-    table, found = "conserved", []
-    for e in step.equations:
-        word = context.texts.find(table, e.name) or context.texts.find(table, e.name.partition("_")[0])
-        found.append(f"{word or ''} ${context.typeset.tex(e.lhs)}$".strip())
-    return context.texts.listed(found)
 
 
 def _transfer_functions(context: Context, step: Step) -> Shown:
@@ -288,6 +258,12 @@ def _shorter(context: Context, step: Step) -> Shown:
     return replace(found, body="\n".join([found.body, *_also(shown, before), words]))
 
 
+def _vectors(context: Context, step: Step) -> Shown:
+    """Vectors, of which none is zero as a number is."""
+    rows = [(row_of(context, step, e), context.typeset.is_zero(e.rhs)) for e in step.equations]
+    return _once([replace(row, right=plain(r"\mathbf{0}")) if zero else row for row, zero in rows])
+
+
 LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     **dict.fromkeys(
         (
@@ -296,6 +272,7 @@ LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
         ),
         _by_constraint,
     ),
+    "unit_vectors": _vectors,
     "stationarity": _stationarity,
     "state_equations": _state_equations,
     "costate_equations": _costate_equations,

@@ -13,8 +13,9 @@ from satsym.report.latex import tex
 from satsym.report.latex.checks import checked
 from satsym.report.latex.document import SECTION_FROM, in_language
 from satsym.report.latex.equations import broken
+from satsym.report.latex.rules import listed_sources, rule
 from satsym.report.latex.statement import admissible, conditions
-from satsym.report.latex.steps import Context, conclusion, listed_sources, rule
+from satsym.report.latex.steps import Context, conclusion
 from satsym.report.latex.width import width
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.said import decimal

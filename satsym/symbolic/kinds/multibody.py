@@ -99,7 +99,7 @@ class Multibody(Bodies):
                 lines.append(Line("bodies", rf"\omega_{index}", self.spin(body)[k], f"{body.name}.rate.{k + 1}"))
                 moment = sp.Add(*(inertia[k, j] * w for j, w in enumerate(self.spin(body)) if inertia[k, j] != 0))
                 lines.append(Line("bodies", f"h_{index}", moment, f"{body.name}.momentum.{k + 1}"))
-        return (Paragraph("multibody", lines=tuple(lines)),)
+        return (Paragraph("multibody" if len(self.bodies) > 1 else "multibody_one", lines=tuple(lines)),)
 
     def rest(self, derived: Derivation) -> Rest | None:
         """What turns it where its rates vanish, in direction cosines."""

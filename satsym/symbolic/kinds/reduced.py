@@ -87,7 +87,7 @@ def quantities(so_far: Derivation) -> Step:
     equations = tuple(Equation(symbol.name, symbol, value) for symbol, value in known.items())
     exact = [*resolved(stated).values()]
     check = _same_values(model, [*resolved(equations).values()], [*along.values(), *exact], exact)
-    return Step("quantities", "put in the special case", equations, ("special_case",), (check,))
+    return Step("quantities", "quantities in the special case", equations, ("special_case",), (check,))
 
 
 def _same_values(model: Reduced, found: list[sp.Expr], general: list[sp.Expr], moving: list[sp.Expr]) -> Check:

@@ -16,7 +16,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
-from satsym.symbolic.latex.products import HUNDREDTHS, Product, base, exponent, is_negative, spread, take_apart
+from satsym.symbolic.latex.products import Product, base, decimal, exponent, is_negative, sides, spread, take_apart
 from satsym.symbolic.latex.terms import Piece, Term, joined
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.roots import Root
@@ -52,10 +52,13 @@ class Printer(LatexPrinter):
         Name of a symbol -> its LaTeX.
     ranks
         Name of a symbol -> its kind, and its place in the order of declaration.
+    comma
+        Whether decimal numbers have a comma.
     """
 
-    def __init__(self, notation: Mapping[str, str], ranks: Mapping[str, tuple[Kind, int]]) -> None:
-        super().__init__({"fold_frac_powers": True, "ln_notation": True})
+    def __init__(self, notation: Mapping[str, str], ranks: Mapping[str, tuple[Kind, int]], comma: bool = False) -> None:
+        separator = "comma" if comma else "period"
+        super().__init__({"fold_frac_powers": True, "ln_notation": True, "decimal_separator": separator})
         self._notation, self._ranks = notation, ranks
         self._small = 0  # how many fractions, roots and exponents we are within
 
@@ -236,7 +239,7 @@ class Printer(LatexPrinter):
         with self._inside():
             if power == sp.Rational(1, 2):
                 return rf"\sqrt{{{self._print(root)}}}"
-            exponent_tex = self._print(_decimal(power))
+            exponent_tex = self._print(decimal(power))
         if root.func.__name__ in ELEMENTARY:
             return self._print_Function(root, exponent_tex)
         tex = self._print(root)
@@ -318,8 +321,9 @@ class Printer(LatexPrinter):
         return rf"{self._enclosed(value)}^{{{exp}}}" if exp else value
 
     def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
-        excess, one, other = map(self._print, expr.args)
-        return rf"\begin{{cases}} {one}, & {excess} \le 0 \\ {other}, & {excess} > 0 \end{{cases}}"
+        one, other = map(self._print, expr.args[1:])
+        left, right = map(self._print, sides(expr.args[0]))
+        return rf"\begin{{cases}} {one}, & {left} \le {right} \\ {other}, & {left} > {right} \end{{cases}}"
 
     def _print_Vertex(self, expr: sp.Expr, exp: str | None = None) -> str:
         curvature, slope, lower, upper = expr.args
@@ -383,13 +387,6 @@ def _is_power_of_sum(expression: sp.Expr) -> bool:
     if not (expression.is_Pow and expression.base.is_Add and expression.exp.is_Integer):
         return False
     return bool(expression.exp.is_negative or expression.exp.is_even)
-
-
-def _decimal(number: sp.Expr) -> sp.Expr:
-    """Hundredths and the like as a decimal number."""
-    if isinstance(number, sp.Rational) and number.q in HUNDREDTHS:
-        return sp.Float(str(number.p / number.q))
-    return number
 
 
 def _whole(negative: bool, tex: str) -> Term:

@@ -25,6 +25,21 @@ class Product:
     bottom: tuple[sp.Expr, ...]
 
 
+def decimal(number: sp.Expr) -> sp.Expr:
+    """Hundredths and the like as a decimal number."""
+    if isinstance(number, sp.Rational) and number.q in HUNDREDTHS:
+        return sp.Float(str(number.p / number.q))
+    return number
+
+
+def sides(excess: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """The two sides between which it is a difference; anything else beside zero."""
+    below = [term for term in excess.args if is_negative(term)] if excess.is_Add else []
+    if len(below) != 1 or len(excess.args) != 2:
+        return excess, sp.Integer(0)
+    return excess - below[0], -below[0]
+
+
 def take_apart(expression: sp.Expr) -> Product:
     """Any expression as a product, with minuses and whole numbers drawn out of its sums."""
     number, below = sp.Integer(1), sp.Integer(1)

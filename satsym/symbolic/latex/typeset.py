@@ -40,15 +40,15 @@ class NamedMatrix:
 
 
 class Typesetter:
-    """Prints expressions in the notation of one derivation."""
+    """Prints expressions in the notation of one derivation, with a decimal point or a decimal comma."""
 
-    def __init__(self, derivation: Derivation, time: str = "") -> None:
-        self._derivation = derivation
-        self._printer = Printer(_notation(derivation, time), _ranks(derivation))
+    def __init__(self, derivation: Derivation, time: str = "", comma: bool = False) -> None:
+        self._derivation, self._comma = derivation, comma
+        self._printer = Printer(_notation(derivation, time), _ranks(derivation), comma)
 
     def at(self, time: str) -> Typesetter:
         """A typesetter that writes states, costates and H as functions of ``t_0`` or ``t_f``, which t is."""
-        return Typesetter(self._derivation, time.replace("t", self.symbol(n.TIME.name)))
+        return Typesetter(self._derivation, time.replace("t", self.symbol(n.TIME.name)), self._comma)
 
     def tex(self, expression: Any) -> str:
         """The expression on one line."""

@@ -121,7 +121,7 @@ def minimum_effort(so_far: Derivation) -> Step | None:
         said.append(Conclusion("longer is always cheaper", {"cost": equations[-1].rhs}))
     return Step(
         "least_effort",
-        "steer with least effort",
+        "steer with less of the cost" if "exact_differential" in so_far else "steer with least effort",
         tuple(equations),
         ("first_order", *(("exact_differential",) if "exact_differential" in so_far else ())),
         (proofs, optimal, check),

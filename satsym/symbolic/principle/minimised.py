@@ -20,7 +20,7 @@ from satsym.symbolic.principle.branches import Minimum, norm_of
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.principle.set_checks import ordered
-from satsym.symbolic.principle.set_laws import EXACT, found, problem_of, relaxed, written_out
+from satsym.symbolic.principle.set_laws import found, problem_of, relaxed, written_out
 
 
 def minimised_hamiltonian(so_far: Derivation) -> Step | None:
@@ -54,7 +54,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
     value, at_minimum = numeric([h]), numeric([h_star])
     laws = [so_far.equation(f"control_law.{u.name}").rhs for u in symbols_of(problem.model.controls)]
     wide = _wide(every)
-    chosen = numeric(written_out(so_far, [law.xreplace(EXACT) for law in laws]))
+    chosen = numeric(written_out(so_far, laws))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = {**point, **wide}
@@ -64,7 +64,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
         return at_minimum(here), value({**here, **law})
 
     everything = h.free_symbols.union(h_star.free_symbols, symbols_of(limits_of(problem)), costates(so_far))
-    check = compare("H at the minimiser", everything, sides)
+    check = compare("H at the optimal control", everything, sides)
     name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
     equation = Equation("H_star", n.MINIMISED, h_star)
     bounded = any(one.branch == "quadratic" and one.part.kind != "free" for one in every)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
-from satsym.symbolic.model import Model, Problem
-from satsym.symbolic.notation import named
+from satsym.symbolic.model import Model, Problem, variables_of
+from satsym.symbolic.notation import indexed, named
 from satsym.symbolic.principle import parts
 from satsym.symbolic.principle.parts import Part
 
@@ -25,8 +25,8 @@ peak_of = named("{}_peak")
 """The symbol for the largest magnitude of a control."""
 
 
-def names(model: Model) -> dict[str, str]:
-    """Name -> LaTeX of all of them."""
+def names(model: Model, time: str) -> dict[str, str]:
+    """Name -> LaTeX of all of them, with the letter for time."""
     found = {
         POTENTIAL.name: r"\mathcal{V}",
         REDUCED_COST.name: "L_0",
@@ -35,7 +35,8 @@ def names(model: Model) -> dict[str, str]:
     }
     found |= {f"reduced_lambda_{v.symbol}": rf"\mu_{{{v.latex}}}" for v in model.states}
     for v in model.controls:
-        found |= {f"{v.symbol}_peak": rf"|{v.latex}|_{{\max}}", f"{v.symbol}_answer": rf"{v.latex}(t)"}
+        from_rest = indexed(v.latex, r"{\mathrm{rest}}")
+        found |= {f"{v.symbol}_peak": rf"|{from_rest}|_{{\max}}", f"{v.symbol}_answer": f"{from_rest}({time})"}
     return found
 
 
@@ -51,6 +52,12 @@ MOST_PARTS = 200
 def part_of_law(number: int) -> sp.Symbol:
     """The symbol for a part of laws."""
     return sp.Symbol(f"law_part_{number}", real=True)
+
+
+def letter_of_parts(problem: Problem) -> str:
+    """The letter of these: one that no variable has."""
+    taken = {v.latex.partition("_")[0] for v in variables_of(problem.model)}
+    return next(letter for letter in "qkdgs" if letter not in taken)
 
 
 primer_of = named("primer_{}")
@@ -82,7 +89,7 @@ def product_names(problem: Problem) -> dict[str, str]:
     found = {REGULARISED_H.name: r"H_\varepsilon"}
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
     if problem.control_sets or problem.control_set == "box":
-        found |= {part_of_law(k).name: f"q_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
+        found |= {part_of_law(k).name: f"{letter_of_parts(problem)}_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
     angles = {v.symbol for part in parts.parts_of(problem) if part.kind == "angle" for v in part.controls}
     for v in problem.model.controls:
         found |= {f"slope_by_{v.symbol}": f"H_{{{v.latex}}}", f"primer_{v.symbol}": f"p_{{{v.latex}}}"}

@@ -12,9 +12,9 @@ from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, shortest, simplified, tidy
-from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial
+from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial, positive
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.parts import unsigned
@@ -61,7 +61,7 @@ def stationarity(so_far: Derivation) -> Step:
         (*conditions, *solved),
         ("hamiltonian",),
         (
-            _numeric_gradient(h, controls, h_u),
+            numeric_gradient(h, controls, h_u),
             identity("vanishes there", [g.xreplace(dict(zip(controls, hats, strict=True))) for g in h_u]),
         ),
     )
@@ -83,9 +83,8 @@ def second_derivative(so_far: Derivation) -> Step:
         if i == j or hessian[i, j] != 0
     )
     minors = [(sign(problem) * hessian[:k, :k]).det() for k in range(1, len(controls) + 1)]
-    leading = numeric(minors)
-    positive = never_below(worded("positive minors", problem), h.free_symbols, lambda point, rng: leading(point))
-    if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
+    definite = positive(worded("positive minors", problem), h.free_symbols, minors)
+    if not definite.passed or any(sp.simplify(m).is_positive is False for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu is not {'positive' if sign(problem) > 0 else 'negative'} definite, so H has no "
             f"{problem.convention} in the controls; {unsigned(problem, hessian)}"
@@ -95,7 +94,7 @@ def second_derivative(so_far: Derivation) -> Step:
         worded("second derivative by controls", problem),
         equations,
         ("stationarity",),
-        (_numeric_gradient_of(gradient(h, controls), controls, list(hessian.T)), positive),
+        (_numeric_gradient_of(gradient(h, controls), controls, list(hessian.T)), definite),
     )
 
 
@@ -120,7 +119,8 @@ def control_law(so_far: Derivation) -> Step:
             for other in control_sets.admissible(problem.control_set, point, limits, len(controls), rng, COMPETITORS)
         ]
 
-    claim, rule = (worded(key, problem) for key in ("cheapest admissible", f"project on {problem.control_set}"))
+    competed = "cheapest admissible" if limits else "cheapest of all"
+    claim, rule = (worded(key, problem) for key in (competed, f"project on {problem.control_set}"))
     check = never_below(claim, h.free_symbols | {*limits, *controls}, margins)
     return Step("control_law", rule, equations, ("second_derivative",), (check,))
 
@@ -174,7 +174,7 @@ def costate_equations(so_far: Derivation) -> Step:
         "differentiate H by states",
         equations,
         ("hamiltonian",),
-        (_numeric_gradient(-h, states, rates), identity("H changes only with time", [drift])),
+        (numeric_gradient(-h, states, rates), identity("H changes only with time", [drift])),
     )
 
 
@@ -227,11 +227,12 @@ def _linear_system(
     return rows, load
 
 
-def _numeric_gradient(function: sp.Expr, symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Any:
+def numeric_gradient(function: sp.Expr, symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Check:
+    """Check derivatives of a function by numeric ones."""
     return _numeric_gradient_of([function], symbols, derived)
 
 
-def _numeric_gradient_of(functions: list[sp.Expr], symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Any:
+def _numeric_gradient_of(functions: list[sp.Expr], symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Check:
     """Compare derived partial derivatives (symbol by symbol, then function by function) with numeric ones."""
     values, slopes, by = numeric(functions), numeric(derived), list(symbols)
     everything = set(by).union(*(f.free_symbols for f in functions))

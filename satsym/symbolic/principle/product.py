@@ -26,11 +26,10 @@ from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
 from satsym.symbolic.principle.parts import limits_of, parts_of, weighed
 from satsym.symbolic.principle.path.stationary_controls import refuse_jumping
-from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
+from satsym.symbolic.principle.pontryagin import COMPETITORS, costates, numeric_gradient
 from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
 from satsym.symbolic.principle.set_laws import (
     EPSILON,
-    EXACT,
     FACTOR,
     found,
     law_of,
@@ -96,11 +95,21 @@ def control_parts(so_far: Derivation) -> Step:
             if one.weight != 0:
                 weight = pn.weight_of(one.part.symbols[0])
                 equations.append(Equation(weight.name, weight, one.weight))
-    checks = [adds_up(so_far, h, every)]
+    stationary = [one for one in every if one.branch == "stationary"]
+    checks = [adds_up(so_far, h, every)] if len(stationary) < len(every) else []
+    checks += [numeric_gradient(h, one.part.symbols, list(one.gradient)) for one in stationary]
     checks += [convex(so_far, one) for one in every if one.branch == "quadratic"]
-    rule = worded("set by set" if len(every) > 1 else "one set", problem)
+    together = any(
+        one.turned_by or set().union(*(g.free_symbols for g in one.gradient)) & _others(every, one) for one in every
+    )
+    rule = worded("one set" if len(every) == 1 else "sets together" if together else "set by set", problem)
     kinds = tuple(f"in H, {kind}" for kind in _kinds(every))
     return Step(STEP, rule, tuple(equations), ("hamiltonian",), tuple(checks), kinds=kinds)
+
+
+def _others(every: Sequence[Minimum], one: Minimum) -> set[sp.Symbol]:
+    """The controls of the other sets."""
+    return {u for other in every if other is not one for u in other.part.symbols}
 
 
 def _kinds(every: Sequence[Minimum]) -> tuple[str, ...]:
@@ -120,11 +129,11 @@ def control_law(so_far: Derivation) -> Step:
     problem, every = problem_of(so_far), found(so_far)
     laws = {u: law for one in every for u, law in zip(one.part.symbols, law_of(problem, one), strict=True)}
     controls = symbols_of(problem.model.controls)
-    parts, stated = _in_parts([laws[u] for u in controls])
+    parts, stated = _in_parts(every, [laws[u] for u in controls])
     equations = tuple(Equation(s.name, s, value) for s, value in parts)
     equations += tuple(Equation(u.name, n.optimal(u), law) for u, law in zip(controls, stated, strict=True))
     h = so_far.equation("hamiltonian.H").rhs
-    check = cheapest(so_far, h, written_out(so_far, [laws[u].xreplace(EXACT) for u in controls]))
+    check = cheapest(so_far, h, written_out(so_far, [laws[u] for u in controls]))
     said = tuple(
         Conclusion("no direction where it vanishes", {"slope": sp.Tuple(*pn.slopes_of(one))})
         for one in every
@@ -149,14 +158,15 @@ def control_law(so_far: Derivation) -> Step:
     longer |= {"magnitude": "magnitude within"} if within else {}
     named = (longer.get(kind, kind) for kind in _kinds(every))
     kinds = tuple(worded(f"law, {kind}", problem) for kind in named)
-    limits = [s for s in (EPSILON, FACTOR) if any(e.rhs.has(s) for e in equations)]
-    rule = worded(("minimum of all", "minimum as a limit", "minimum as both limits")[len(limits)], problem)
+    rule = worded("minimum of all", problem)
     return Step("control_law", rule, equations, (STEP,), (check,), said, kinds)
 
 
-def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
+def _in_parts(
+    every: Sequence[Minimum], laws: Sequence[sp.Expr]
+) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
     """Laws that compare minimisers, in named parts that people can read; others as they are."""
-    if not any(law.has(Choice, Vertex, Argmin) for law in laws):
+    if not any(law.has(Choice, Vertex, Argmin) for one in every for law in one.laws):
         return [], list(laws)
     named = (pn.part_of_law(k) for k in range(1, pn.MOST_PARTS + 1))
     compared = [e for law in laws if isinstance(law, Vertex) for e in law.args[:2]]
@@ -180,15 +190,15 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         return None
     short = [component for one in directions for component in pn.components_of(one.part)]
     limited = [v for one in directions for v in one.part.controls]
-    effort = weighed(EPSILON, short, limited)
-    equations = [Equation("H", pn.REGULARISED_H, n.HAMILTONIAN + sign(problem) * effort)]
+    saved = [(1 - FACTOR) * pn.weight_of(one.part.symbols[0]) * _norm(one) for one in directions if one.weight != 0]
+    besides = sign(problem) * weighed(EPSILON, short, limited) - sp.Add(*saved)
+    equations = [Equation("H", pn.REGULARISED_H, n.HAMILTONIAN + besides)]
     for one in directions:
         laws = shortened(problem, one)
         equations += [Equation(c.name, c, law) for c, law in zip(pn.components_of(one.part), laws, strict=True)]
-    h = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])[0]
-    h += sign(problem) * effort
-    norms = {norm_of(one.part): FACTOR * _norm(one) for one in directions}
-    h = h.xreplace(norms)
+    (h,) = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])
+    h = h.xreplace({norm_of(one.part): _norm(one) for one in directions})
+    (h,) = written_out(so_far, [h + besides])
     stationary = [one for one in found(so_far) if one.branch == "stationary"]
     beside = {u: law for one in stationary for u, law in zip(one.part.symbols, one.laws, strict=True)}
     turned = numeric(list(beside.values()))
@@ -221,5 +231,5 @@ def smoothed_law(so_far: Derivation) -> Step | None:
     check = never_below(worded("cheapest admissible", problem), everything, margins)
     kinds = ("squares", *(kind for kind in _kinds(every) if kind in ("angle", "norm")))
     kinds = tuple(f"regularised, {kind}" for kind in kinds)
-    rule = worded("shorter directions", problem)
+    rule = worded("shorter directions and less of norms" if saved else "shorter directions", problem)
     return Step("smoothed_law", rule, tuple(equations), (STEP, "control_law"), (check,), kinds=kinds)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import mpmath as mp
 import sympy as sp
 
-from satsym.symbolic.checks import Point, compare, never_below, numeric
+from satsym.symbolic.checks import Point, compare, never_below, numeric, positive
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.derivation import Check, Derivation, DerivationError
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.branches import Minimum
@@ -26,29 +26,16 @@ TRIES = 60
 """Costates at most that are tried until H has a minimum."""
 
 
-def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
-    """Check that the change of H from some controls to others is the sum of the changes in each set."""
-    value = numeric([h])
-    other = {u: sp.Dummy(f"other_{u.name}", real=True) for one in every for u in one.part.symbols}
-    joint = [one for one in every if one.branch == "stationary" or one.turned_by]
-    changes = [_change(h, {u: other[u] for one in joint for u in one.part.symbols})]
-    for one in every:
-        symbols = one.part.symbols
-        if one in joint:
-            continue
-        if one.part.kind == "angle":
-            (angle,) = symbols
-            moved = [f(other[angle]) - f(angle) for f in (sp.cos, sp.sin)]
-            changes += [s * m for s, m in zip(one.vector, moved, strict=True)]
-        elif one.directed:
-            changes += [s * (other[u] - u) for s, u in zip(one.vector, symbols, strict=True)]
-            before, after = (sp.sqrt(sum(v**2 for v in w)) for w in (symbols, [other[u] for u in symbols]))
-            changes.append(one.weight * (after - before))
-        else:
-            assert one.hessian is not None
-            move = sp.Matrix([other[u] - u for u in symbols])
-            changes += [(sp.Matrix(one.gradient).T * move)[0], (move.T * one.hessian * move)[0] / 2]
-    change = numeric([sum(changes, sp.Integer(0))])
+def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Check:
+    """Check that the change of H from some controls to others is the sum of the changes in each set.
+
+    Controls on which H depends otherwise than linearly, quadratically or as on an angle stay as they are.
+    """
+    turned = {one.turned_by for one in every if one.turned_by}
+    moving = [one for one in every if one.branch != "stationary" or turned & {*one.part.symbols}]
+    other = {u: sp.Dummy(f"other_{u.name}", real=True) for one in moving for u in one.part.symbols}
+    changes = [change for one in every if one.branch != "stationary" for change in _changes(one, other)]
+    value, change = numeric([h]), numeric([sum(changes, sp.Integer(0))])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         there = {**point, **{u: point[v] for u, v in other.items()}}
@@ -57,9 +44,20 @@ def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
     return compare("adds up to H", h.free_symbols.union(other, other.values(), costates(so_far)), sides)
 
 
-def _change(h: sp.Expr, others: dict[sp.Symbol, sp.Symbol]) -> sp.Expr:
-    """By how much H changes with some controls."""
-    return h.xreplace(others) - h if others else sp.Integer(0)
+def _changes(one: Minimum, other: Mapping[sp.Symbol, sp.Symbol]) -> list[sp.Expr]:
+    """By how much H changes with the controls of one set, in parts; with a magnitude what turns it changes as well."""
+    symbols, angle = one.part.symbols, one.turned_by or one.part.symbols[0]
+    if one.turned_by or one.part.kind == "angle":
+        sizes = (symbols[0], other[symbols[0]]) if one.turned_by else (sp.Integer(1), sp.Integer(1))
+        moved = [sizes[1] * f(other[angle]) - sizes[0] * f(angle) for f in (sp.cos, sp.sin)]
+        return [s * m for s, m in zip((*one.vector, one.weight), (*moved, sizes[1] - sizes[0]), strict=True)]
+    if one.directed:
+        before, after = (sp.sqrt(sum(v**2 for v in w)) for w in (symbols, [other[u] for u in symbols]))
+        moved = [*(other[u] - u for u in symbols), after - before]
+        return [s * m for s, m in zip((*one.vector, one.weight), moved, strict=True)]
+    assert one.hessian is not None
+    move = sp.Matrix([other[u] - u for u in symbols])
+    return [(sp.Matrix(one.gradient).T * move)[0], (move.T * one.hessian * move)[0] / 2]
 
 
 def convex(so_far: Derivation, one: Minimum) -> Any:
@@ -67,14 +65,13 @@ def convex(so_far: Derivation, one: Minimum) -> Any:
     problem, h = problem_of(so_far), so_far.equation("hamiltonian.H").rhs
     assert one.hessian is not None
     minors = [(sign(problem) * one.hessian[:k, :k]).det() for k in range(1, one.hessian.rows + 1)]
-    leading = numeric(minors)
-    positive = never_below(worded("positive minors", problem), h.free_symbols, lambda point, rng: leading(point))
-    if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
+    definite = positive(worded("positive minors", problem), h.free_symbols, minors)
+    if not definite.passed or any(sp.simplify(m).is_positive is False for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu of {one.part.name!r} is not definite, so H has no {problem.convention} in these "
             f"controls; {unsigned(problem, one.hessian)}"
         )
-    return positive
+    return definite
 
 
 def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
@@ -101,7 +98,8 @@ def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
         return margin or [mp.nan]
 
     everything = {*limits, *controls, *costates(so_far)} | h.free_symbols.union(*(e.free_symbols for e in laws))
-    return never_below(worded("cheapest admissible", problem), everything, margins)
+    unlimited = all(one.part.kind in ("free", "angle") for one in every)
+    return never_below(worded("cheapest of all" if unlimited else "cheapest admissible", problem), everything, margins)
 
 
 def _decided(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
@@ -11,18 +11,16 @@ from satsym.spec import ControlSetKind
 from satsym.symbolic import notation as n
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.minimisers import Clip, Stretch, Within
+from satsym.symbolic.minimisers import Clip, Stretch, Switch, Within
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, minima, norm_of, with_norms
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, minimum_norm_of, parts_of
+from satsym.symbolic.roots import Choice
 
 EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))
-
-EXACT = {EPSILON: sp.Float(1e-25, 30), FACTOR: sp.Integer(1)}
-"""With which the law of the regularised problem is that of the problem itself."""
 
 
 def found(so_far: Derivation) -> tuple[Minimum, ...]:
@@ -136,16 +134,34 @@ def law_of(problem: Problem, one: Minimum) -> list[sp.Expr]:
     if one.branch == "stationary":
         return list(one.laws)
     if one.directed:
-        if part.kind != "angle":
-            return shortened(problem, one)
-        along, across = (-sign(problem) * s for s in pn.slopes_of(one))
-        return [sp.atan2(across, along)]
+        return _directed(problem, one)
     assert one.hessian is not None
     if part.kind == "annulus":
         control_sets.refuse_unequal(one.hessian)
         factor = Within(sum((u**2 for u in one.hats), sp.Integer(0)), *part.bounds)
         return [factor * u for u in one.hats]
     return control_sets.project(bare(part.kind), one.hats, part.bounds, one.hessian)
+
+
+def _directed(problem: Problem, one: Minimum) -> list[sp.Expr]:
+    """The minimiser of what is linear in a direction, and perhaps in its length."""
+    slopes, ends = pn.slopes_of(one), one.part.bounds
+    if one.part.kind == "angle":
+        along, across = (-sign(problem) * s for s in slopes)
+        return [sp.atan2(across, along)]
+    if one.branch == "switched":
+        return [Switch(sign(problem) * slopes[0], 0, *ends)]
+    ways = [sp.Integer(1)] if one.turned_by else [-sign(problem) * s / _length(slopes) for s in slopes]
+    if one.weight == 0:
+        return [ends[-1] * way for way in ways]
+    excess = _gain(problem, one) - sign(problem) * pn.weight_of(one.part.symbols[0])
+    shortest = sp.Integer(0) if one.part.kind == "ball" else ends[0]
+    return [Choice(excess, shortest * way, ends[-1] * way) for way in ways]
+
+
+def continuous_law(problem: Problem, one: Minimum) -> list[sp.Expr]:
+    """What solvers go by: of directions the law of the regularised problem, which tends to that of the problem."""
+    return shortened(problem, one) if one.directed and one.part.kind != "angle" else law_of(problem, one)
 
 
 def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
@@ -157,7 +173,7 @@ def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
     if one.turned_by:
         return [_size(problem, one)]
     if one.weight != 0:
-        return [-sign(problem) * s / sp.sqrt(square) * _size(problem, one) for s in slopes]
+        return [-sign(problem) * s / _length(slopes) * _size(problem, one) for s in slopes]
     factor = Stretch(square, EPSILON, one.part.bounds[-1])
     return [-sign(problem) * s * factor for s in slopes]
 
@@ -172,6 +188,10 @@ def _gain(problem: Problem, one: Minimum) -> sp.Expr:
     """By how much a norm of one in the best direction makes H better; of an angle between bounds the best of these."""
     slopes = pn.slopes_of(one)
     if one.turned_by is None or one.turned_to is None:
-        return sp.sqrt(sum((s**2 for s in slopes), sp.Integer(0)))
+        return _length(slopes)
     best = n.optimal(one.turned_by)
     return -sign(problem) * (slopes[0] * sp.cos(best) + slopes[1] * sp.sin(best))
+
+
+def _length(vector: Sequence[sp.Expr]) -> sp.Expr:
+    return sp.sqrt(sum((s**2 for s in vector), sp.Integer(0)))

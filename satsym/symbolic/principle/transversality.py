@@ -13,6 +13,7 @@ from __future__ import annotations
 import itertools
 import random
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import mpmath as mp
@@ -23,7 +24,7 @@ from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, numeric
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
-from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.model import Model, symbols_of, t
 
 TIME_VARIATION = sp.Symbol("delta_t", real=True)
 KINDS = ("given", "reference", "free")
@@ -75,6 +76,12 @@ def boundary_residual(so_far: Derivation) -> Step:
         ("boundary_conditions",),
         (_first_variation(states, lam, sign(problem) * weighted, curve, equations),),
     )
+
+
+def on_a_reference(model: Model, equations: Sequence[Equation]) -> list[Equation]:
+    """The same; where the model states no reference, without what holds for states that end on it."""
+    idle = {} if model.reference else {n.on_reference(x): sp.Integer(0) for x in symbols_of(model.states)}
+    return [replace(e, rhs=e.rhs.xreplace(idle)) for e in equations]
 
 
 def _first_variation(

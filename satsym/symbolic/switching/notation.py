@@ -121,7 +121,7 @@ def names(problem: Problem) -> dict[str, str]:
     weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
     found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in REGULARISED}
     found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND.name: r"\Delta", SIDE.name: "s"}
-    found |= {TRANSITION.name: "T", FIRST_ARC.name: "T_1"}
+    found |= {TRANSITION.name: "D", FIRST_ARC.name: "D_1"}
     marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
     for u in controls:
         found[switching_of(u).name], found[weight_of(u).name] = sigma[u], weight[u]

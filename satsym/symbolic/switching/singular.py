@@ -49,9 +49,10 @@ def singular_arcs(so_far: Derivation) -> Step:
             checks.append(_stays(so_far, search))
         conclusions += _conclusions(so_far, search)
     sources = ("switching_function", "switching_rate")
+    appears = any(search.outcome == "order" for search in found)
     return Step(
         "singular_arcs",
-        "differentiate until the control appears",
+        "differentiate until the control appears" if appears else "differentiate at the threshold",
         tuple(equations.values()),
         sources,
         tuple(checks),

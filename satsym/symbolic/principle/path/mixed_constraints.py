@@ -9,6 +9,8 @@ constraint is active at a time.
 from __future__ import annotations
 
 import random
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -16,7 +18,7 @@ import sympy as sp
 from satsym.symbolic.algebra import simplified, tidy, total_derivative
 from satsym.symbolic.checks import Check, Point, identity, never_below, numeric
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.principle.path import notation as pn
@@ -44,7 +46,7 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
     if not (stated := pn.mixed(problem)):
         return None
     if stationary(so_far):
-        return stationary_controls.mixed(so_far, stated, STEP)
+        return replace(stationary_controls.mixed(so_far, stated, STEP), conclusions=remarks(so_far, stated))
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     equations, checks = list[Equation](), []
     slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(sp.simplify)
@@ -68,7 +70,17 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
         checks.append(identity("enters and leaves without a jump", parted))
         checks.append(_cheapest(so_far, found, laws))
     rule = worded("keep what holds a control", problem)
-    return Step(STEP, rule, tuple(equations), ("hamiltonian", "stationarity"), tuple(checks))
+    sources = ("hamiltonian", "stationarity")
+    return Step(STEP, rule, tuple(equations), sources, tuple(checks), remarks(so_far, stated))
+
+
+def remarks(so_far: Derivation, stated: Mapping[str, sp.Expr]) -> tuple[Conclusion, ...]:
+    """Which constraints are bounds of the controls, and which leave the costate equations as they are."""
+    problem, states = problem_of(so_far), symbols_of(so_far.model.states)
+    bounds = [pn.rate(name, 0) for name in stated if name not in problem.path_constraints]
+    still = [pn.rate(name, 0) for name, g in stated.items() if not g.has(*states)]
+    said = (("bound among constraints", "bounds", bounds), ("no state in constraints", "constraints", still))
+    return tuple(Conclusion(key, {place: sp.Tuple(*found)}) for key, place, found in said if found)
 
 
 def mixed_costates(so_far: Derivation) -> Step | None:
@@ -77,7 +89,10 @@ def mixed_costates(so_far: Derivation) -> Step | None:
         return None
     problem, states, lam = problem_of(so_far), symbols_of(so_far.model.states), costates(so_far)
     h, equations, checks, drifts = so_far.equation("hamiltonian.H").rhs, list[Equation](), [], []
-    for found in constraints(so_far):
+    with_states = [found for found in constraints(so_far) if found.rates[0].has(*states)]
+    if not with_states:
+        return None
+    for found in with_states:
         laws, value = _active(so_far, found)
         eta, g = pn.multiplier(found.name), found.rates[0]
         whole = h.xreplace(laws) if laws else h + sign(problem) * eta * g  # in whose controls that is least

@@ -15,10 +15,15 @@ def of_states(problem: Problem) -> dict[str, sp.Expr]:
     return {name: g for name, g in _declared(problem).items() if not _holds_control(problem, g)}
 
 
-def mixed(problem: Problem) -> dict[str, sp.Expr]:
+def mixed(problem: Problem, with_bounds: bool = True) -> dict[str, sp.Expr]:
     """What holds a control; beside path constraints, and points on the way, bounds of a box are among these."""
     found = {name: g for name, g in _declared(problem).items() if _holds_control(problem, g)}
-    return found | {b.name: h for b, h in _bounds(problem).items()}
+    return found | ({b.name: h for b, h in _bounds(problem).items()} if with_bounds else {})
+
+
+def holds_controls(problem: Problem) -> bool:
+    """Whether a path constraint holds a control, besides its bounds."""
+    return any(_holds_control(problem, g) for g in _declared(problem).values())
 
 
 def _declared(problem: Problem) -> dict[str, sp.Expr]:
@@ -90,9 +95,9 @@ def control_rate(name: str, control: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"rate_of_{control.name}_on_{name}", real=True)
 
 
-def names(problem: Problem) -> dict[str, str]:
-    """Name -> LaTeX of all of them."""
-    if not (every := of_states(problem) | mixed(problem)):
+def names(problem: Problem, with_bounds: bool = True) -> dict[str, str]:
+    """Name -> LaTeX of all of them, with numbers where there are several; bounds that the law has are left out."""
+    if not (every := of_states(problem) | mixed(problem, with_bounds)):
         return {}
     found = {change(HAMILTONIAN).name: r"H(t^-) - H(t^+)"}
     for v in problem.model.states:

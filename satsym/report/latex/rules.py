@@ -1,0 +1,78 @@
+"""The sentences by which steps follow, in the form that suits the controls, the constraints and what they build on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
+
+from satsym.report.latex.steps import Context
+from satsym.report.texts import Texts
+from satsym.symbolic import Derivation, Step
+from satsym.symbolic.principle.notation import letter_of_parts
+from satsym.symbolic.principle.parts import parts_of
+from satsym.symbolic.principle.path.notation import entry, holds_controls, of_states
+
+
+def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
+    """What a step follows from, by name: as an enumeration, after which come the constants that are put in."""
+    listed = texts.listed([text for name, text in named.items() if text and name != "definitions"])
+    constants = named.get("definitions")
+    return texts.get("references", "besides", listed=listed, constants=constants) if constants else listed
+
+
+def rule(context: Context, step: Step, sources: str) -> str:
+    """The sentence by which a step follows: that for free controls or for a single one, where there is such a form."""
+    texts = context.texts
+    angle = _angle(context.derivation)
+    part = letter_of_parts(problem) if (problem := context.derivation.problem) else ""
+    kinds = texts.listed([texts.get("kinds", kind, angle=angle, part=part) for kind in step.kinds])
+    fill = {"sources": sources, "quantities": quantities(context, step), "kinds": kinds}
+    fill |= {"control": context.derivation.model.controls[0].latex} if context.derivation.model.controls else {}
+    fill |= _by_order(context, sources)
+    forms = _forms(context.derivation)
+    both = [f"{one}, {other}" for one, other in combinations(forms, 2)]
+    keys = [f"{step.rule}, {form}" for form in (*both, *forms)]
+    return texts.get("rules", next((key for key in keys if texts.find("rules", key)), step.rule), **fill)
+
+
+def _angle(derivation: Derivation) -> str:
+    """The one angle among the control sets, or a letter that stands for each of several."""
+    parts = parts_of(derivation.problem) if derivation.problem else ()
+    found = [v.latex for part in parts if part.kind == "angle" for v in part.controls]
+    return found[0] if len(found) == 1 else r"\beta"
+
+
+def _by_order(context: Context, sources: str) -> dict[str, str]:
+    """What is said of the derivatives of path constraints, which may all be of one order."""
+    if "constraint_order" not in context.derivation:
+        return {}
+    assert context.derivation.problem is not None
+    stated = {e.name for e in context.derivation.step("constraint_order").equations}
+    orders = {1 + (entry(name, 2) in stated) for name in of_states(context.derivation.problem)}
+    form = "" if len(orders) > 1 else f", {('one', 'two')[orders.pop() - 1]}"
+    keys = ("meet", "keep", "multiplier", "jump", "levels")
+    return {key: context.texts.get("orders", f"{key}{form}", sources=sources) for key in keys}
+
+
+def _forms(derivation: Derivation) -> list[str]:
+    """What of the controls a sentence may have a form for."""
+    problem, controls = derivation.problem, derivation.model.controls
+    limited = problem is not None and (problem.control_set != "free" or bool(problem.control_sets))
+    held = problem is not None and holds_controls(problem)
+    forms = {
+        "held": held,
+        "free": not limited and not held,
+        "one control": len(controls) == 1,
+        "no control": not controls,
+        "no reference": not derivation.model.reference,
+    }
+    return [form for form, meant in forms.items() if meant]
+
+
+def quantities(context: Context, step: Step) -> str:
+    """What the step names, in words where the texts have some: the conserved quantities."""
+    table, found = "conserved", []
+    for e in step.equations:
+        word = context.texts.find(table, e.name) or context.texts.find(table, e.name.partition("_")[0])
+        found.append(f"{word or ''} ${context.typeset.tex(e.lhs)}$".strip())
+    return context.texts.listed(found)
