@@ -18,7 +18,7 @@ STATES = (
 CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
 PARAMETERS = (
     Variable("rho0", r"\rho_0", meaning="density of the air at the initial height", default=12400.0, positive=True),
-    Variable("area", "A", meaning="area that drag acts on", default=0.05, positive=True),
+    Variable("area", r"A_{\mathrm{ref}}", meaning="area that drag acts on", default=0.05, positive=True),
     Variable("beta", r"\beta", meaning="how fast density falls with height", default=500.0, positive=True),
     Variable("g0", "g_0", meaning="gravity at the initial height", default=1.0, positive=True),
     Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),

@@ -29,7 +29,7 @@ PARAMETERS = (
     Variable("r_e", "r_e", "ft", "radius of the Earth", 20902900.0, positive=True),
     Variable("rho_0", r"\rho_0", "slug/ft^3", "density at the ground", 0.002378, positive=True),
     Variable("h_r", "h_r", "ft", "scale height", 23800.0, positive=True),
-    Variable("area", "A", "ft^2", "reference area", 2690.0, positive=True),
+    Variable("area", r"A_{\mathrm{ref}}", "ft^2", "reference area", 2690.0, positive=True),
     Variable("m", "m", "slug", "mass", 203000.0 / 32.174, positive=True),
     Variable("a_0", "a_0", meaning="lift without angle of attack", default=-0.20704),
     Variable("a_1", "a_1", "1/deg", "slope of the lift", 0.029244, positive=True),

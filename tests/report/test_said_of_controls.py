@@ -7,6 +7,7 @@ import re
 import pytest
 import sympy as sp
 
+from satsym.report.latex import tex
 from satsym.report.latex.document import render
 from satsym.report.texts import languages
 from satsym.symbolic import Problem
@@ -133,3 +134,14 @@ def test_minors_are_positive_and_not_merely_not_negative() -> None:
     x = sp.Symbol("x", real=True)
     assert positive("positive minors", {x}, [x**2]).passed
     assert not positive("positive minors", {x}, [x**2, x - x]).passed
+
+
+def test_a_large_number_is_written_by_its_powers_of_ten() -> None:
+    assert tex.number(1.4076539e16, "{,}") == r"$1{,}4076539 \times 10^{16}$"
+    assert tex.number(1 / 3) == "$1/3$"
+
+
+def test_shorter_rates_of_coordinates_are_the_same() -> None:
+    assert r"\omega_0 \cos \psi}{\cos \phi}" in step_of("gyrostat", "first_order")
+    claims = {c.claim for c in shipped("gyrostat").step("first_order").checks}
+    assert "solved by elimination in numbers" in claims

@@ -105,7 +105,7 @@ def number(value: float | None, point: str = ".") -> str:
     if value is None:
         return "--"
     ratio = Fraction(value).limit_denominator(LARGEST)
-    if float(ratio) == value and len(f"{value:.12g}") > LARGEST_DIGITS:
+    if float(ratio) == value and ratio.denominator > 1 and len(f"{value:.12g}") > LARGEST_DIGITS:
         return f"${ratio}$"
     digits, _, exponent = f"{value:.12g}".replace(".", point).partition("e")
     if not exponent:

@@ -10,6 +10,7 @@ import sympy as sp
 from sympy.physics.mechanics import KanesMethod, ReferenceFrame, dynamicsymbols
 
 from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import shortest, simplified
 from satsym.symbolic.chain import named_parts, parts_of
 from satsym.symbolic.checks import Point, compare, identity, numeric_along, slopes
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
@@ -114,21 +115,26 @@ def first_order(so_far: Derivation) -> Step:
     rates = dict(zip(model.speeds, solution, strict=True)) | dict(model.coordinates)
     named = {s: sp.sympify(v) for s, v in model.named.items()} if short else {}
     states = symbols_of(model.states)
-    equations = tuple(Equation(s.name, n.rate_of(s), sp.sympify(rates[s]).xreplace(named)) for s in states)
+    written = {s: sp.sympify(rates[s]).xreplace(named) for s in states}
+    turning = {q: written[q] for q in model.coordinates if named}
+    written |= {q: shortest(rate, simplified(rate)) for q, rate in turning.items()}
+    equations = tuple(Equation(s.name, n.rate_of(s), written[s]) for s in states)
     step = Step("first_order", "solve for the rates of the speeds", equations, ("kinematics", "kane"), ())
     with_rates = Derivation(so_far.model, so_far.problem, so_far.notation, (*so_far.steps, step))
     found = [e.rhs for e in equations if e.name not in {q.name for q in model.coordinates}]
     chain = parts_of(with_rates) or tuple(model.named.items())
-    whole = [*found, *mass, *load]
+    whole = [*found, *mass, *load, *(written[q] for q in turning), *turning.values()]
     parts = [(s, e) for s, e in _parts(so_far) if s not in dict(chain)]
     evaluate, symbols = numeric_along((*chain, *parts), whole)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         values = evaluate(point)
-        a, m = values[:size], mp.matrix(size, size)
+        a, m, ends = values[:size], mp.matrix(size, size), len(values) - len(turning)
+        shorter, turned = values[ends - len(turning) : ends], values[ends:]
+        values = values[: ends - len(turning)]
         for k, value in enumerate(values[size : size + size * size]):
             m[k // size, k % size] = value
-        return a, list(mp.lu_solve(m, mp.matrix(values[size + size * size :])))
+        return a + shorter, [*mp.lu_solve(m, mp.matrix(values[size + size * size :])), *turned]
 
     check = compare("solved by elimination in numbers", symbols, sides)
     return Step(step.name, step.rule, step.equations, step.follows_from, (check,))
