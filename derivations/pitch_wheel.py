@@ -12,6 +12,7 @@ from sympy import Matrix, cos, diag, factor, sin, sqrt
 from satsym.symbolic import (
     COMMAND,
     ClosedLoop,
+    Demand,
     Gyrostat,
     Motor,
     Output,
@@ -71,6 +72,7 @@ pitch_wheel = Gyrostat(
     torques={"body": gravity_gradient},
     motors=(Motor(MOTOR_TORQUE, drives="body", against="wheel"),),
     drives={wheel_torque: I_wy * rate_of(wheel_speed)},
+    demands=(Demand(I_y - I_wy, "the wheel has no less inertia than the satellite that it is part of", strict=True),),
     quantities=(
         Output(CURRENT, motor_torque / K_t),
         Output(VOLTAGE, R_a * current + (nominal_speed + wheel_speed) / K_m),

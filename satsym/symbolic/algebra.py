@@ -111,6 +111,11 @@ def vanishes(expression: sp.Expr) -> bool:
     return expression == 0 or (not _differs_from_zero(expression) and bool(simplified(expression) == 0))
 
 
+def divides(expressions: Iterable[sp.Expr], symbol: sp.Symbol) -> bool:
+    """Whether expressions are divided by a symbol, which must not be zero then."""
+    return any(p.base == symbol and p.exp.is_negative for e in expressions for p in e.atoms(sp.Pow))
+
+
 def depends(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
     """Whether an expression changes with any of these symbols, as far as simplifying shows it."""
     return any(not vanishes(sp.diff(expression, s)) for s in expression.free_symbols & set(symbols))

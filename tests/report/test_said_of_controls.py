@@ -145,3 +145,26 @@ def test_shorter_rates_of_coordinates_are_the_same() -> None:
     assert r"\omega_0 \cos \psi}{\cos \phi}" in step_of("gyrostat", "first_order")
     claims = {c.claim for c in shipped("gyrostat").step("first_order").checks}
     assert "solved by elimination in numbers" in claims
+
+
+def test_what_is_divided_by_is_not_zero() -> None:
+    for name, assumed in (("explicit_time", r"$t \ne 0$"), ("pitch_minimum_energy", "$I_y - I_{wy} > 0$")):
+        assert assumed in render(shipped(name)).partition(r"\section{The motion}")[0]
+    assert r"\ne 0" not in render(shipped("saddle"))
+    stated_conditions = render(shipped("gimballed_wheel")).partition("Throughout, ")[2].partition("\n")[0]
+    assert r"$I_{wy} \ge 0$" not in stated_conditions  # as it is positive
+
+
+def test_entries_that_are_named_are_those_of_a_matrix() -> None:
+    assert "The longer entry of $A$ is\n" in render(shipped("goddard"))
+    assert "The longer entries of $A$ are\n" in render(shipped("gyrostat"))
+
+
+def test_a_scaled_quantity_is_defined() -> None:
+    assert "  p &= " in step_of("pitch_scaled_energy", "scales")
+
+
+def test_where_a_length_is_at_its_threshold_the_law_says_that_it_says_nothing() -> None:
+    keys = [c.key for c in shipped("transfer_fuel").step("control_law").conclusions]
+    assert "no length at the threshold" in keys
+    assert "no length at the threshold" not in [c.key for c in shipped("transfer_time").step("control_law").conclusions]

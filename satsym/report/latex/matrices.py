@@ -53,9 +53,10 @@ def with_matrices(
     parts = [display(rows)] if rows else []
     for back, (matrix, _, named) in zip(range(len(shown) - 1, -1, -1), shown, strict=True):
         parts.append(_also(back, address, [e for e in matrix.equations if e not in named.values()]))
-    for _, _, named in shown:
+    for matrix, _, named in shown:
         if named:
-            parts.append(texts.get("groups", "entries"))
+            stated = [e for e in matrix.equations if not typeset.is_zero(e.rhs)]
+            parts.append(entries_are(texts, matrix.prefix, len(named), len(stated)))
             entries = [Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs)) for name, e in named.items()]
             parts.append(display(entries))
             rows += entries
@@ -71,6 +72,12 @@ def with_matrices(
         parts += [display(entries), _also(0, address, zero)]
         rows += entries
     return "\n".join(p for p in parts if p), [row.address for row in rows]
+
+
+def entries_are(texts: Texts, matrix: str, named: int, stated: int) -> str:
+    """What introduces entries of a matrix that it shows by name, of all that are not zero."""
+    key = "entries_all" if 1 < named == stated else "entries_one" if named == 1 else "entries"
+    return texts.get("groups", key, matrix=matrix)
 
 
 def _flat(tex: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from satsym.report.latex import tex
 from satsym.report.latex.equations import LINE, Row, display
-from satsym.report.latex.matrices import is_mirrored, matrix_rows, with_matrices
+from satsym.report.latex.matrices import entries_are, is_mirrored, matrix_rows, with_matrices
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.symbolic import Conclusion, Derivation, Equation, Step
@@ -108,7 +108,10 @@ def _with_whole_matrices(context: Context, step: Step) -> Shown:
         waiting += rows
         shown += rows
         if entries:
-            parts += [display(waiting), context.texts.get("groups", "entries"), display(entries)]
+            stated = sum(not context.typeset.is_zero(cell) for cell in e.rhs)
+            head = context.typeset.tex(e.lhs)
+            said = entries_are(context.texts, head.partition(" = ")[0], len(entries), stated)
+            parts += [display(waiting), said, display(entries)]
             waiting = []
         elif len(rows) > 1 and not is_mirrored(e.rhs):
             words = context.texts.get("groups", "nonzero_of", matrix=context.typeset.tex(e.lhs))

@@ -120,6 +120,7 @@ def scales(so_far: Derivation) -> Step:
         *(Equation(new.name, new, sp.sympify(old)) for new, old in model.scaled.items()),
         *(Equation(symbol.name, symbol, sp.sympify(value)) for symbol, value in special.items()),
         *(Equation(symbol.name, symbol, sp.sympify(value)) for symbol, value in model.groups.items()),
+        *(Equation(o.variable.symbol, symbols_of((o.variable,))[0], sp.sympify(o.value)) for o in model.quantities),
     ]
     olds = [*symbols_of(model.of.states), *symbols_of(model.of.controls)]
     multiples = [old - sum(sp.diff(old, x) * x for x in olds) for old in map(sp.sympify, model.scaled.values())]

@@ -144,15 +144,21 @@ def control_law(so_far: Derivation) -> Step:
         for one in every
         if one.branch == "switched"
     )
+    said += tuple(
+        Conclusion("no length at the threshold", {"weight": sign(problem) * pn.weight_of(one.part.symbols[0])})
+        for one in every
+        if one.branch == "throttled" and not one.turned_by
+    )
     turned = {one.part.symbols[0]: one.turned_by for one in every if one.turned_by}
     within = {one.part.symbols[0] for one in every if one.turned_to}
     said += tuple(
         Conclusion(f"magnitude that is turned{' within bounds' if u in within else ''}", {"size": u, "angle": angle})
         for u, angle in turned.items()
     )
-    others = (one for one in every if not {*one.part.symbols} & {*turned.values()})
+    others = [one for one in every if not {*one.part.symbols} & {*turned.values()}]
     if any(not law.has(Vertex) for one in others for law in one.laws):
-        said += (Conclusion("neither linear nor quadratic", {}),)
+        bounded = any(one.part.kind == "box" for one in others if one.laws)
+        said += (Conclusion(f"neither linear nor quadratic{'' if bounded else ', unbounded'}", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
     longer = {"stationary": "parts"} if parts else {}
     longer |= {"magnitude": "magnitude within"} if within else {}
