@@ -111,9 +111,11 @@ def vanishes(expression: sp.Expr) -> bool:
     return expression == 0 or (not _differs_from_zero(expression) and bool(simplified(expression) == 0))
 
 
-def divides(expressions: Iterable[sp.Expr], symbol: sp.Symbol) -> bool:
-    """Whether expressions are divided by a symbol, which must not be zero then."""
-    return any(p.base == symbol and p.exp.is_negative for e in expressions for p in e.atoms(sp.Pow))
+def divisors_in_time(model: Model, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """What expressions are divided by that time alone moves, and that must never be zero."""
+    powers = {p for e in expressions for p in e.atoms(sp.Pow) if p.exp.is_negative and p.base.has(t)}
+    moving = {*symbols_of(model.states), *symbols_of(model.controls)}
+    return sorted({p.base for p in powers if not p.base.free_symbols & moving}, key=sp.default_sort_key)
 
 
 def depends(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:

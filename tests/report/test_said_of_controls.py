@@ -125,6 +125,11 @@ def test_one_thing_has_one_symbol_and_two_have_two() -> None:
     assert r"\dot{\mathbf{e}}_{x} &= \mathbf{0}" in step_of("two_body", "unit_vectors")
 
 
+def test_the_second_derivative_by_one_control_is_a_number() -> None:
+    assert r"\frac{\partial^2 H}{\partial {u}^2} = " in step_of("beam", "second_derivative")
+    assert r"H_{\mathbf{uu}}" in step_of("polar_orbit", "second_derivative")
+
+
 def test_one_body_is_no_plural() -> None:
     assert "A rigid body turns" in render(shipped("gyrostat"))
     assert "Rigid bodies turn" in render(shipped("gimballed_wheel"))
@@ -148,7 +153,11 @@ def test_shorter_rates_of_coordinates_are_the_same() -> None:
 
 
 def test_what_is_divided_by_is_not_zero() -> None:
-    for name, assumed in (("explicit_time", r"$t \ne 0$"), ("pitch_minimum_energy", "$I_y - I_{wy} > 0$")):
+    for name, assumed in (
+        ("explicit_time", r"$t \ne 0$"),
+        ("transfer_time", r" \ne 0$"),
+        ("pitch_minimum_energy", "$I_y - I_{wy} > 0$"),
+    ):
         assert assumed in render(shipped(name)).partition(r"\section{The motion}")[0]
     assert r"\ne 0" not in render(shipped("saddle"))
     stated_conditions = render(shipped("gimballed_wheel")).partition("Throughout, ")[2].partition("\n")[0]

@@ -49,7 +49,8 @@ def with_matrices(
             listed.append(matrix)
         else:
             shown.append((matrix, written, named))
-    rows = [Row(f"{address}.{m.prefix}", plain(DEFINED.get(m.prefix, m.prefix)), plain(w)) for m, w, _ in shown]
+    stands = _defined([v.latex for v in derivation.model.controls])
+    rows = [Row(f"{address}.{m.prefix}", plain(stands.get(m.prefix, m.prefix)), plain(w)) for m, w, _ in shown]
     parts = [display(rows)] if rows else []
     for back, (matrix, _, named) in zip(range(len(shown) - 1, -1, -1), shown, strict=True):
         parts.append(_also(back, address, [e for e in matrix.equations if e not in named.values()]))
@@ -61,8 +62,8 @@ def with_matrices(
             parts.append(display(entries))
             rows += entries
     for place, matrix in enumerate(listed):
-        stands = DEFINED.get(matrix.prefix, matrix.prefix)
-        parts.append(texts.get("groups", "nonzero_next" if place or shown else "nonzero", matrix=_flat(stands)))
+        name = _flat(stands.get(matrix.prefix, matrix.prefix))
+        parts.append(texts.get("groups", "nonzero_next" if place or shown else "nonzero", matrix=name))
         entries = [
             Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs))
             for name, e in _places(matrix, matrix.prefix)
@@ -72,6 +73,13 @@ def with_matrices(
         parts += [display(entries), _also(0, address, zero)]
         rows += entries
     return "\n".join(p for p in parts if p), [row.address for row in rows]
+
+
+def _defined(controls: Sequence[str]) -> dict[str, str]:
+    """What matrices stand for; by a single control H has no matrix of second derivatives."""
+    if len(controls) != 1:
+        return DEFINED
+    return {**DEFINED, "H": rf"\frac{{\partial^2 H}}{{\partial {{{controls[0]}}}^2}}"}
 
 
 def entries_are(texts: Texts, matrix: str, named: int, stated: int) -> str:

@@ -13,7 +13,7 @@ from satsym.report.texts import Texts
 from satsym.spec import PRODUCT, Variable
 from satsym.symbolic import Derivation
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import divides
+from satsym.symbolic.algebra import divisors_in_time
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
@@ -204,7 +204,7 @@ def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     more = [d for d in model.demanded() if not d.margin.is_positive]  # as symbols are that were declared so
     demanded = [f"${typeset.tex(d.margin)} {relations[d.strict]} 0$" for d in more]
     rates = derivation.rhs("first_order") if "first_order" in derivation else []
-    timed = [rf"${typeset.symbol(n.TIME.name)} \ne 0$"] if divides(rates, n.TIME) else []
+    timed = [f"${typeset.tex(d)} \\ne 0$" for d in divisors_in_time(model, rates)]
     conditions = [*([f"${positive} > 0$"] if positive else []), *demanded, *timed]
     return Part((texts.get("statement", "assumed", conditions=texts.listed(conditions)),) if conditions else ())
 

@@ -321,7 +321,7 @@ class Printer(LatexPrinter):
         return rf"{self._enclosed(value)}^{{{exp}}}" if exp else value
 
     def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
-        one, other = map(self._print, expr.args[1:])
+        one, other = (self._print(value).replace(r"\frac", r"\dfrac") for value in expr.args[1:])
         left, right = map(self._print, sides(expr.args[0]))
         return rf"\begin{{cases}} {one}, & {left} \le {right} \\ {other}, & {left} > {right} \end{{cases}}"
 
