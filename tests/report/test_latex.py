@@ -247,6 +247,15 @@ def test_no_page_of_the_table_has_one_quantity_of_a_group_alone() -> None:
     ends = [[re.search(r"\\\\(\*?)$", line)[1] for line in lines] for lines in groups]
     assert ends[0] == ["*", "*", "", "*", ""]
     assert all(each == ["*", ""] for each in ends if len(each) == 2)
+    rows = [end for group in ends for end in group]
+    assert rows[-4:] == ["*", "*", "*", ""]
+
+
+def test_what_leads_to_something_is_not_the_last_line_of_a_page() -> None:
+    text = render(shared.shipped("polar_orbit"))
+    assert re.search(r"\n\\satsymroom\{\d+\}\nThe quantities are as follows", text)
+    assert "step by step:\\nopagebreak\n" in text
+    assert r"\begin{thebibliography}{9}\samepage" in text
 
 
 def test_works_are_listed_in_the_order_in_which_they_are_cited() -> None:
@@ -288,6 +297,14 @@ def test_what_people_write_is_escaped() -> None:
     assert tex.escape("--- – “x”") == r"-{}-{}- \textendash{} ``x''"
 
 
+def test_names_of_axes_and_variables_within_words_are_set_as_in_formulas() -> None:
+    notation = {"xi": r"\xi", "l": r"\ell"}
+    assert tex.worded("rate of xi", notation) == r"rate of~$\xi$"
+    assert tex.worded("sumbu x benda (l, x)", notation) == r"sumbu~$x$ benda~($\ell$, $x$)".replace(", $", ",~$")
+    assert tex.worded("a pole at -E, well-known", {}) == r"a pole at~$-E$, well-known"
+    assert tex.worded("I, a_b and the body's mass 1", {}) == tex.escape("I, a_b and the body's mass") + "~1"
+
+
 def test_units_and_numbers_are_set_as_people_write_them() -> None:
     assert tex.unit("km**3/s**2") == r"$\mathrm{km^{3}/s^{2}}$"
     assert tex.unit("kg*m^2") == r"$\mathrm{kg\,m^{2}}$"
@@ -296,12 +313,13 @@ def test_units_and_numbers_are_set_as_people_write_them() -> None:
     assert tex.number(1 / 9) == "$1/9$"
     assert tex.unit("1") == tex.number(None) == "--"
     assert tex.unit("50 $ per _") == r"\texttt{50 \$ per \_}"
-    assert [tex.number(x) for x in (1.0, -0.25, 398600.4418, 1e-15, 2.5e20)] == [
+    assert [tex.number(x) for x in (1.0, -0.25, 398600.4418, 1e-15, 2.5e20, 14076539e9)] == [
         "$1$",
         "$-0.25$",
         "$398600.4418$",
         "$10^{-15}$",
         r"$2.5 \times 10^{20}$",
+        r"$1.4076539 \times 10^{16}$",
     ]
 
 

@@ -8,11 +8,12 @@ import pytest
 import sympy as sp
 
 from satsym.report.latex.document import render
-from satsym.report.latex.equations import APART, NEAR, array
+from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Row, array, display
 from satsym.report.latex.references import cited
 from satsym.report.texts import languages, load
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.rewriting import readable
+from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle.path import notation as path_notation
 from tests.support.derived import each, shipped
@@ -130,10 +131,13 @@ def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas(
     assert r"\mathrm{rest}" not in text
 
 
-@pytest.mark.parametrize(("entry", "between"), [("1", r" \\ "), (r"\tfrac{1}{2}", NEAR), (r"\frac{1}{x}", APART)])
-def test_rows_of_a_matrix_stand_apart_as_its_fractions_need(entry: str, between: str) -> None:
-    assert between in array([["0", entry], ["0", "0"]])
-    assert (r"\vskip" in array([["0", entry], ["0", "0"]])) == (entry != "1")
+@pytest.mark.parametrize(
+    ("entry", "one", "both"), [("1", CLOSE, CLOSE), (r"\tfrac{1}{2}", NEAR, APART), (r"\frac{1}{x}", APART, FAR)]
+)
+def test_rows_of_a_matrix_stand_apart_as_the_fractions_in_both_need(entry: str, one: str, both: str) -> None:
+    rows = [["0", "0"], ["0", "0"], ["0", entry], [entry, "0"]]
+    between = re.findall(r" \\\\ (?:\\noalign\{.*?\} )?", array(rows))
+    assert between == [CLOSE, one, both]
 
 
 def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() -> None:
@@ -165,8 +169,8 @@ def test_of_several_path_constraints_each_has_its_own_equations() -> None:
     steps = ("constraint_order", "boundary_control", "constraint_multiplier", "constrained_costates")
     for step in (*steps, "junction_conditions"):
         part = text.partition(rf"\satsymstep{{approach_cone:{step}}}")[2].partition(r"\satsymstep")[0]
-        assert part.count(r"for $\Gamma_{1}$") == part.count(r"for $\Gamma_{2}$") == 1
-    assert r"for $\Gamma" not in render(shipped("beam"))
+        assert part.count(r"for~$\Gamma_{1}$") == part.count(r"for~$\Gamma_{2}$") == 1
+    assert r"for~$\Gamma" not in render(shipped("beam"))
 
 
 def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
@@ -221,3 +225,22 @@ def test_bodies_in_space_are_named_in_the_language_of_the_document() -> None:
     assert r"\omega_{\mathrm{roda}, y}" in text
     assert r"\mathrm{modus\ x}" in text
     assert not re.search(r"\\mathrm\{(?:body|wheel|mode)\b", text)
+
+
+def test_a_matrix_of_one_row_is_a_list() -> None:
+    assert array([["0", r"i \omega", "1"]]) == r"\left(0,\; i \omega,\; 1\right)"
+    assert array([["a"]]) == "a"
+
+
+@pytest.mark.parametrize("name", ["catalyst", "beam", "two_body"])
+def test_no_fraction_parts_the_lines_of_a_sentence(name: str) -> None:
+    for language in languages():
+        text = re.sub(r"(?s)\\begin\{(align|equation)\*?\}.*?\\end\{\1", "", render(shipped(name), language))
+        assert re.findall(r"[^$]*\$[^$]*\\frac[^$]*\$", text) == []
+
+
+def test_of_a_long_equation_no_page_has_one_line_alone() -> None:
+    term = plain("x" * 40)
+    text = display([Row("long", plain("y"), term * 6)])
+    lines = text.split(r"\\")
+    assert [r"\displaybreak" in line for line in lines] == [False, True, True, True, False, False]

@@ -22,6 +22,7 @@ def listed(derivation: Derivation, texts: Texts) -> str:
     common = [c for c in steps[0].checks if all(c.claim in {other.claim for other in s.checks} for s in steps)]
     paragraphs = [texts.get("methods", "all", **_measures(texts, LIMIT))]
     paragraphs += [texts.get("methods", "common", claim=_brief(texts, check)) for check in common]
+    paragraphs[-1] += r"\nopagebreak"
     said = {check.claim for check in common}
     items = [
         rf"\satsymchecked{{{tex.label(f'{derivation.name}:{s.name}')}}}{{{found}}}"

@@ -71,7 +71,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     if not standalone:
         return f"{source}% Needs the packages {preamble.PACKAGES}.\n{macros}\n{body}\n\n{works}\n\n{end}\n"
     own = texts.phrase(derivation.title)
-    title = tex.escape(own)
+    title = tex.worded(own, derivation.notation)
     head = (
         f"\\begin{{center}}\n  \\satsymtitle{{{title}}}\n  \\vspace{{1ex}}{tex.name(derivation.name)}\n"
         f"\\end{{center}}\n\\begin{{abstract}}\n{composer.abstract()}\n\\end{{abstract}}"

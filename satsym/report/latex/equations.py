@@ -15,10 +15,11 @@ LINE = 35.0
 INDENT = 1.0
 """What a continued line is moved in by, in em; twice that within parentheses."""
 
-APART = r" \\ \noalign{\vskip 5pt} "
-"""Between rows of a matrix with fractions."""
-NEAR = r" \\ \noalign{\vskip 2pt} "
-"""Between rows of a matrix with small fractions, which touch each other otherwise."""
+CLOSE, NEAR, APART, FAR = (r" \\ " + (rf"\noalign{{\vskip {gap}pt}} " if gap else "") for gap in (0, 2, 5, 10))
+"""Between rows of a matrix: both without fractions, one with, both with; and where fractions are small, one step less.
+
+What stands below the line of one fraction is not to be read as part of the one in the next row.
+"""
 TALL = 4
 """Lines of one equation that are kept on one page, at most."""
 TOGETHER = 3
@@ -56,14 +57,24 @@ class Row:
 
 
 def array(cells: Sequence[Sequence[str]]) -> str:
-    """A matrix; one entry alone stands without parentheses."""
-    if len(cells) == len(cells[0]) == 1:
-        return cells[0][0]
+    """A matrix; one row has commas, and one entry alone stands without parentheses."""
+    if len(cells) == 1:
+        listed = r",\; ".join(cells[0])
+        return listed if len(cells[0]) == 1 else rf"\left({listed}\right)"
     rows = [" & ".join(row) for row in cells]
-    written = "".join(rows)
-    between = APART if r"\frac" in written else NEAR if r"\tfrac" in written else r" \\ "
-    body = between.join(rows).replace(r"\frac", r"\dfrac")
-    return rf"\left(\begin{{array}}{{@{{}}{'c' * len(cells[0])}@{{}}}} {body} \end{{array}}\right)"
+    body = rows[0] + "".join(_between(above, below) + below for above, below in pairwise(rows))
+    body = body.replace(r"\frac", r"\dfrac")
+    return rf"\left(\begin{{array}}{{@{{\,}}{'c' * len(cells[0])}@{{\,}}}} {body} \end{{array}}\right)"
+
+
+def _between(above: str, below: str) -> str:
+    """What parts two rows of a matrix."""
+    for fraction, both, one in ((r"\frac", FAR, APART), (r"\tfrac", APART, NEAR)):
+        if fraction in above and fraction in below:
+            return both
+        if fraction in above + below:
+            return one
+    return CLOSE
 
 
 def display(rows: Sequence[Row]) -> str:
@@ -124,14 +135,22 @@ def _block(rows: list[Row]) -> str:
     lines = []
     for row in rows:
         right = broken(row.right, room)
-        between = r" \notag \displaybreak[2] \\" if len(right) > TALL else r" \\"
-        body = f"{row.left_tex} &= " + f"{between}\n  &".join(right) + (f" {row.end}" if row.end else "")
+        body = f"{row.left_tex} &= {_on_lines(right)}" + (f" {row.end}" if row.end else "")
         if 1 < len(right) <= TALL:
             body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"
         elif len(rows) == len(right) == 1:
             body = body.replace(" &= ", " = ", 1)
         lines.append(f"{body} {row.tag}")
     return _environment(("align" if len(rows) > 1 or len(right) > TALL else "equation") + star, lines)
+
+
+def _on_lines(lines: Sequence[str]) -> str:
+    """One side of an equation; where it has more lines than are kept together, a page takes a few of them at least."""
+    if len(lines) <= TALL:
+        return " \\\\\n  &".join(lines)
+    apart = (FEWEST <= k <= len(lines) - FEWEST for k in range(1, len(lines)))
+    ends = [r" \notag \displaybreak[2] \\" if here else r" \notag \\" for here in apart]
+    return lines[0] + "".join(f"{end}\n  &{line}" for end, line in zip(ends, lines[1:], strict=True))
 
 
 def _both_sides_broken(row: Row) -> str:

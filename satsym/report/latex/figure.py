@@ -14,6 +14,9 @@ from satsym.symbolic.motion.picture import Arrow, Picture, Place
 SIZE = 2.6
 """Distance of the body from the centre, in cm."""
 
+CLEAR = "fill=white,inner sep=1pt,outer sep=3pt"
+"""A name that covers the lines below it."""
+
 _WORD = re.compile(r"\\text\{([^}]*)\}")
 
 
@@ -53,7 +56,9 @@ def _space(shown: Picture) -> Iterator[str]:
     beside = "above left" if shown.guides else "below right"
     for arrow in others:
         start, end = _at(arrow.start, scale), _at(arrow.end, scale)
-        yield rf"\draw[->,thick] {start} -- {end} node[{_side(arrow, beside)}] {_names(arrow)}"
+        yield rf"\draw[->,thick] {start} -- {end}"
+    for arrow in others:  # after all lines, none of which crosses a name
+        yield rf"\node[{_side(arrow, beside)},{CLEAR}] at {_at(arrow.end, scale)} {_names(arrow)}"
     yield rf"\fill (0,0) circle (1.5pt) {_at(first.end, scale)} circle (2pt)"
 
 

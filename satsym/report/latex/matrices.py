@@ -104,7 +104,7 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
     first, *rest = [
-        Row(f"{address}.{i}.{j}", plain(_indexed(name, i, j)), typeset.terms(matrix[i, j]))
+        Row(f"{address}.{i}.{j}", plain(_indexed(name, i, j, matrix)), typeset.terms(matrix[i, j]))
         for i in range(matrix.rows)
         for j in range(matrix.cols)
         if not typeset.is_zero(matrix[i, j]) and not (mirrored and j < i)
@@ -120,11 +120,11 @@ def is_mirrored(matrix: Any) -> bool:
     return all((a == 0) == (b == 0) for a, b in pairs) and bool(matrix.is_symmetric())
 
 
-def _indexed(name: str, i: int, j: int) -> str:
+def _indexed(name: str, i: int, j: int, matrix: Any) -> str:
     """An entry of what the name stands for; zero stays zero."""
     head = name.partition(" = ")[0]
     letter = head if _LETTER.fullmatch(head) else f"({head})"
-    return name if name == "0" else rf"{letter}_{{{i + 1},{j + 1}}}"
+    return name if name == "0" else _place(letter, i, j, matrix.shape)
 
 
 def fitted(
@@ -136,7 +136,7 @@ def fitted(
     widths = {(i, j): width(cell) for i, row in enumerate(cells) for j, cell in enumerate(row)}
     for limit in sorted(set(widths.values()), reverse=True):
         long = [(i, j) for (i, j), w in widths.items() if w >= limit and cells[i][j] != "0"]
-        named = {_place(letter, i, j, cells): (i, j) for i, j in long}
+        named = {_place(letter, i, j, (len(cells), len(cells[0]))): (i, j) for i, j in long}
         names = {place: name for name, place in named.items()}
         short = [[names.get((i, j), cell) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
         if _total(short) <= room:
@@ -155,16 +155,16 @@ def _written(matrix: NamedMatrix, typeset: Typesetter) -> tuple[str | None, dict
     return array(short), {name: e for name, e in entries.items() if e is not None}
 
 
-def _place(letter: str, i: int, j: int, cells: Sequence[Sequence[Any]]) -> str:
-    """The letter with indices that stand for an entry."""
-    comma = "," if max(len(cells), len(cells[0])) > 9 else ""
+def _place(letter: str, i: int, j: int, shape: tuple[int, int]) -> str:
+    """The letter with indices that stand for an entry of a matrix of this shape."""
+    comma = "," if max(shape) > 9 else ""
     return f"{letter}_{{{i + 1}{comma}{j + 1}}}"
 
 
 def _places(matrix: NamedMatrix, letter: str) -> list[tuple[str, Equation]]:
     """Entries with the letter and indices that stand for them."""
     return [
-        (_place(letter, i, j, matrix.entries), entry)
+        (_place(letter, i, j, (len(matrix.entries), len(matrix.entries[0]))), entry)
         for i, row in enumerate(matrix.entries)
         for j, entry in enumerate(row)
         if entry is not None

@@ -29,6 +29,7 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \setlength{\emergencystretch}{5em}\tolerance=2000 \hbadness=3000
 \AtBeginDocument{\abovedisplayshortskip=6pt plus 3pt}
 \widowpenalty=10000 \clubpenalty=10000 \displaywidowpenalty=10000
+\relpenalty=10000 \binoppenalty=5000 % a formula within a sentence stays on its line
 """
 
 UNHYPHENATED = r"""% the hyphenation patterns that every TeX has are for English
@@ -56,7 +57,10 @@ MACROS = r"""\makeatletter
   \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup\vskip\skip@}
 % {title}: on lines of like lengths
 \def\satsymtitle#1{{\leftskip=0pt plus 0.3\linewidth \rightskip=\leftskip \parfillskip=0pt \hbadness=10000
-  \LARGE #1\par}}
+  \LARGE \spaceskip=\fontdimen2\font\relax #1\par}}
+% {lines}: a new page unless there is room for as many on this one
+\def\satsymroom#1{\par\penalty-100\begingroup\dimen@\pagegoal\advance\dimen@-\pagetotal
+  \ifdim#1\baselineskip>\dimen@\ifdim\dimen@>\z@\vfil\fi\break\fi\endgroup}
 % keeps a list on one page
 \def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
 \makeatother

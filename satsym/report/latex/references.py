@@ -40,5 +40,5 @@ def cited(body: str, name: str, texts: Texts) -> tuple[str, str]:
         return rf"\cite{{{','.join(f'{name}:{key}' for key in sorted(found[1].split(','), key=keys.index))}}}"
 
     own = _CITED.sub(here, body)
-    listed = "\n".join([r"\begin{thebibliography}{9}", *items, r"\end{thebibliography}"])
+    listed = "\n".join([r"\begin{thebibliography}{9}\samepage", *items, r"\end{thebibliography}"])
     return own, listed if items else ""

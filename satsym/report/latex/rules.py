@@ -74,5 +74,5 @@ def quantities(context: Context, step: Step) -> str:
     table, found = "conserved", []
     for e in step.equations:
         word = context.texts.find(table, e.name) or context.texts.find(table, e.name.partition("_")[0])
-        found.append(f"{word or ''} ${context.typeset.tex(e.lhs)}$".strip())
+        found.append(f"{word or ''} ${context.typeset.inline(e.lhs)}$".strip())
     return context.texts.listed(found)

@@ -23,6 +23,11 @@ from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path.interior import condition, named
 from satsym.symbolic.principle.path.notation import holds_controls, rate
 
+HEAD = 9
+"""Lines at the foot of a page that are not too few for the table of quantities to begin on."""
+TAIL = 4
+"""Rows of that table, at least, that its last page has."""
+
 
 @dataclass(frozen=True)
 class Part:
@@ -182,7 +187,8 @@ def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
         "original": model.replaced_states(),
     }
     groups["others"] = _others(derivation, groups)
-    return Part((texts.get("statement", "quantities"), _table(groups, texts)))
+    words = f"\\satsymroom{{{HEAD}}}\n{texts.get('statement', 'quantities')}"
+    return Part((words, _table(groups, texts, derivation.notation)))
 
 
 def _others(derivation: Derivation, groups: Mapping[str, Sequence[Variable]]) -> tuple[Variable, ...]:
@@ -202,16 +208,20 @@ def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     positive = r",\, \allowbreak ".join(v.latex for v in declared if v.positive)
     relations = (r"\ge", ">")
     more = [d for d in model.demanded() if not d.margin.is_positive]  # as symbols are that were declared so
-    demanded = [f"${typeset.tex(d.margin)} {relations[d.strict]} 0$" for d in more]
+    demanded = [f"${typeset.inline(d.margin)} {relations[d.strict]} 0$" for d in more]
     rates = derivation.rhs("first_order") if "first_order" in derivation else []
     timed = [f"${typeset.tex(d)} \\ne 0$" for d in divisors_in_time(model, rates)]
     conditions = [*([f"${positive} > 0$"] if positive else []), *demanded, *timed]
     return Part((texts.get("statement", "assumed", conditions=texts.listed(conditions)),) if conditions else ())
 
 
-def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
-    """All quantities in one table that may run over several pages, none of which has one of a group alone."""
+def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts, notation: Mapping[str, str]) -> str:
+    """All quantities in one table that may run over several pages, none of which has one of a group alone.
+
+    The last page of several has more than a row or two.
+    """
     point = texts.get("words", "point")
+    left = sum(map(len, groups.values()))
     heads = [texts.get("words", key) for key in ("symbol", "name", "unit", "default", "meaning")]
     lines = [r"\toprule", " & ".join(heads) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot"]
     for place, (group, variables) in enumerate(groups.items()):
@@ -224,9 +234,11 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
                 tex.name(v.symbol),
                 tex.unit(v.unit),
                 tex.number(v.default, point),
-                tex.escape(texts.phrase(v.meaning)),
+                tex.worded(texts.phrase(v.meaning), notation),
             )
-            together = "*" if k < len(variables) - 1 and k in (0, len(variables) - 2) else ""
+            left -= 1
+            alone = k < len(variables) - 1 and k in (0, len(variables) - 2)
+            together = "*" if alone or 0 < left < TAIL else ""
             lines.append(f"{' & '.join(cells)} \\\\{together}")
     body = "\n".join(lines)
     columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.42\linewidth}@{}"
@@ -285,7 +297,10 @@ def _outputs(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
         )
         for k, o in enumerate(model.outputs, 1)
     ]
-    return Part((f"{texts.get('statement', key)}\n{display(rows)}",), {"outputs": (rows[0].address, rows[-1].address)})
+    return Part(
+        (f"{texts.get('statement', _one(key, rows))}\n{display(rows)}",),
+        {"outputs": (rows[0].address, rows[-1].address)},
+    )
 
 
 def _vector(name: str, components: Sequence[tuple[Term, ...]]) -> list[Row]:

@@ -75,7 +75,7 @@ def _by_constraint(context: Context, step: Step) -> Shown:
     parts = []
     for place, (name, rows) in enumerate(groups.items()):
         last = place and place == len(groups) - 1
-        of = f"${context.typeset.tex(rate(name, 0))}$"
+        of = f"${context.typeset.inline(rate(name, 0))}$"
         parts += [context.texts.get("groups", "constraint_next" if last else "constraint", of=of), display(rows)]
     shown = [row for rows in groups.values() for row in rows]
     return Shown("\n".join(parts), shown[0].address, shown[-1].address)
@@ -114,7 +114,9 @@ def _with_whole_matrices(context: Context, step: Step) -> Shown:
             parts += [display(waiting), said, display(entries)]
             waiting = []
         elif len(rows) > 1 and not is_mirrored(e.rhs):
-            words = context.texts.get("groups", "nonzero_of", matrix=context.typeset.tex(e.lhs))
+            first = not parts and waiting == rows
+            key = "nonzero_first" if first else "nonzero_of"  # the sentence of the rule goes on
+            words = context.texts.get("groups", key, matrix=context.typeset.tex(e.lhs))
             parts += [display(waiting[: -len(rows)])] if waiting[: -len(rows)] else []
             parts += [words, display(rows)]
             waiting = []

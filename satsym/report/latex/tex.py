@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Mapping
 from fractions import Fraction
 
 from satsym.formula.writing import GREEK
@@ -47,6 +48,11 @@ LARGEST, LARGEST_DIGITS = 100, 12
 """Denominator of a fraction as which a number is written that has more digits than these, at most."""
 GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
+_NAME = re.compile(
+    r"(?P<space>^| )(?P<before>\(?)(?P<sign>\\ensuremath\{-\})?"
+    r"(?P<name>[B-HJ-Zb-z]|[a-z]{2,}|[0-9]+)(?=[,;:.)]*(?: |$))"
+)
+"""A word of escaped text that may be the name of something, or a number; a and I are words."""
 _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
 
 
@@ -55,6 +61,27 @@ def escape(text: str) -> str:
     escaped = "".join(map(_character, unicodedata.normalize("NFC", " ".join(text.split()))))
     # hyphens stay hyphens: TeX would join them to a dash; before a name or number alone they are signs
     return re.sub(r"(?<=\s)-(?=\w)", r"\\ensuremath{-}", re.sub("-(?=-)", "-{}", escaped))
+
+
+def worded(text: str, notation: Mapping[str, str]) -> str:
+    """What people say of quantities: names of axes and variables as in formulas; with numbers, not parted from a word.
+
+    Parameters
+    ----------
+    notation
+        Name of a symbol -> its LaTeX; a name that is no single letter and not Greek is a word like any other.
+    """
+
+    def shown(found: re.Match[str]) -> str:
+        name, start = found["name"], f"{'~' if found['space'] else ''}{found['before']}"
+        if name.isdigit():
+            return f"{start}{found['sign'] or ''}{name}"
+        if len(name) > 1 and name not in GREEK:
+            return found[0]
+        letter = notation.get(name, rf"\{name}" if name in GREEK else name)
+        return f"{start}${'-' if found['sign'] else ''}{letter}$"
+
+    return _NAME.sub(shown, escape(text))
 
 
 def bookmark(text: str) -> str:

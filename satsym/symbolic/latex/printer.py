@@ -16,8 +16,19 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
-from satsym.symbolic.latex.products import Product, base, decimal, exponent, is_negative, sides, spread, take_apart
-from satsym.symbolic.latex.terms import Piece, Term, joined
+from satsym.symbolic.latex.products import (
+    Product,
+    base,
+    decimal,
+    exponent,
+    is_negative,
+    is_power_of_sum,
+    sides,
+    spread,
+    take_apart,
+    with_plus_first,
+)
+from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.roots import Root
 
@@ -67,11 +78,16 @@ class Printer(LatexPrinter):
         known = self._notation.get(name)
         return rf"\mathrm{{{_escaped(name)}}}" if known is None else known
 
+    def slashed(self, expression: Any) -> str:
+        """What stands within a sentence, whose lines are too low for fractions."""
+        with self._inside():
+            return self.doprint(expression)
+
     # sums
 
     def normalised(self, expression: sp.Expr) -> sp.Expr:
         """With the first term of a sum below a fraction line, or squared, positive, where it has whole powers."""
-        return expression.replace(_is_power_of_sum, self._turned)
+        return expression.replace(is_power_of_sum, self._turned)
 
     def _turned(self, power: sp.Expr) -> sp.Expr:
         root, exponent = power.as_base_exp()
@@ -85,7 +101,7 @@ class Printer(LatexPrinter):
         parts = (part for summand in sp.Add.make_args(expression) for part in sp.Add.make_args(spread(summand)))
         summands = sorted(parts, key=self._summand_order)
         if plus_first:
-            summands = _plus_first(summands)
+            summands = with_plus_first(summands)
         return [self._term(s) if len(rest) == 0 else self._halves([s, *rest]) for s, *rest in self._alike(summands)]
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
@@ -137,7 +153,7 @@ class Printer(LatexPrinter):
     def _term(self, expression: sp.Expr) -> Term:
         parts = take_apart(expression)
         if not parts.top and not parts.bottom:
-            return _whole(parts.negative, self._fraction_of_numbers(parts))
+            return whole_term(parts.negative, self._fraction_of_numbers(parts))
         negative, top = parts.negative, sorted(parts.top, key=self._factor_order)
         sums = [f for f in top if f.is_Add]
         last = Kind.FUNCTION if sums and not parts.bottom else Kind.DIRECTION
@@ -149,7 +165,7 @@ class Printer(LatexPrinter):
         plain = [f for f in others if f not in functions]
         whole = f"{self._over(parts, [*plain, *sums, *functions])} {tail}".strip()
         if len(sums) != 1 or small_fraction:
-            return _whole(negative, whole)
+            return whole_term(negative, whole)
         (inner,) = sums
         broken = self._with_sum(negative, self._over(parts, others, alone=False), inner, tail)
         if others and any(base(f).is_Add for f in parts.bottom):
@@ -255,6 +271,10 @@ class Printer(LatexPrinter):
         tex = self._print(argument)
         power = f"^{{{exp}}}" if exp else ""
         return rf"\{'ln' if name == 'log' else name}{power} {tex if argument.is_Symbol else self._enclosed(tex)}"
+
+    def _print_ExpBase(self, expr: sp.Expr, exp: str | None = None) -> str:
+        with self._inside():
+            return super()._print_ExpBase(expr, exp)
 
     def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._print_Function(expr, exp)
@@ -371,26 +391,6 @@ class Printer(LatexPrinter):
         self._small += 1
         yield
         self._small -= 1
-
-
-def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """In another order if the first has a minus: a number goes to the end, else the first with a plus to the front."""
-    first, *rest = summands
-    plus = next((s for s in rest if not is_negative(s)), None)
-    if plus is None or not is_negative(first):
-        return list(summands)
-    return [*_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
-
-
-def _is_power_of_sum(expression: sp.Expr) -> bool:
-    """Whether the sign of a sum in it may be turned."""
-    if not (expression.is_Pow and expression.base.is_Add and expression.exp.is_Integer):
-        return False
-    return bool(expression.exp.is_negative or expression.exp.is_even)
-
-
-def _whole(negative: bool, tex: str) -> Term:
-    return Term(negative, tex, (Piece(tex),))
 
 
 def _escaped(name: str) -> str:

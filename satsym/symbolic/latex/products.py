@@ -126,6 +126,22 @@ def is_negative(summand: sp.Expr) -> bool:
     return take_apart(summand).negative
 
 
+def is_power_of_sum(expression: sp.Expr) -> bool:
+    """Whether the sign of a sum in it may be turned."""
+    if not (expression.is_Pow and expression.base.is_Add and expression.exp.is_Integer):
+        return False
+    return bool(expression.exp.is_negative or expression.exp.is_even)
+
+
+def with_plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """In another order if the first has a minus: a number goes to the end, else the first with a plus to the front."""
+    first, *rest = summands
+    plus = next((s for s in rest if not is_negative(s)), None)
+    if plus is None or not is_negative(first):
+        return list(summands)
+    return [*with_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
+
+
 def base(factor: sp.Expr) -> sp.Expr:
     """The base of a power, or the factor itself."""
     return factor.base if factor.is_Pow else factor

@@ -35,9 +35,14 @@ class Term:
         return (Piece(_signed(self.negative, head.tex, first), head.depth), *rest)
 
 
+def whole_term(negative: bool, tex: str) -> Term:
+    """A term that is never broken."""
+    return Term(negative, tex, (Piece(tex),))
+
+
 def plain(tex: str) -> tuple[Term, ...]:
     """A sum of one term that is never broken."""
-    return (Term(False, tex, (Piece(tex),)),)
+    return (whole_term(False, tex),)
 
 
 def joined(terms: Sequence[Term]) -> str:

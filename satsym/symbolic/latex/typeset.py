@@ -54,9 +54,13 @@ class Typesetter:
         """The expression on one line."""
         return self._printer.doprint(self._readable(expression))
 
+    def inline(self, expression: Any) -> str:
+        """The expression as it stands within a sentence: no fraction parts its lines."""
+        return self._printer.slashed(self._readable(expression))
+
     def items(self, value: Any) -> list[str]:
-        """An expression, or each one of a tuple of them."""
-        return [self.tex(item) for item in (value.args if isinstance(value, sp.Tuple) else (value,))]
+        """An expression, or each one of a tuple of them, as they stand within a sentence."""
+        return [self.inline(item) for item in (value.args if isinstance(value, sp.Tuple) else (value,))]
 
     def terms(self, expression: Any, *, plus_first: bool = True) -> tuple[Term, ...]:
         """The expression as a sum of signed terms.
