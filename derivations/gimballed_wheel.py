@@ -24,9 +24,9 @@ ATTITUDE = (
     Variable("theta", r"\theta", "rad", "pitch angle, about y, the last of the three", kind="angle"),
 )
 RATES = (
-    Variable("w_x", r"\omega_x", "rad/s", "angular velocity in space along the body's x"),
-    Variable("w_y", r"\omega_y", "rad/s", "angular velocity in space along the body's y"),
-    Variable("w_z", r"\omega_z", "rad/s", "angular velocity in space along the body's z"),
+    Variable("w_x", r"\omega_x", "rad/s", "inertial angular velocity about the body's x"),
+    Variable("w_y", r"\omega_y", "rad/s", "inertial angular velocity about the body's y"),
+    Variable("w_z", r"\omega_z", "rad/s", "inertial angular velocity about the body's z"),
 )
 PITCH = ("theta", "w_y", "eta_y", "eta_y_dot", "wheel_speed")
 GIMBALS = (
@@ -34,11 +34,11 @@ GIMBALS = (
     Variable("g_z", r"\gamma_z", "rad", "angle of the outer gimbal, about z"),
 )
 GIMBAL_RATES = (
-    Variable("g_x_dot", r"\dot\gamma_x", "rad/s", "rate of the inner gimbal"),
-    Variable("g_z_dot", r"\dot\gamma_z", "rad/s", "rate of the outer gimbal"),
+    Variable("g_x_dot", r"\dot\gamma_x", "rad/s", "angular velocity of the inner gimbal"),
+    Variable("g_z_dot", r"\dot\gamma_z", "rad/s", "angular velocity of the outer gimbal"),
 )
 MODES = tuple(Variable(f"eta_{a}", rf"\eta_{a}", "rad", f"deflection of the mode about {a}") for a in "xyz")
-MODE_RATES = tuple(Variable(f"eta_{a}_dot", rf"\dot\eta_{a}", "rad/s", f"rate of the mode about {a}") for a in "xyz")
+MODE_RATES = tuple(Variable(f"eta_{a}_dot", rf"\dot\eta_{a}", "rad/s", f"rate of deflection about {a}") for a in "xyz")
 SPEED = (Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel's speed from its nominal one"),)
 CONTROLS = (
     Variable("T_cx", "T_{cx}", "N*m", "torque of the actuator on the inner gimbal"),
@@ -56,7 +56,7 @@ BODY = (
     Variable("w0", r"\omega_0", "rad/s", "angular velocity in the orbit", 7.26e-5, positive=True),
 )
 WHEEL = (
-    Variable("I_wx", "I_{wx}", "kg*m**2", "moment of inertia of the wheel across its axis", 0.05, positive=True),
+    Variable("I_wx", "I_{wx}", "kg*m**2", "transverse moment of inertia of the wheel", 0.05, positive=True),
     Variable("I_wy", "I_{wy}", "kg*m**2", "moment of inertia of the wheel about its axis", 0.09, positive=True),
     Variable("nominal_speed", r"\Omega_n", "rad/s", "nominal speed of the wheel", 104.71976, positive=True),
     Variable("K_x", "K_x", "N*m/rad", "stiffness of the spring on the inner gimbal", 0.9, positive=True),
@@ -237,10 +237,10 @@ gimballed_wheel = model(
     demands(),
 )
 
-h = Variable("h", "h", "N*m*s", "momentum of the wheel relative to the body, about -y", 9.4247784)
+h = Variable("h", "h", "N*m*s", "angular momentum of the wheel relative to the body, along -y", 9.4247784)
 gyrostat = model(
     "gyrostat",
-    "Satellite with a constant momentum of its wheel about -y, in a circular orbit",
+    "Satellite with a constant momentum of its wheel along -y, in a circular orbit",
     (),
     (),
     TORQUES,
@@ -332,8 +332,8 @@ TRANSLATIONS = {
         "Roll and yaw of a satellite with a gimballed wheel and flexible modes, linearised about rest": (
             "Guling dan geleng satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
         ),
-        "Satellite with a constant momentum of its wheel about -y, in a circular orbit": (
-            "Satelit dengan momentum roda yang konstan terhadap sumbu -y, pada orbit lingkaran"
+        "Satellite with a constant momentum of its wheel along -y, in a circular orbit": (
+            "Satelit dengan momentum roda yang konstan sepanjang sumbu -y, pada orbit lingkaran"
         ),
         "Gyrostat that points to the Earth, linearised about rest": (
             "Girostat yang mengarah ke Bumi, linearisasi di sekitar keadaan diam"
@@ -352,33 +352,33 @@ TRANSLATIONS = {
         "deflection of the mode about x": "lendutan modus terhadap sumbu x",
         "deflection of the mode about y": "lendutan modus terhadap sumbu y",
         "deflection of the mode about z": "lendutan modus terhadap sumbu z",
-        "angular velocity in space along the body's x": "kecepatan sudut di ruang sepanjang sumbu x benda",
-        "angular velocity in space along the body's y": "kecepatan sudut di ruang sepanjang sumbu y benda",
-        "angular velocity in space along the body's z": "kecepatan sudut di ruang sepanjang sumbu z benda",
-        "rate of the inner gimbal": "laju gimbal dalam",
-        "rate of the outer gimbal": "laju gimbal luar",
-        "rate of the mode about x": "laju modus terhadap sumbu x",
-        "rate of the mode about y": "laju modus terhadap sumbu y",
-        "rate of the mode about z": "laju modus terhadap sumbu z",
-        "rate of the roll angle": "laju sudut guling",
-        "rate of the yaw angle": "laju sudut geleng",
-        "rate of the pitch angle": "laju sudut angguk",
-        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan roda dari kecepatan nominalnya",
+        "inertial angular velocity about the body's x": "kecepatan sudut inersial pada sumbu x benda",
+        "inertial angular velocity about the body's y": "kecepatan sudut inersial pada sumbu y benda",
+        "inertial angular velocity about the body's z": "kecepatan sudut inersial pada sumbu z benda",
+        "angular velocity of the inner gimbal": "kecepatan sudut gimbal dalam",
+        "angular velocity of the outer gimbal": "kecepatan sudut gimbal luar",
+        "rate of deflection about x": "laju lendutan modus terhadap sumbu x",
+        "rate of deflection about y": "laju lendutan modus terhadap sumbu y",
+        "rate of deflection about z": "laju lendutan modus terhadap sumbu z",
+        "rate of the roll angle": "laju perubahan sudut guling",
+        "rate of the yaw angle": "laju perubahan sudut geleng",
+        "rate of the pitch angle": "laju perubahan sudut angguk",
+        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan sudut roda dari nominalnya",
         "torque of the actuator on the inner gimbal": "torsi aktuator pada gimbal dalam",
         "torque of the actuator on the outer gimbal": "torsi aktuator pada gimbal luar",
         "torque of the motor between wheel and inner gimbal": "torsi motor antara roda dan gimbal dalam",
         "torque on the body in roll": "torsi guling pada benda",
         "torque on the body in yaw": "torsi geleng pada benda",
-        "momentum of the wheel relative to the body, about -y": (
-            "momentum roda relatif terhadap benda, terhadap sumbu -y"
+        "angular momentum of the wheel relative to the body, along -y": (
+            "momentum sudut roda relatif terhadap benda, sepanjang sumbu -y"
         ),
         "moment of inertia of the satellite in roll": "momen inersia guling satelit",
         "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
         "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
-        "moment of inertia of the wheel across its axis": "momen inersia roda melintang terhadap sumbunya",
+        "transverse moment of inertia of the wheel": "momen inersia melintang roda",
         "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
         "angular velocity in the orbit": "kecepatan sudut orbit",
-        "nominal speed of the wheel": "kecepatan nominal roda",
+        "nominal speed of the wheel": "kecepatan sudut nominal roda",
         "stiffness of the spring on the inner gimbal": "kekakuan pegas pada gimbal dalam",
         "stiffness of the spring on the outer gimbal": "kekakuan pegas pada gimbal luar",
         "damping on the inner gimbal": "redaman pada gimbal dalam",

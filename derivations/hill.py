@@ -8,7 +8,7 @@ from sympy import Matrix, cos, sin, sqrt
 
 from satsym.symbolic import Definition, Linearised, Newton, Output, Variable, symbols_of, t
 
-WAYS = ("outwards", "ahead", "along the normal")
+WAYS = ("outwards", "along the track", "along the normal of the orbit")
 ORIGINAL = tuple(Variable(q, q, "km", f"position {way}") for q, way in zip("xyz", WAYS, strict=True))
 ORIGINAL += tuple(Variable(f"{q.symbol}_dot", rf"\dot {q.latex}", "km/s", f"rate of {q.symbol}") for q in ORIGINAL)
 STATES = tuple(
@@ -66,20 +66,22 @@ TRANSLATIONS = {
             "Persamaan Hill: gerak di dekat orbit lingkaran, di dalam dan di luar bidangnya"
         ),
         "position outwards": "posisi ke arah luar",
-        "position ahead": "posisi ke arah depan",
-        "position along the normal": "posisi sepanjang normal",
+        "position along the track": "posisi ke arah depan",
+        "position along the normal of the orbit": "posisi sepanjang normal bidang orbit",
         "rate of x": "laju perubahan x",
         "rate of y": "laju perubahan y",
         "rate of z": "laju perubahan z",
         "deviation outwards": "simpangan ke arah luar",
-        "deviation ahead": "simpangan ke arah depan",
-        "deviation along the normal": "simpangan sepanjang normal",
+        "deviation along the track": "simpangan ke arah depan",
+        "deviation along the normal of the orbit": "simpangan sepanjang normal bidang orbit",
         "rate of xi": "laju perubahan xi",
         "rate of eta": "laju perubahan eta",
         "rate of zeta": "laju perubahan zeta",
         "thrust per unit mass outwards": "gaya dorong per satuan massa ke arah luar",
-        "thrust per unit mass ahead": "gaya dorong per satuan massa ke arah depan",
-        "thrust per unit mass along the normal": "gaya dorong per satuan massa sepanjang normal",
+        "thrust per unit mass along the track": "gaya dorong per satuan massa ke arah depan",
+        "thrust per unit mass along the normal of the orbit": (
+            "gaya dorong per satuan massa sepanjang normal bidang orbit"
+        ),
         "distance from the plane of the reference orbit": "jarak dari bidang orbit acuan",
         "radius of the reference orbit": "jari-jari orbit acuan",
         "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",

@@ -90,7 +90,7 @@ K1, K2 = symbols_of(GAINS)
 
 pitch_classical = ClosedLoop(
     name="pitch_classical",
-    title="Pitch axis under a proportional and differential law, critically damped",
+    title="Pitch axis under a proportional-derivative law, critically damped",
     of=replace(pitch_wheel, parameters=PARAMETERS, motors=pitch_wheel.motors, quantities=()),
     states=STATES,
     controls=(),
@@ -108,7 +108,7 @@ SCALED_POWER = Variable("scaled_power", "p", "1", "power in units of what heats 
 C_P = Variable("C_p", "C_p", "1", "weight of the wheel's power against the heat", 0.1)
 SCALED_STATES = (
     Variable("X1", "X_1", "1", "pitch angle"),
-    Variable("X2", "X_2", "1", "its rate, in units of time that go with the maximum torque"),
+    Variable("X2", "X_2", "1", "rate of the pitch angle, in a unit of time set by the maximum torque"),
 )
 SCALED_CONTROLS = (Variable("U", "U", "1", "torque of the wheel, relative to its maximum"),)
 X1, X2 = symbols_of(SCALED_STATES)
@@ -192,8 +192,8 @@ TRANSLATIONS = {
         "body": "benda",
         "wheel": "roda",
         "Pitch axis of a satellite with a reaction wheel": "Sumbu angguk satelit dengan roda reaksi",
-        "Pitch axis under a proportional and differential law, critically damped": (
-            "Sumbu angguk dengan hukum proporsional-diferensial, teredam kritis"
+        "Pitch axis under a proportional-derivative law, critically damped": (
+            "Sumbu angguk dengan hukum proporsional-derivatif, teredam kritis"
         ),
         "Pitch axis of a symmetric satellite, nondimensional": "Sumbu angguk satelit simetris, tak berdimensi",
         "Pitch axis of a symmetric satellite with the power of its motor, nondimensional": (
@@ -207,17 +207,17 @@ TRANSLATIONS = {
         "Pitch manoeuvre of minimum energy, nondimensional": "Manuver angguk dengan energi minimum, tak berdimensi",
         "Pitch manoeuvre in minimum time, nondimensional": "Manuver angguk dengan waktu minimum, tak berdimensi",
         "pitch angle from the local vertical": "sudut angguk dari vertikal setempat",
-        "rate of the pitch angle": "laju sudut angguk",
-        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan roda dari kecepatan nominalnya",
+        "rate of the pitch angle": "laju perubahan sudut angguk",
+        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan sudut roda dari nominalnya",
         "inertia of the wheel times its acceleration relative to the body": (
-            "inersia roda kali percepatannya relatif terhadap benda"
+            "momen inersia roda kali percepatan sudutnya relatif terhadap benda"
         ),
         "moment of inertia of the satellite in roll": "momen inersia guling satelit",
         "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
         "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
         "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
         "angular velocity in the orbit": "kecepatan sudut orbit",
-        "nominal speed of the wheel": "kecepatan nominal roda",
+        "nominal speed of the wheel": "kecepatan sudut nominal roda",
         "resistance of the armature": "hambatan jangkar",
         "torque constant": "konstanta torsi",
         "speed constant": "konstanta kecepatan",
@@ -227,7 +227,7 @@ TRANSLATIONS = {
         "electrical power of the motor": "daya listrik motor",
         "damping: the double pole lies at -E": "redaman: kutub ganda terletak di -E",
         "pitch angle that is commanded at time 0": "sudut angguk yang diperintahkan pada waktu 0",
-        "gain of the rate": "penguatan laju",
+        "gain of the rate": "penguatan laju perubahan sudut",
         "gain of the angle": "penguatan sudut",
         "maximum torque of the wheel": "torsi maksimum roda",
         "power in units of what heats the motor at the maximum torque": (
@@ -235,8 +235,8 @@ TRANSLATIONS = {
         ),
         "weight of the wheel's power against the heat": "bobot daya roda terhadap panas",
         "pitch angle": "sudut angguk",
-        "its rate, in units of time that go with the maximum torque": (
-            "lajunya, dalam satuan waktu menurut torsi maksimum"
+        "rate of the pitch angle, in a unit of time set by the maximum torque": (
+            "laju perubahan sudut angguk, dengan satuan waktu yang ditentukan oleh torsi maksimum"
         ),
         "torque of the wheel, relative to its maximum": "torsi roda, relatif terhadap maksimumnya",
     },

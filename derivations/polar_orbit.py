@@ -30,6 +30,7 @@ PARAMETERS = (
     Variable("k3", "k_3", "km**2/s**3", "terminal weight of the angle", 0.0),
     Variable("k4", "k_4", "km**2/s", "terminal weight of the angular velocity", 0.0),
 )
+ONE_WEIGHT = {"c1": replace(PARAMETERS[2], meaning="weight of the thrust")}
 TIME_WEIGHT = Variable("c0", "c_0", "km**2/s**4", "weight of time", 0.0)
 r, r_dot, theta, theta_dot = symbols_of(STATES)
 u1, u2 = symbols_of(CONTROLS)
@@ -81,7 +82,7 @@ polar_orbit_ball = Problem(
     name="polar_orbit_ball",
     title="Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates",
     # One engine pointed anywhere in the plane: its thrust is limited in norm and has one weight.
-    model=replace(orbit, parameters=tuple(v for v in PARAMETERS if v.symbol != "c2")),
+    model=replace(orbit, parameters=tuple(ONE_WEIGHT.get(v.symbol, v) for v in PARAMETERS if v.symbol != "c2")),
     running_cost=c1 * (u1**2 + u2**2) / 2,
     terminal_cost=MISS,
     control_set="ball",
@@ -109,6 +110,7 @@ TRANSLATIONS = {
         "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",
         "weight of the radial thrust": "bobot gaya dorong radial",
         "weight of the tangential thrust": "bobot gaya dorong tangensial",
+        "weight of the thrust": "bobot gaya dorong",
         "terminal weight of the distance": "bobot akhir jarak",
         "terminal weight of the radial velocity": "bobot akhir kecepatan radial",
         "terminal weight of the angle": "bobot akhir sudut",

@@ -9,12 +9,12 @@ from sympy import cos, sin
 from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("x", "x", "m", meaning="distance"),
+    Variable("x", "x", "m", meaning="horizontal distance"),
     Variable("y", "y", "m", meaning="height"),
     Variable("v", "v", "m/s", meaning="speed"),
 )
 CONTROLS = (Variable("theta", r"\theta", meaning="direction of the motion below the horizontal", kind="angle"),)
-PARAMETERS = (Variable("g", "g", "m/s^2", meaning="gravity", default=9.80665, positive=True),)
+PARAMETERS = (Variable("g", "g", "m/s^2", meaning="acceleration of gravity", default=9.80665, positive=True),)
 x, y, v = symbols_of(STATES)
 (theta,) = symbols_of(CONTROLS)
 (g,) = symbols_of(PARAMETERS)
@@ -38,11 +38,11 @@ TRANSLATIONS = {
     "id": {
         "A bead slides along a curve in minimum time": "Manik meluncur sepanjang kurva dengan waktu minimum",
         "A bead on a curve": "Manik pada kurva",
-        "distance": "jarak",
-        "height": "tinggi",
+        "horizontal distance": "jarak horizontal",
+        "height": "ketinggian",
         "speed": "laju",
-        "direction of the motion below the horizontal": "arah gerak di bawah horizontal",
-        "gravity": "percepatan gravitasi",
+        "direction of the motion below the horizontal": "sudut arah gerak di bawah horizontal",
+        "acceleration of gravity": "percepatan gravitasi",
     },
 }
 

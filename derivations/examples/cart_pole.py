@@ -12,14 +12,14 @@ STATES = (
     Variable("q1", "q_1", "m", meaning="position of the cart"),
     Variable("q2", "q_2", "rad", meaning="angle of the pole, from hanging", kind="angle"),
     Variable("v1", "v_1", "m/s", meaning="velocity of the cart"),
-    Variable("v2", "v_2", "rad/s", meaning="rate of the pole"),
+    Variable("v2", "v_2", "rad/s", meaning="angular velocity of the pole"),
 )
 CONTROLS = (Variable("u", "u", "N", meaning="force on the cart"),)
 PARAMETERS = (
     Variable("m1", "m_1", "kg", meaning="mass of the cart", default=1.0, positive=True),
     Variable("m2", "m_2", "kg", meaning="mass at the pole's end", default=0.3, positive=True),
     Variable("l", r"\ell", "m", meaning="length of the pole", default=0.5, positive=True),
-    Variable("g", "g", "m/s^2", meaning="gravity", default=9.81, positive=True),
+    Variable("g", "g", "m/s^2", meaning="acceleration of gravity", default=9.81, positive=True),
 )
 q1, q2, v1, v2 = symbols_of(STATES)
 (u,) = symbols_of(CONTROLS)
@@ -28,7 +28,7 @@ inertia = m1 + m2 * sin(q2) ** 2
 
 cart_pole = Problem(
     name="cart_pole",
-    title="A cart swings its pole up at least effort",
+    title="A cart swings its pole up with minimum effort",
     model=FirstOrder(
         name="cart_and_pole",
         title="A cart with a pole",
@@ -48,17 +48,17 @@ cart_pole = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "A cart swings its pole up at least effort": "Kereta mengayunkan tiangnya ke atas dengan upaya minimum",
+        "A cart swings its pole up with minimum effort": "Kereta mengayunkan tiangnya ke atas dengan upaya minimum",
         "A cart with a pole": "Kereta dengan tiang",
         "position of the cart": "posisi kereta",
         "angle of the pole, from hanging": "sudut tiang dari posisi menggantung",
         "velocity of the cart": "kecepatan kereta",
-        "rate of the pole": "laju tiang",
+        "angular velocity of the pole": "kecepatan sudut tiang",
         "force on the cart": "gaya pada kereta",
         "mass of the cart": "massa kereta",
         "mass at the pole's end": "massa di ujung tiang",
         "length of the pole": "panjang tiang",
-        "gravity": "percepatan gravitasi",
+        "acceleration of gravity": "percepatan gravitasi",
     },
 }
 

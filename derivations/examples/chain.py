@@ -34,7 +34,7 @@ TRANSLATIONS = {
     "id": {
         "A hanging chain": "Rantai yang menggantung",
         "A curve over the horizontal, with its length": "Kurva di atas horizontal beserta panjangnya",
-        "height at the horizontal distance t": "tinggi pada jarak mendatar t",
+        "height at the horizontal distance t": "ketinggian pada jarak horizontal t",
         "length so far": "panjang sampai titik ini",
         "slope of the chain": "kemiringan rantai",
     },

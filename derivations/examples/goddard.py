@@ -11,15 +11,15 @@ from sympy import exp
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("h", "h", meaning="distance from the centre", positive=True, typical=(1.0, 1.02)),
+    Variable("h", "h", meaning="distance from the centre of force", positive=True, typical=(1.0, 1.02)),
     Variable("v", "v", meaning="velocity", typical=(0.01, 0.15)),
     Variable("m", "m", meaning="mass", positive=True, typical=(0.6, 1.0)),
 )
 CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
 PARAMETERS = (
     Variable("D0", "D_0", meaning="drag at velocity one and the initial height", default=310.0, positive=True),
-    Variable("beta", r"\beta", meaning="how fast drag falls with height", default=500.0, positive=True),
-    Variable("g0", "g_0", meaning="gravity at the initial height", default=1.0, positive=True),
+    Variable("beta", r"\beta", meaning="rate of decrease of the drag with height", default=500.0, positive=True),
+    Variable("g0", "g_0", meaning="acceleration of gravity at the initial height", default=1.0, positive=True),
     Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
 )
 h, v, m = symbols_of(STATES)
@@ -47,13 +47,13 @@ TRANSLATIONS = {
     "id": {
         "Ascent of a rocket to the maximum height": "Roket naik ke ketinggian maksimum",
         "A rocket in vertical flight": "Roket yang bergerak vertikal",
-        "distance from the centre": "jarak dari pusat",
+        "distance from the centre of force": "jarak dari pusat gaya",
         "velocity": "kecepatan",
         "mass": "massa",
         "thrust": "gaya dorong",
         "drag at velocity one and the initial height": "gaya hambat pada kecepatan satu dan ketinggian awal",
-        "how fast drag falls with height": "laju berkurangnya gaya hambat terhadap ketinggian",
-        "gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
+        "rate of decrease of the drag with height": "laju berkurangnya gaya hambat terhadap ketinggian",
+        "acceleration of gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",
     },
 }

@@ -11,7 +11,7 @@ from sympy import exp
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("h", "h", meaning="distance from the centre", positive=True, typical=(1.0, 1.02)),
+    Variable("h", "h", meaning="distance from the centre of force", positive=True, typical=(1.0, 1.02)),
     Variable("v", "v", meaning="velocity", typical=(0.01, 0.15)),
     Variable("m", "m", meaning="mass", positive=True, typical=(0.6, 1.0)),
 )
@@ -19,8 +19,8 @@ CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
 PARAMETERS = (
     Variable("rho0", r"\rho_0", meaning="density of the air at the initial height", default=12400.0, positive=True),
     Variable("area", r"A_{\mathrm{ref}}", meaning="area that drag acts on", default=0.05, positive=True),
-    Variable("beta", r"\beta", meaning="how fast density falls with height", default=500.0, positive=True),
-    Variable("g0", "g_0", meaning="gravity at the initial height", default=1.0, positive=True),
+    Variable("beta", r"\beta", meaning="rate of decrease of the density with height", default=500.0, positive=True),
+    Variable("g0", "g_0", meaning="acceleration of gravity at the initial height", default=1.0, positive=True),
     Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
     Variable("q_max", r"q_{\max}", meaning="largest dynamic pressure", default=10.0, positive=True),
 )
@@ -54,14 +54,14 @@ TRANSLATIONS = {
             "Roket naik ke ketinggian maksimum dengan tekanan dinamik terbatas"
         ),
         "A rocket in vertical flight through air": "Roket yang bergerak vertikal melalui udara",
-        "distance from the centre": "jarak dari pusat",
+        "distance from the centre of force": "jarak dari pusat gaya",
         "velocity": "kecepatan",
         "mass": "massa",
         "thrust": "gaya dorong",
         "density of the air at the initial height": "massa jenis udara pada ketinggian awal",
         "area that drag acts on": "luas yang dikenai gaya hambat",
-        "how fast density falls with height": "laju berkurangnya massa jenis udara terhadap ketinggian",
-        "gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
+        "rate of decrease of the density with height": "laju berkurangnya massa jenis udara terhadap ketinggian",
+        "acceleration of gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",
         "largest dynamic pressure": "tekanan dinamik terbesar",
     },

@@ -14,7 +14,7 @@ CONTROLS = (Variable("u", "u", meaning="control"),)
 
 hypersensitive = Problem(
     name="hypersensitive",
-    title="From one state to another in a long time, at least deviation and effort",
+    title="From one state to another in a long time, with minimum deviation and effort",
     model=FirstOrder(
         name="cubic_decay",
         title="A state that decays by its cube",
@@ -28,7 +28,7 @@ hypersensitive = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "From one state to another in a long time, at least deviation and effort": (
+        "From one state to another in a long time, with minimum deviation and effort": (
             "Dari satu keadaan ke keadaan lain dalam waktu panjang dengan simpangan dan upaya minimum"
         ),
         "A state that decays by its cube": "Keadaan yang meluruh menurut pangkat tiganya",

@@ -14,7 +14,7 @@ given = next(p for p in load(find("polar_orbit", HERE)) if isinstance(p, Problem
 orbit = replace(given.model, parameters=tuple(v for v in given.model.parameters if not v.symbol.startswith("k")))
 near = next(m for m in load(find("clohessy_wiltshire", HERE)) if isinstance(m, Linearised))
 
-FLOOR = Variable("r_min", r"r_{\min}", "km", "smallest distance from the centre of force", positive=True)
+FLOOR = Variable("r_min", r"r_{\min}", "km", "smallest distance allowed from the centre of force", positive=True)
 SLOT = Variable("slot", r"\Delta", "rad", "half the width of the slot, as an angle", positive=True)
 CONE = (
     Variable("slope", "k", "1", "slope of the approach cone", 0.5, positive=True),
@@ -57,7 +57,7 @@ TRANSLATIONS = {
             "Kembali ke orbit dalam selang sudut di sekitar acuan"
         ),
         "Rendezvous from behind within an approach cone": "Pertemuan dari belakang dalam kerucut pendekatan",
-        "smallest distance from the centre of force": "jarak terkecil dari pusat gaya",
+        "smallest distance allowed from the centre of force": "jarak terkecil yang diperbolehkan dari pusat gaya",
         "half the width of the slot, as an angle": "setengah lebar selang, sebagai sudut",
         "slope of the approach cone": "kemiringan kerucut pendekatan",
         "half the width of the cone at its end": "setengah lebar kerucut di ujungnya",

@@ -9,12 +9,12 @@ from sympy import cos, sin
 from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("x", "x", meaning="distance"),
+    Variable("x", "x", meaning="horizontal distance"),
     Variable("y", "y", meaning="height"),
     Variable("vx", "v_x", meaning="horizontal velocity"),
     Variable("vy", "v_y", meaning="vertical velocity"),
 )
-CONTROLS = (Variable("beta", r"\beta", meaning="direction of the acceleration", kind="angle"),)
+CONTROLS = (Variable("beta", r"\beta", meaning="direction of the acceleration, above the horizontal", kind="angle"),)
 PARAMETERS = (Variable("a", "a", meaning="acceleration", default=100.0, positive=True),)
 x, y, vx, vy = symbols_of(STATES)
 (beta,) = symbols_of(CONTROLS)
@@ -41,11 +41,11 @@ TRANSLATIONS = {
     "id": {
         "Steering in minimum time": "Pengarahan dengan waktu minimum",
         "A point that is steered in a plane": "Titik yang diarahkan pada bidang",
-        "distance": "jarak",
-        "height": "tinggi",
+        "horizontal distance": "jarak horizontal",
+        "height": "ketinggian",
         "horizontal velocity": "kecepatan horizontal",
         "vertical velocity": "kecepatan vertikal",
-        "direction of the acceleration": "arah percepatan",
+        "direction of the acceleration, above the horizontal": "sudut percepatan terhadap horizontal",
         "acceleration": "percepatan",
     },
 }

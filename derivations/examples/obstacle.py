@@ -7,21 +7,21 @@ from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
     Variable("x", "x", meaning="position in the direction of the end"),
-    Variable("y", "y", meaning="position across it"),
+    Variable("y", "y", meaning="position across that direction"),
     Variable("vx", "v_x", meaning="velocity in the direction of the end"),
-    Variable("vy", "v_y", meaning="velocity across it"),
+    Variable("vy", "v_y", meaning="velocity across that direction"),
 )
 CONTROLS = (
     Variable("ux", "u_x", meaning="acceleration in the direction of the end"),
-    Variable("uy", "u_y", meaning="acceleration across it"),
+    Variable("uy", "u_y", meaning="acceleration across that direction"),
 )
 PARAMETERS = (
-    Variable("x_1", "x_1", meaning="centre of the first disc", default=0.3),
-    Variable("y_1", "y_1", meaning="the same across that direction", default=-0.05),
-    Variable("radius_1", "R_1", meaning="its radius", default=0.2, positive=True),
-    Variable("x_2", "x_2", meaning="centre of the second disc", default=0.7),
-    Variable("y_2", "y_2", meaning="the same across that direction", default=0.1),
-    Variable("radius_2", "R_2", meaning="its radius", default=0.15, positive=True),
+    Variable("x_1", "x_1", meaning="centre of the first disc, in the direction of the end", default=0.3),
+    Variable("y_1", "y_1", meaning="centre of the first disc, across that direction", default=-0.05),
+    Variable("radius_1", "R_1", meaning="radius of the first disc", default=0.2, positive=True),
+    Variable("x_2", "x_2", meaning="centre of the second disc, in the direction of the end", default=0.7),
+    Variable("y_2", "y_2", meaning="centre of the second disc, across that direction", default=0.1),
+    Variable("radius_2", "R_2", meaning="radius of the second disc", default=0.15, positive=True),
 )
 x, y, vx, vy = symbols_of(STATES)
 ux, uy = symbols_of(CONTROLS)
@@ -50,15 +50,17 @@ TRANSLATIONS = {
         "Minimum effort around two discs": "Upaya minimum mengelilingi dua cakram",
         "A body in the plane": "Benda pada bidang",
         "position in the direction of the end": "posisi ke arah titik akhir",
-        "position across it": "posisi melintang",
+        "position across that direction": "posisi melintang terhadap arah itu",
         "velocity in the direction of the end": "kecepatan ke arah titik akhir",
-        "velocity across it": "kecepatan melintang",
+        "velocity across that direction": "kecepatan melintang terhadap arah itu",
         "acceleration in the direction of the end": "percepatan ke arah titik akhir",
-        "acceleration across it": "percepatan melintang",
-        "centre of the first disc": "pusat cakram pertama",
-        "the same across that direction": "koordinat melintangnya",
-        "its radius": "jari-jarinya",
-        "centre of the second disc": "pusat cakram kedua",
+        "acceleration across that direction": "percepatan melintang terhadap arah itu",
+        "centre of the first disc, in the direction of the end": "pusat cakram pertama, ke arah titik akhir",
+        "centre of the first disc, across that direction": "pusat cakram pertama, melintang terhadap arah itu",
+        "radius of the first disc": "jari-jari cakram pertama",
+        "centre of the second disc, in the direction of the end": "pusat cakram kedua, ke arah titik akhir",
+        "centre of the second disc, across that direction": "pusat cakram kedua, melintang terhadap arah itu",
+        "radius of the second disc": "jari-jari cakram kedua",
     },
 }
 

@@ -31,11 +31,11 @@ PARAMETERS = (
     Variable("h_r", "h_r", "ft", "scale height", 23800.0, positive=True),
     Variable("area", r"A_{\mathrm{ref}}", "ft^2", "reference area", 2690.0, positive=True),
     Variable("m", "m", "slug", "mass", 203000.0 / 32.174, positive=True),
-    Variable("a_0", "a_0", meaning="lift without angle of attack", default=-0.20704),
-    Variable("a_1", "a_1", "1/deg", "slope of the lift", 0.029244, positive=True),
-    Variable("b_0", "b_0", meaning="drag without angle of attack", default=0.07854, positive=True),
-    Variable("b_1", "b_1", "1/deg", "slope of the drag there", -0.61592e-2),
-    Variable("b_2", "b_2", "1/deg^2", "growth of the drag", 0.621408e-3, positive=True),
+    Variable("a_0", "a_0", meaning="lift coefficient at zero angle of attack", default=-0.20704),
+    Variable("a_1", "a_1", "1/deg", "slope of the lift coefficient", 0.029244, positive=True),
+    Variable("b_0", "b_0", meaning="drag coefficient at zero angle of attack", default=0.07854, positive=True),
+    Variable("b_1", "b_1", "1/deg", "slope of the drag coefficient at zero angle of attack", -0.61592e-2),
+    Variable("b_2", "b_2", "1/deg^2", "quadratic coefficient of the drag", 0.621408e-3, positive=True),
 )
 h, phi, theta, v, gamma, psi = symbols_of(STATES)
 alpha, beta = symbols_of(CONTROLS)
@@ -73,13 +73,13 @@ shuttle = Problem(
 
 Q_R = 17700.0 * 0.002378**0.5
 HEATING = (
-    Variable("q_max", r"q_{\max}", "BTU/ft^2/s", "heating that the leading edge stands", 70.0, positive=True),
-    Variable("q_r", "q_r", "BTU/ft^2/s", "heating by ground air at the reference speed", Q_R, positive=True),
+    Variable("q_max", r"q_{\max}", "BTU/ft^2/s", "heating rate that the leading edge stands", 70.0, positive=True),
+    Variable("q_r", "q_r", "BTU/ft^2/s", "heating rate by ground air at the reference speed", Q_R, positive=True),
     Variable("v_r", "v_r", "ft/s", "reference speed", 1e4, positive=True),
-    Variable("c_0", "c_0", meaning="heating without angle of attack", default=1.0672181),
-    Variable("c_1", "c_1", "1/deg", "slope of the heating there", -0.19213774e-1),
-    Variable("c_2", "c_2", "1/deg^2", "its growth", 0.21286289e-3),
-    Variable("c_3", "c_3", "1/deg^3", "and that of its growth", -0.10117249e-5),
+    Variable("c_0", "c_0", meaning="heating coefficient at zero angle of attack", default=1.0672181),
+    Variable("c_1", "c_1", "1/deg", "linear coefficient of the heating in that angle", -0.19213774e-1),
+    Variable("c_2", "c_2", "1/deg^2", "quadratic coefficient of the heating in that angle", 0.21286289e-3),
+    Variable("c_3", "c_3", "1/deg^3", "cubic coefficient of the heating in that angle", -0.10117249e-5),
 )
 q_max, q_r, v_r, c_0, c_1, c_2, c_3 = symbols_of(HEATING)
 heating = (
@@ -96,11 +96,11 @@ shuttle_heating = replace(
 
 TRANSLATIONS = {
     "id": {
-        "A shuttle glides to the largest latitude": "Pesawat ulang-alik meluncur ke lintang terbesar",
+        "A shuttle glides to the largest latitude": "Pesawat ulang-alik terbang luncur ke lintang terbesar",
         "A shuttle glides to the largest latitude without being heated too much": (
-            "Pesawat ulang-alik meluncur ke lintang terbesar tanpa terlalu panas"
+            "Pesawat ulang-alik terbang luncur ke lintang terbesar tanpa terlalu panas"
         ),
-        "Gliding entry over a round Earth at rest": "Masuk atmosfer dengan meluncur di atas Bumi bulat yang diam",
+        "Gliding entry over a round Earth at rest": "Masuk atmosfer dengan terbang luncur di atas Bumi bulat yang diam",
         "altitude": "ketinggian",
         "longitude": "bujur",
         "latitude": "lintang",
@@ -115,18 +115,20 @@ TRANSLATIONS = {
         "scale height": "tinggi skala",
         "reference area": "luas acuan",
         "mass": "massa",
-        "lift without angle of attack": "gaya angkat tanpa sudut serang",
-        "slope of the lift": "kemiringan gaya angkat",
-        "drag without angle of attack": "gaya hambat tanpa sudut serang",
-        "slope of the drag there": "kemiringan gaya hambat di sana",
-        "growth of the drag": "pertumbuhan gaya hambat",
-        "heating that the leading edge stands": "pemanasan yang ditahan tepi depan sayap",
-        "heating by ground air at the reference speed": "pemanasan oleh udara permukaan pada laju acuan",
+        "lift coefficient at zero angle of attack": "koefisien gaya angkat pada sudut serang nol",
+        "slope of the lift coefficient": "kemiringan koefisien gaya angkat",
+        "drag coefficient at zero angle of attack": "koefisien gaya hambat pada sudut serang nol",
+        "slope of the drag coefficient at zero angle of attack": (
+            "kemiringan koefisien gaya hambat pada sudut serang nol"
+        ),
+        "quadratic coefficient of the drag": "koefisien kuadrat gaya hambat",
+        "heating rate that the leading edge stands": "laju pemanasan yang dapat ditahan tepi depan sayap",
+        "heating rate by ground air at the reference speed": "laju pemanasan oleh udara permukaan pada laju acuan",
         "reference speed": "laju acuan",
-        "heating without angle of attack": "pemanasan tanpa sudut serang",
-        "slope of the heating there": "kemiringan pemanasan di sana",
-        "its growth": "pertumbuhannya",
-        "and that of its growth": "dan pertumbuhan dari pertumbuhannya",
+        "heating coefficient at zero angle of attack": "koefisien pemanasan pada sudut serang nol",
+        "linear coefficient of the heating in that angle": "koefisien linear pemanasan terhadap sudut itu",
+        "quadratic coefficient of the heating in that angle": "koefisien kuadrat pemanasan terhadap sudut itu",
+        "cubic coefficient of the heating in that angle": "koefisien kubik pemanasan terhadap sudut itu",
     },
 }
 

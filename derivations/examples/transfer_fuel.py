@@ -10,7 +10,7 @@ from sympy import sqrt
 from satsym.symbolic import Ball, FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("r", "r", meaning="distance from the centre", positive=True),
+    Variable("r", "r", meaning="distance from the centre of force", positive=True),
     Variable("theta", r"\theta", meaning="polar angle", kind="angle"),
     Variable("u", "u", meaning="radial velocity"),
     Variable("v", "v", meaning="transverse velocity"),
@@ -52,7 +52,7 @@ TRANSLATIONS = {
         "A satellite whose thrust can be turned and throttled": (
             "Satelit yang gaya dorongnya dapat diarahkan dan diatur"
         ),
-        "distance from the centre": "jarak dari pusat",
+        "distance from the centre of force": "jarak dari pusat gaya",
         "polar angle": "sudut polar",
         "radial velocity": "kecepatan radial",
         "transverse velocity": "kecepatan transversal",

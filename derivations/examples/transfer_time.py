@@ -10,7 +10,7 @@ from sympy import cos, sin
 from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of, t
 
 STATES = (
-    Variable("r", "r", meaning="distance from the centre", positive=True),
+    Variable("r", "r", meaning="distance from the centre of force", positive=True),
     Variable("u", "u", meaning="radial velocity"),
     Variable("v", "v", meaning="transverse velocity"),
 )
@@ -44,10 +44,10 @@ TRANSLATIONS = {
     "id": {
         "Transfer between circular orbits in minimum time": "Transfer antara orbit lingkaran dengan waktu minimum",
         "A satellite with constant thrust": "Satelit dengan gaya dorong konstan",
-        "distance from the centre": "jarak dari pusat",
+        "distance from the centre of force": "jarak dari pusat gaya",
         "radial velocity": "kecepatan radial",
         "transverse velocity": "kecepatan transversal",
-        "direction of the thrust, above the local horizontal": "arah gaya dorong di atas horizontal setempat",
+        "direction of the thrust, above the local horizontal": "sudut gaya dorong terhadap horizontal setempat",
         "gravitational parameter": "parameter gravitasi",
         "thrust over the initial mass": "gaya dorong dibagi massa awal",
         "flow of mass over the initial mass": "laju aliran massa dibagi massa awal",

@@ -8,11 +8,14 @@ from sympy import cos, sin
 
 from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
 
-STATES = (Variable("x", "x", meaning="distance along the current"), Variable("y", "y", meaning="distance across it"))
-CONTROLS = (Variable("heading", r"\theta", meaning="heading", kind="angle"),)
+STATES = (
+    Variable("x", "x", meaning="distance along the current"),
+    Variable("y", "y", meaning="distance across the current"),
+)
+CONTROLS = (Variable("heading", r"\theta", meaning="heading, from the direction of x", kind="angle"),)
 PARAMETERS = (
     Variable("V", "V", meaning="speed of the ship in the water", default=1.0, positive=True),
-    Variable("h", "h", meaning="distance over which the current grows by that speed", default=1.0, positive=True),
+    Variable("h", "h", meaning="distance over which the current grows by the ship's speed", default=1.0, positive=True),
 )
 x, y = symbols_of(STATES)
 (heading,) = symbols_of(CONTROLS)
@@ -38,10 +41,12 @@ TRANSLATIONS = {
         "A ship crosses a linear current in minimum time": "Kapal melintasi arus linear dengan waktu minimum",
         "A ship in a current": "Kapal dalam arus",
         "distance along the current": "jarak sepanjang arus",
-        "distance across it": "jarak melintang arus",
-        "heading": "arah haluan",
+        "distance across the current": "jarak melintang terhadap arus",
+        "heading, from the direction of x": "sudut haluan dari arah x",
         "speed of the ship in the water": "laju kapal di dalam air",
-        "distance over which the current grows by that speed": "jarak tempat arus bertambah sebesar laju itu",
+        "distance over which the current grows by the ship's speed": (
+            "jarak yang sepanjangnya kecepatan arus bertambah sebesar laju kapal"
+        ),
     },
 }
 
