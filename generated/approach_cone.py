@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py b28fc210988413ee7c05e3bbfde2e565
+Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 8e12928af457566adbb68411673c025aa2facd925364839a9cea9e95e1d01e91
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: 3714355dbba8f119e2d883ae1642b28163cb7245cd32032b4a876cdfd79d982d
 """
 
 import math

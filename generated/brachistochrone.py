@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py f18f56c7f88b02210d335c924b489d9e
-Digest: 4731b5a0f6402eaa0b6cebd857cc68137b60c0f40b11f5afb483be492e38822a
+Source: ../derivations/examples/brachistochrone.py b9455fccc0aa385baf206355ed20faf7
+Digest: cfd69413b358e2522fafad3ad9aaea041385b1e72a38a48194556b9acddfe863
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'A bead slides along a curve in minimum time',
     'source': 'derivations/examples/brachistochrone.py',
     'states': (
-        {'symbol': 'x', 'latex': 'x', 'unit': 'm', 'meaning': 'distance'},
+        {'symbol': 'x', 'latex': 'x', 'unit': 'm', 'meaning': 'horizontal distance'},
         {'symbol': 'y', 'latex': 'y', 'unit': 'm', 'meaning': 'height'},
         {'symbol': 'v', 'latex': 'v', 'unit': 'm/s', 'meaning': 'speed'},
     ),
@@ -25,7 +25,7 @@ MODEL = {
         {'symbol': 'theta', 'latex': '\\theta', 'meaning': 'direction of the motion below the horizontal', 'kind': 'angle'},
     ),
     'parameters': (
-        {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'gravity', 'default': 9.80665, 'positive': True},
+        {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'acceleration of gravity', 'default': 9.80665, 'positive': True},
     ),
     'control_set': 'product',
     'has_cost': True,

@@ -1,9 +1,9 @@
-"""A cart swings its pole up at least effort.
+"""A cart swings its pole up with minimum effort.
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 9a7154384b5eff7ec3322bd0d0378b26
-Digest: 49b4cb861a0c4d1f27bf5dd7fa2978a9236275c65aa6f01b9558b5d88da24d3c
+Source: ../derivations/examples/cart_pole.py 6874fa0b9f89e5bbfbfcf65b07168b21
+Digest: 013eba26e7410739007fb133cb6e0145f9473dd8783bfc02c30f8a7815f3d4a1
 """
 
 import math
@@ -14,13 +14,13 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'cart_pole',
-    'title': 'A cart swings its pole up at least effort',
+    'title': 'A cart swings its pole up with minimum effort',
     'source': 'derivations/examples/cart_pole.py',
     'states': (
         {'symbol': 'q1', 'latex': 'q_1', 'unit': 'm', 'meaning': 'position of the cart'},
         {'symbol': 'q2', 'latex': 'q_2', 'unit': 'rad', 'meaning': 'angle of the pole, from hanging', 'kind': 'angle'},
         {'symbol': 'v1', 'latex': 'v_1', 'unit': 'm/s', 'meaning': 'velocity of the cart'},
-        {'symbol': 'v2', 'latex': 'v_2', 'unit': 'rad/s', 'meaning': 'rate of the pole'},
+        {'symbol': 'v2', 'latex': 'v_2', 'unit': 'rad/s', 'meaning': 'angular velocity of the pole'},
     ),
     'controls': (
         {'symbol': 'u', 'latex': 'u', 'unit': 'N', 'meaning': 'force on the cart'},
@@ -29,7 +29,7 @@ MODEL = {
         {'symbol': 'm1', 'latex': 'm_1', 'unit': 'kg', 'meaning': 'mass of the cart', 'default': 1.0, 'positive': True},
         {'symbol': 'm2', 'latex': 'm_2', 'unit': 'kg', 'meaning': "mass at the pole's end", 'default': 0.3, 'positive': True},
         {'symbol': 'l', 'latex': '\\ell', 'unit': 'm', 'meaning': 'length of the pole', 'default': 0.5, 'positive': True},
-        {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'gravity', 'default': 9.81, 'positive': True},
+        {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'acceleration of gravity', 'default': 9.81, 'positive': True},
     ),
     'control_set': 'box',
     'has_cost': True,

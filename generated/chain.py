@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py 63f739e0fae1c29a6a919aad1d7ff9d6
-Digest: 4e7b7a52ec4c6a15fbcb2f4d1079976a006e9df3051c685fea5cdd22fea9d9bb
+Source: ../derivations/examples/chain.py 26edb034318c5de06f36975a5d6abdfa
+Digest: 51340634d522d620c3c3ff5252bebe007683440cdad7fafd339f39772a72111c
 """
 
 import math

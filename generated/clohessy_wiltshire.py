@@ -3,8 +3,8 @@
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 56626849cd4c889ceb55dd76df5da936b992823f74763c55612da5ea439a285d
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: f608ac364e46946e7d4ae709a33288cdc227c353c735152109edadafeb41740b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: af0cb257644b3f820417f936936f09b42bf5a079af0d08e6eaff1b4ed3ecc63d
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: 6d6dd3aae4ac840b634c597158401d3dbeef734f70b6388e733066bf34ddd050
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
-Digest: cc42670a25deaa5c1655108081a828c0af019b55d58075ccf143c3ff3202ddab
+Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
+Digest: fde8ed1a750fed4a010115096ea1015ba007f20ab5a0fbf602823fbd71fbd244
 """
 
 import math
@@ -28,11 +28,11 @@ MODEL = {
         {'symbol': 'phi_dot', 'latex': '\\dot\\phi', 'unit': 'rad/s', 'meaning': 'rate of the roll angle'},
         {'symbol': 'psi_dot', 'latex': '\\dot\\psi', 'unit': 'rad/s', 'meaning': 'rate of the yaw angle'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'rate of the pitch angle'},
-        {'symbol': 'g_x_dot', 'latex': '\\dot\\gamma_x', 'unit': 'rad/s', 'meaning': 'rate of the inner gimbal'},
-        {'symbol': 'g_z_dot', 'latex': '\\dot\\gamma_z', 'unit': 'rad/s', 'meaning': 'rate of the outer gimbal'},
-        {'symbol': 'eta_x_dot', 'latex': '\\dot\\eta_x', 'unit': 'rad/s', 'meaning': 'rate of the mode about x'},
-        {'symbol': 'eta_y_dot', 'latex': '\\dot\\eta_y', 'unit': 'rad/s', 'meaning': 'rate of the mode about y'},
-        {'symbol': 'eta_z_dot', 'latex': '\\dot\\eta_z', 'unit': 'rad/s', 'meaning': 'rate of the mode about z'},
+        {'symbol': 'g_x_dot', 'latex': '\\dot\\gamma_x', 'unit': 'rad/s', 'meaning': 'angular velocity of the inner gimbal'},
+        {'symbol': 'g_z_dot', 'latex': '\\dot\\gamma_z', 'unit': 'rad/s', 'meaning': 'angular velocity of the outer gimbal'},
+        {'symbol': 'eta_x_dot', 'latex': '\\dot\\eta_x', 'unit': 'rad/s', 'meaning': 'rate of deflection about x'},
+        {'symbol': 'eta_y_dot', 'latex': '\\dot\\eta_y', 'unit': 'rad/s', 'meaning': 'rate of deflection about y'},
+        {'symbol': 'eta_z_dot', 'latex': '\\dot\\eta_z', 'unit': 'rad/s', 'meaning': 'rate of deflection about z'},
         {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
     ),
     'controls': (
@@ -45,7 +45,7 @@ MODEL = {
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
         {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
-        {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel across its axis', 'default': 0.05, 'positive': True},
+        {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'transverse moment of inertia of the wheel', 'default': 0.05, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
         {'symbol': 'K_x', 'latex': 'K_x', 'unit': 'N*m/rad', 'meaning': 'stiffness of the spring on the inner gimbal', 'default': 0.9, 'positive': True},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
-Digest: 8f021dc1aa399e82898ead9dcfd5659646feb3624bb4ae65db236a916b2fc0d5
+Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
+Digest: df476d54edc553233bb07fc4030e157c043c5dbe4a47d8f76ea669c1d5d37d6c
 """
 
 import math
@@ -25,14 +25,14 @@ MODEL = {
         {'symbol': 'eta_x', 'latex': '\\eta_x', 'unit': 'rad', 'meaning': 'deflection of the mode about x'},
         {'symbol': 'eta_y', 'latex': '\\eta_y', 'unit': 'rad', 'meaning': 'deflection of the mode about y'},
         {'symbol': 'eta_z', 'latex': '\\eta_z', 'unit': 'rad', 'meaning': 'deflection of the mode about z'},
-        {'symbol': 'w_x', 'latex': '\\omega_x', 'unit': 'rad/s', 'meaning': "angular velocity in space along the body's x"},
-        {'symbol': 'w_y', 'latex': '\\omega_y', 'unit': 'rad/s', 'meaning': "angular velocity in space along the body's y"},
-        {'symbol': 'w_z', 'latex': '\\omega_z', 'unit': 'rad/s', 'meaning': "angular velocity in space along the body's z"},
-        {'symbol': 'g_x_dot', 'latex': '\\dot\\gamma_x', 'unit': 'rad/s', 'meaning': 'rate of the inner gimbal'},
-        {'symbol': 'g_z_dot', 'latex': '\\dot\\gamma_z', 'unit': 'rad/s', 'meaning': 'rate of the outer gimbal'},
-        {'symbol': 'eta_x_dot', 'latex': '\\dot\\eta_x', 'unit': 'rad/s', 'meaning': 'rate of the mode about x'},
-        {'symbol': 'eta_y_dot', 'latex': '\\dot\\eta_y', 'unit': 'rad/s', 'meaning': 'rate of the mode about y'},
-        {'symbol': 'eta_z_dot', 'latex': '\\dot\\eta_z', 'unit': 'rad/s', 'meaning': 'rate of the mode about z'},
+        {'symbol': 'w_x', 'latex': '\\omega_x', 'unit': 'rad/s', 'meaning': "inertial angular velocity about the body's x"},
+        {'symbol': 'w_y', 'latex': '\\omega_y', 'unit': 'rad/s', 'meaning': "inertial angular velocity about the body's y"},
+        {'symbol': 'w_z', 'latex': '\\omega_z', 'unit': 'rad/s', 'meaning': "inertial angular velocity about the body's z"},
+        {'symbol': 'g_x_dot', 'latex': '\\dot\\gamma_x', 'unit': 'rad/s', 'meaning': 'angular velocity of the inner gimbal'},
+        {'symbol': 'g_z_dot', 'latex': '\\dot\\gamma_z', 'unit': 'rad/s', 'meaning': 'angular velocity of the outer gimbal'},
+        {'symbol': 'eta_x_dot', 'latex': '\\dot\\eta_x', 'unit': 'rad/s', 'meaning': 'rate of deflection about x'},
+        {'symbol': 'eta_y_dot', 'latex': '\\dot\\eta_y', 'unit': 'rad/s', 'meaning': 'rate of deflection about y'},
+        {'symbol': 'eta_z_dot', 'latex': '\\dot\\eta_z', 'unit': 'rad/s', 'meaning': 'rate of deflection about z'},
         {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
     ),
     'controls': (
@@ -45,7 +45,7 @@ MODEL = {
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
         {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
-        {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel across its axis', 'default': 0.05, 'positive': True},
+        {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'transverse moment of inertia of the wheel', 'default': 0.05, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
         {'symbol': 'K_x', 'latex': 'K_x', 'unit': 'N*m/rad', 'meaning': 'stiffness of the spring on the inner gimbal', 'default': 0.9, 'positive': True},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py 9b052ddd67fc13364b4876e03e6802d0
-Digest: 46f11afc51fc9081c7888a9b8ba0a21db3dd61428a2291974b0577520c49d242
+Source: ../derivations/examples/goddard.py f910bce215a6ccf293711b457bbce341
+Digest: 7a930ccd465b60cd132c9f62a8836ac00febaaa24e904ba21330af6f228d1d86
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'Ascent of a rocket to the maximum height',
     'source': 'derivations/examples/goddard.py',
     'states': (
-        {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre', 'positive': True, 'typical': (1.0, 1.02)},
+        {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre of force', 'positive': True, 'typical': (1.0, 1.02)},
         {'symbol': 'v', 'latex': 'v', 'meaning': 'velocity', 'typical': (0.01, 0.15)},
         {'symbol': 'm', 'latex': 'm', 'meaning': 'mass', 'positive': True, 'typical': (0.6, 1.0)},
     ),
@@ -26,8 +26,8 @@ MODEL = {
     ),
     'parameters': (
         {'symbol': 'D0', 'latex': 'D_0', 'meaning': 'drag at velocity one and the initial height', 'default': 310.0, 'positive': True},
-        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'how fast drag falls with height', 'default': 500.0, 'positive': True},
-        {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'gravity at the initial height', 'default': 1.0, 'positive': True},
+        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'rate of decrease of the drag with height', 'default': 500.0, 'positive': True},
+        {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'acceleration of gravity at the initial height', 'default': 1.0, 'positive': True},
         {'symbol': 'c', 'latex': 'c', 'meaning': 'exhaust velocity', 'default': 0.5, 'positive': True},
     ),
     'control_set': 'box',

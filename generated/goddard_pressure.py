@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py 691175e550e27f72c662b0b03cb7d0ae
-Digest: 442be2cd74ced0d3c9512a49818b33f2e8f3da2f0df4b55a4a6433c63234906b
+Source: ../derivations/examples/goddard_pressure.py bd529685d69fdd4bd230aa01eccbf41a
+Digest: 3ff858a2fbe7ae1d6da588b8da73228fd13ea6e24ab34352898794c58a25bbcb
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'Ascent of a rocket to the maximum height with bounded dynamic pressure',
     'source': 'derivations/examples/goddard_pressure.py',
     'states': (
-        {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre', 'positive': True, 'typical': (1.0, 1.02)},
+        {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre of force', 'positive': True, 'typical': (1.0, 1.02)},
         {'symbol': 'v', 'latex': 'v', 'meaning': 'velocity', 'typical': (0.01, 0.15)},
         {'symbol': 'm', 'latex': 'm', 'meaning': 'mass', 'positive': True, 'typical': (0.6, 1.0)},
     ),
@@ -26,9 +26,9 @@ MODEL = {
     ),
     'parameters': (
         {'symbol': 'rho0', 'latex': '\\rho_0', 'meaning': 'density of the air at the initial height', 'default': 12400.0, 'positive': True},
-        {'symbol': 'area', 'latex': 'A', 'meaning': 'area that drag acts on', 'default': 0.05, 'positive': True},
-        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'how fast density falls with height', 'default': 500.0, 'positive': True},
-        {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'gravity at the initial height', 'default': 1.0, 'positive': True},
+        {'symbol': 'area', 'latex': 'A_{\\mathrm{ref}}', 'meaning': 'area that drag acts on', 'default': 0.05, 'positive': True},
+        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'rate of decrease of the density with height', 'default': 500.0, 'positive': True},
+        {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'acceleration of gravity at the initial height', 'default': 1.0, 'positive': True},
         {'symbol': 'c', 'latex': 'c', 'meaning': 'exhaust velocity', 'default': 0.5, 'positive': True},
         {'symbol': 'q_max', 'latex': 'q_{\\max}', 'meaning': 'largest dynamic pressure', 'default': 10.0, 'positive': True},
     ),

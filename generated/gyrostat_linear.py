@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py a852eee6fb7807b5ac40d440c96aeaf4
-Digest: b881970bd1b73ddc47e4573056b5dd26c445c52433b645e95763ef59e5c64dbe
+Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
+Digest: 650f364ded53bee24b5bd470f8f809b74c8297cd0d223c0bab12916abd6b1717
 """
 
 import math
@@ -33,7 +33,7 @@ MODEL = {
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
         {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
-        {'symbol': 'h', 'latex': 'h', 'unit': 'N*m*s', 'meaning': 'momentum of the wheel relative to the body, about -y', 'default': 9.4247784},
+        {'symbol': 'h', 'latex': 'h', 'unit': 'N*m*s', 'meaning': 'angular momentum of the wheel relative to the body, along -y', 'default': 9.4247784},
     ),
     'control_set': None,
     'has_cost': False,

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py 1105876c3a88db3643ed0fd96075af15
-Digest: 58f5e47b9219a5019e0dc90f8021cafcc2e91bc4892e00160b5a55f0167c63c9
+Source: ../derivations/hill.py 66258a956b3e347b9dc50d88cd6e9d3c
+Digest: b5335c4d8e9e6173e00e557ce60e5a1c7a75841debc01217fb676e28b3150cc4
 """
 
 import math
@@ -18,16 +18,16 @@ MODEL = {
     'source': 'derivations/hill.py',
     'states': (
         {'symbol': 'xi', 'latex': '\\xi', 'unit': 'km', 'meaning': 'deviation outwards'},
-        {'symbol': 'eta', 'latex': '\\eta', 'unit': 'km', 'meaning': 'deviation ahead'},
-        {'symbol': 'zeta', 'latex': '\\zeta', 'unit': 'km', 'meaning': 'deviation along the normal'},
+        {'symbol': 'eta', 'latex': '\\eta', 'unit': 'km', 'meaning': 'deviation along the track'},
+        {'symbol': 'zeta', 'latex': '\\zeta', 'unit': 'km', 'meaning': 'deviation along the normal of the orbit'},
         {'symbol': 'xi_dot', 'latex': '\\dot\\xi', 'unit': 'km/s', 'meaning': 'rate of xi'},
         {'symbol': 'eta_dot', 'latex': '\\dot\\eta', 'unit': 'km/s', 'meaning': 'rate of eta'},
         {'symbol': 'zeta_dot', 'latex': '\\dot\\zeta', 'unit': 'km/s', 'meaning': 'rate of zeta'},
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass outwards'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass ahead'},
-        {'symbol': 'u3', 'latex': 'u_3', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the normal'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the track'},
+        {'symbol': 'u3', 'latex': 'u_3', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the normal of the orbit'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},

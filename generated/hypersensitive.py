@@ -1,9 +1,9 @@
-"""From one state to another in a long time, at least deviation and effort.
+"""From one state to another in a long time, with minimum deviation and effort.
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Source: ../derivations/examples/hypersensitive.py 400b1669f619b256ef79ff1d95ebb2fe
-Digest: 7a9ac9e26a634d006e527dcf434ef41c5d4e75a6d42afc56c632702a71c0f6b9
+Source: ../derivations/examples/hypersensitive.py edb7f9bd814aec08f1ecb6f9c3167e70
+Digest: a819333f92a346d5d6dab84e46dc93019d2a2812c327f684c45f7ccc3a78a3aa
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'hypersensitive',
-    'title': 'From one state to another in a long time, at least deviation and effort',
+    'title': 'From one state to another in a long time, with minimum deviation and effort',
     'source': 'derivations/examples/hypersensitive.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'state'},

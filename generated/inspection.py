@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/inspection.py. Do not edit: mend tha
     satsym derive derivations/examples/inspection.py
 Source: ../derivations/examples/inspection.py 6da5a587341891c6f4801fc2c03ae8fe
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: b67b9bf84e4b766f21621eaddd5300a2c998d312c2a3d7e9452cf2d65365769f
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: 17c39fccb7b015f1ef503a49e26688bcc0405556337980860be1858ab8ddc05d
 """
 
 import math

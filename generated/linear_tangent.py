@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Source: ../derivations/examples/linear_tangent.py 639abd2005e2909cc8051ebdf8e788cb
-Digest: 8b0e695283d950d6da5a7ba882fa1460420430dd4e50a22eb029da436edaabe5
+Source: ../derivations/examples/linear_tangent.py 21100ef60880ff810d69f603f7045b00
+Digest: 3cba4b4dd2490d79058f64c587df3cfad4c2265e04089ea98cf0852ff904b0e4
 """
 
 import math
@@ -17,13 +17,13 @@ MODEL = {
     'title': 'Steering in minimum time',
     'source': 'derivations/examples/linear_tangent.py',
     'states': (
-        {'symbol': 'x', 'latex': 'x', 'meaning': 'distance'},
+        {'symbol': 'x', 'latex': 'x', 'meaning': 'horizontal distance'},
         {'symbol': 'y', 'latex': 'y', 'meaning': 'height'},
         {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'horizontal velocity'},
         {'symbol': 'vy', 'latex': 'v_y', 'meaning': 'vertical velocity'},
     ),
     'controls': (
-        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'direction of the acceleration', 'kind': 'angle'},
+        {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'direction of the acceleration, above the horizontal', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'a', 'latex': 'a', 'meaning': 'acceleration', 'default': 100.0, 'positive': True},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 054941eaa0fecdb701b53c436d749155
-Digest: 2161959de230d67b93afda6c6e5de5d9da69e9524578a8a6037ddb8ef6dae47b
+Source: ../derivations/examples/obstacle.py 0cd032b520fe23bf490ab4bdbd67e31b
+Digest: b5ee185ed34b8481d474851231b67d38e03dd5d1d62460d04544572d09040199
 """
 
 import math
@@ -18,21 +18,21 @@ MODEL = {
     'source': 'derivations/examples/obstacle.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'position in the direction of the end'},
-        {'symbol': 'y', 'latex': 'y', 'meaning': 'position across it'},
+        {'symbol': 'y', 'latex': 'y', 'meaning': 'position across that direction'},
         {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'velocity in the direction of the end'},
-        {'symbol': 'vy', 'latex': 'v_y', 'meaning': 'velocity across it'},
+        {'symbol': 'vy', 'latex': 'v_y', 'meaning': 'velocity across that direction'},
     ),
     'controls': (
         {'symbol': 'ux', 'latex': 'u_x', 'meaning': 'acceleration in the direction of the end'},
-        {'symbol': 'uy', 'latex': 'u_y', 'meaning': 'acceleration across it'},
+        {'symbol': 'uy', 'latex': 'u_y', 'meaning': 'acceleration across that direction'},
     ),
     'parameters': (
-        {'symbol': 'x_1', 'latex': 'x_1', 'meaning': 'centre of the first disc', 'default': 0.3},
-        {'symbol': 'y_1', 'latex': 'y_1', 'meaning': 'the same across that direction', 'default': -0.05},
-        {'symbol': 'radius_1', 'latex': 'R_1', 'meaning': 'its radius', 'default': 0.2, 'positive': True},
-        {'symbol': 'x_2', 'latex': 'x_2', 'meaning': 'centre of the second disc', 'default': 0.7},
-        {'symbol': 'y_2', 'latex': 'y_2', 'meaning': 'the same across that direction', 'default': 0.1},
-        {'symbol': 'radius_2', 'latex': 'R_2', 'meaning': 'its radius', 'default': 0.15, 'positive': True},
+        {'symbol': 'x_1', 'latex': 'x_1', 'meaning': 'centre of the first disc, in the direction of the end', 'default': 0.3},
+        {'symbol': 'y_1', 'latex': 'y_1', 'meaning': 'centre of the first disc, across that direction', 'default': -0.05},
+        {'symbol': 'radius_1', 'latex': 'R_1', 'meaning': 'radius of the first disc', 'default': 0.2, 'positive': True},
+        {'symbol': 'x_2', 'latex': 'x_2', 'meaning': 'centre of the second disc, in the direction of the end', 'default': 0.7},
+        {'symbol': 'y_2', 'latex': 'y_2', 'meaning': 'centre of the second disc, across that direction', 'default': 0.1},
+        {'symbol': 'radius_2', 'latex': 'R_2', 'meaning': 'radius of the second disc', 'default': 0.15, 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

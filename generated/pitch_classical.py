@@ -1,9 +1,9 @@
-"""Pitch axis under a proportional and differential law, critically damped.
+"""Pitch axis under a proportional-derivative law, critically damped.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: 3a1164827e4f3d9691531b22b19bb99d76cc5a0ac2b3df8aef7bdc4b823a01f7
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: 8c65cef30c0a62232f33c37e1906286b2a592a2fa9e1accba29e30d760d8d9f0
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_classical',
-    'title': 'Pitch axis under a proportional and differential law, critically damped',
+    'title': 'Pitch axis under a proportional-derivative law, critically damped',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},
@@ -40,6 +40,9 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'conditions': (
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
+    ),
 }
 
 

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: c3875127fc9ca9ca4c8101c78c41053c4ac34de6783a7a4e02289262bb074938
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: 2469e8eebe48cfbca751c60a3554a26095d634eb9ac43fdf6a6d86d1b82e57bd
 """
 
 import math
@@ -45,6 +45,9 @@ MODEL = {
         {'symbol': 'current', 'latex': 'i', 'unit': 'A', 'meaning': 'current of the motor'},
         {'symbol': 'voltage', 'latex': 'V', 'unit': 'V', 'meaning': 'voltage across the motor'},
         {'symbol': 'power', 'latex': 'P', 'unit': 'W', 'meaning': 'electrical power of the motor'},
+    ),
+    'conditions': (
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
     ),
     'objective_unit': 'W*s',
 }

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: bfdab31d11779ce7f67f21a496538f59205ea1e0c74a1b86c9fc178bcafc8d24
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: 0d07e71057a57d709fdc38c2d984c4bef9d511c7c8eb7e1708e408dbbf6d286b
 """
 
 import math
@@ -50,6 +50,9 @@ MODEL = {
     'switching_curve': (
         'theta',
         'theta_dot',
+    ),
+    'conditions': (
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
     ),
     'objective_unit': 's',
 }

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: 18abb6ac0ea06d423083c037b16bca0120f3fd5baff528708f8cf3e8fd7ad73e
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: b94377f25152463aa6b2b258af611c3d1266cc48c645c03f6733387b10c474cd
 """
 
 import math
@@ -18,7 +18,7 @@ MODEL = {
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
-        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the maximum torque'},
+        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'rate of the pitch angle, in a unit of time set by the maximum torque'},
     ),
     'controls': (
         {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: c761fd88652ae1b58eb8a11f450c11a22f66974fb865c331f55e42c6af6de5f4
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: 7cd0b8718352ecfb11e2bbc79b73371f9dc1b77d53c85b1d63a18a3c75b69711
 """
 
 import math
@@ -18,7 +18,7 @@ MODEL = {
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
-        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the maximum torque'},
+        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'rate of the pitch angle, in a unit of time set by the maximum torque'},
     ),
     'controls': (
         {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 74dcfde31735d541ef12c471c1e315e6
-Digest: e87fbb04693ee8ed45d83cf4e1c23ec6f1ffa4eff841dd786433d835c8cf169c
+Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
+Digest: 91b5b01fa533934f6183702dd1db6a2e89af6f79075267155a4a1071f2aa0b09
 """
 
 import math
@@ -51,6 +51,9 @@ MODEL = {
     ),
     'balances': (
         {'symbol': 'angular_momentum', 'latex': '\\ell'},
+    ),
+    'conditions': (
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
     ),
 }
 

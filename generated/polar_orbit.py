@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 8c024ef5f31f21b2146b7cab5f6a61705e52ba3b1b1a9d98f5d4eeee912176c4
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: f1d842a6b0ca9fd9ff5282c380fb49c8241990aca87e0999ba3f9652100292c5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 7d7ca5ba4babc671d1371b2c9b75ff0cb43bef57a193c02c5addce5a5d3a3e4f
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: a0d0a017ce8eaed8eeaaa602848da3e8c6b7aa0275cce99b8033b82d33422c62
 """
 
 import math
@@ -29,7 +29,7 @@ MODEL = {
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
-        {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
+        {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'k1', 'latex': 'k_1', 'unit': '1/s**3', 'meaning': 'terminal weight of the distance', 'default': 0.0},
         {'symbol': 'k2', 'latex': 'k_2', 'unit': '1/s', 'meaning': 'terminal weight of the radial velocity', 'default': 0.0},
         {'symbol': 'k3', 'latex': 'k_3', 'unit': 'km**2/s**3', 'meaning': 'terminal weight of the angle', 'default': 0.0},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: ac2a6d88019a44cbab5c30cc0a6c9c43ec274de3172d098f606019bbbac0b7c3
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: 7a25622466fab998ed865bda2ccea046531bf2625e74ba7ccecf6cf59de8a829
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
-Digest: b146c1b0332095ebcfb53ec8e0bacab928f2492e4525e0ede4ce4e927ba19ba7
+Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
+Digest: 3133e7738f9ec52acfb2937a284be541673ccca655024131201b3680281e5ee1
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
-Digest: 9da36d63e8474a376189049d543cbee47b163bc0e80cc36659fc5ad94a22f9a6
+Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
+Digest: d7884e881ed1c030a4bc27ad903567b8dea9c039be7c2d7f7eee2995c9178c9d
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py 8c2e5667e7283e0d22b96e097224f888
-Digest: 7b3f44570639789dd5c0c81ef579880af0795c27343ae2202ee5646c1b3b52a0
+Source: ../derivations/examples/reorientation.py b99e01db2d5a8d7c6d97282fd1532c59
+Digest: ba124878294732edcfb5babddf01c92eaaa8011b6cd58298631575aec2902ba2
 """
 
 import math

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py b28fc210988413ee7c05e3bbfde2e565
+Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: 69c67c4aca776b89617ce37e745bcf5884fd1123e1d59c128f4fed9a31ebff52
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: 1bc6ea6aba9f61e4d05de8479f17f5898784fe27a664e49cba63bbeea9518c14
 """
 
 import math
@@ -33,7 +33,7 @@ MODEL = {
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the tangential thrust', 'default': 1.0, 'positive': True},
-        {'symbol': 'r_min', 'latex': 'r_{\\min}', 'unit': 'km', 'meaning': 'smallest distance from the centre of force', 'positive': True},
+        {'symbol': 'r_min', 'latex': 'r_{\\min}', 'unit': 'km', 'meaning': 'smallest distance allowed from the centre of force', 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py b28fc210988413ee7c05e3bbfde2e565
+Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
-Digest: c327dc1ee9d2c0e12eb200911b0248078a5f2934a69268d4255be9bd3afba46d
+Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
+Digest: 444524748a6942b35f9caba9120736dc1ac27b81c87436ba851bc51d07b7cfa2
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 07efa2b6a25d4a4b197a2394c3176757f1eaf7c2e41ce684a7a114401fa319bf
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: a66be63e1cc21bfc16ae65d202da8aea8d4cc16459443b052473e39f6d416628
 """
 
 import math

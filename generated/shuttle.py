@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 791a218c15a3090d7ebd6503b41fff8c
-Digest: 73e46d7ff8462ba1df9c2d7b23811ece7dbf376f4f44b83fc72952bf7dae63a5
+Source: ../derivations/examples/shuttle.py bc2e05b62d9104c208bda8f0f26309bc
+Digest: e3f416f2af5600eabc3318d5bbd0184916298e455b61f6bcefc62911951709f7
 """
 
 import math
@@ -33,13 +33,13 @@ MODEL = {
         {'symbol': 'r_e', 'latex': 'r_e', 'unit': 'ft', 'meaning': 'radius of the Earth', 'default': 20902900.0, 'positive': True},
         {'symbol': 'rho_0', 'latex': '\\rho_0', 'unit': 'slug/ft^3', 'meaning': 'density at the ground', 'default': 0.002378, 'positive': True},
         {'symbol': 'h_r', 'latex': 'h_r', 'unit': 'ft', 'meaning': 'scale height', 'default': 23800.0, 'positive': True},
-        {'symbol': 'area', 'latex': 'A', 'unit': 'ft^2', 'meaning': 'reference area', 'default': 2690.0, 'positive': True},
+        {'symbol': 'area', 'latex': 'A_{\\mathrm{ref}}', 'unit': 'ft^2', 'meaning': 'reference area', 'default': 2690.0, 'positive': True},
         {'symbol': 'm', 'latex': 'm', 'unit': 'slug', 'meaning': 'mass', 'default': 6309.442406912414, 'positive': True},
-        {'symbol': 'a_0', 'latex': 'a_0', 'meaning': 'lift without angle of attack', 'default': -0.20704},
-        {'symbol': 'a_1', 'latex': 'a_1', 'unit': '1/deg', 'meaning': 'slope of the lift', 'default': 0.029244, 'positive': True},
-        {'symbol': 'b_0', 'latex': 'b_0', 'meaning': 'drag without angle of attack', 'default': 0.07854, 'positive': True},
-        {'symbol': 'b_1', 'latex': 'b_1', 'unit': '1/deg', 'meaning': 'slope of the drag there', 'default': -0.0061592},
-        {'symbol': 'b_2', 'latex': 'b_2', 'unit': '1/deg^2', 'meaning': 'growth of the drag', 'default': 0.000621408, 'positive': True},
+        {'symbol': 'a_0', 'latex': 'a_0', 'meaning': 'lift coefficient at zero angle of attack', 'default': -0.20704},
+        {'symbol': 'a_1', 'latex': 'a_1', 'unit': '1/deg', 'meaning': 'slope of the lift coefficient', 'default': 0.029244, 'positive': True},
+        {'symbol': 'b_0', 'latex': 'b_0', 'meaning': 'drag coefficient at zero angle of attack', 'default': 0.07854, 'positive': True},
+        {'symbol': 'b_1', 'latex': 'b_1', 'unit': '1/deg', 'meaning': 'slope of the drag coefficient at zero angle of attack', 'default': -0.0061592},
+        {'symbol': 'b_2', 'latex': 'b_2', 'unit': '1/deg^2', 'meaning': 'quadratic coefficient of the drag', 'default': 0.000621408, 'positive': True},
     ),
     'control_set': 'product',
     'has_cost': True,

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 791a218c15a3090d7ebd6503b41fff8c
-Digest: 386635ae2500897202cf0428701cd59b30348041e365618edbb7b7c9f9dff22a
+Source: ../derivations/examples/shuttle.py bc2e05b62d9104c208bda8f0f26309bc
+Digest: 341bebe1f606ad905bff2e760210fe68a1643e36db9f537ffd58efabb71ce62d
 """
 
 import math
@@ -33,20 +33,20 @@ MODEL = {
         {'symbol': 'r_e', 'latex': 'r_e', 'unit': 'ft', 'meaning': 'radius of the Earth', 'default': 20902900.0, 'positive': True},
         {'symbol': 'rho_0', 'latex': '\\rho_0', 'unit': 'slug/ft^3', 'meaning': 'density at the ground', 'default': 0.002378, 'positive': True},
         {'symbol': 'h_r', 'latex': 'h_r', 'unit': 'ft', 'meaning': 'scale height', 'default': 23800.0, 'positive': True},
-        {'symbol': 'area', 'latex': 'A', 'unit': 'ft^2', 'meaning': 'reference area', 'default': 2690.0, 'positive': True},
+        {'symbol': 'area', 'latex': 'A_{\\mathrm{ref}}', 'unit': 'ft^2', 'meaning': 'reference area', 'default': 2690.0, 'positive': True},
         {'symbol': 'm', 'latex': 'm', 'unit': 'slug', 'meaning': 'mass', 'default': 6309.442406912414, 'positive': True},
-        {'symbol': 'a_0', 'latex': 'a_0', 'meaning': 'lift without angle of attack', 'default': -0.20704},
-        {'symbol': 'a_1', 'latex': 'a_1', 'unit': '1/deg', 'meaning': 'slope of the lift', 'default': 0.029244, 'positive': True},
-        {'symbol': 'b_0', 'latex': 'b_0', 'meaning': 'drag without angle of attack', 'default': 0.07854, 'positive': True},
-        {'symbol': 'b_1', 'latex': 'b_1', 'unit': '1/deg', 'meaning': 'slope of the drag there', 'default': -0.0061592},
-        {'symbol': 'b_2', 'latex': 'b_2', 'unit': '1/deg^2', 'meaning': 'growth of the drag', 'default': 0.000621408, 'positive': True},
-        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'unit': 'BTU/ft^2/s', 'meaning': 'heating that the leading edge stands', 'default': 70.0, 'positive': True},
-        {'symbol': 'q_r', 'latex': 'q_r', 'unit': 'BTU/ft^2/s', 'meaning': 'heating by ground air at the reference speed', 'default': 863.1359220887518, 'positive': True},
+        {'symbol': 'a_0', 'latex': 'a_0', 'meaning': 'lift coefficient at zero angle of attack', 'default': -0.20704},
+        {'symbol': 'a_1', 'latex': 'a_1', 'unit': '1/deg', 'meaning': 'slope of the lift coefficient', 'default': 0.029244, 'positive': True},
+        {'symbol': 'b_0', 'latex': 'b_0', 'meaning': 'drag coefficient at zero angle of attack', 'default': 0.07854, 'positive': True},
+        {'symbol': 'b_1', 'latex': 'b_1', 'unit': '1/deg', 'meaning': 'slope of the drag coefficient at zero angle of attack', 'default': -0.0061592},
+        {'symbol': 'b_2', 'latex': 'b_2', 'unit': '1/deg^2', 'meaning': 'quadratic coefficient of the drag', 'default': 0.000621408, 'positive': True},
+        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'unit': 'BTU/ft^2/s', 'meaning': 'heating rate that the leading edge stands', 'default': 70.0, 'positive': True},
+        {'symbol': 'q_r', 'latex': 'q_r', 'unit': 'BTU/ft^2/s', 'meaning': 'heating rate by ground air at the reference speed', 'default': 863.1359220887518, 'positive': True},
         {'symbol': 'v_r', 'latex': 'v_r', 'unit': 'ft/s', 'meaning': 'reference speed', 'default': 10000.0, 'positive': True},
-        {'symbol': 'c_0', 'latex': 'c_0', 'meaning': 'heating without angle of attack', 'default': 1.0672181},
-        {'symbol': 'c_1', 'latex': 'c_1', 'unit': '1/deg', 'meaning': 'slope of the heating there', 'default': -0.019213774},
-        {'symbol': 'c_2', 'latex': 'c_2', 'unit': '1/deg^2', 'meaning': 'its growth', 'default': 0.00021286289},
-        {'symbol': 'c_3', 'latex': 'c_3', 'unit': '1/deg^3', 'meaning': 'and that of its growth', 'default': -1.0117249e-06},
+        {'symbol': 'c_0', 'latex': 'c_0', 'meaning': 'heating coefficient at zero angle of attack', 'default': 1.0672181},
+        {'symbol': 'c_1', 'latex': 'c_1', 'unit': '1/deg', 'meaning': 'linear coefficient of the heating in that angle', 'default': -0.019213774},
+        {'symbol': 'c_2', 'latex': 'c_2', 'unit': '1/deg^2', 'meaning': 'quadratic coefficient of the heating in that angle', 'default': 0.00021286289},
+        {'symbol': 'c_3', 'latex': 'c_3', 'unit': '1/deg^3', 'meaning': 'cubic coefficient of the heating in that angle', 'default': -1.0117249e-06},
     ),
     'control_set': 'product',
     'has_cost': True,

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 7010a43b660fa0fe6fe36dc6750fb3d508d04a6dde5998da0d4bec0f66480bde
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: c2bdf594d72bc4e49b78f113308fbd4570965bd15531a59c1114015a98a42636
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: e6a10c21f16aee8671b19500be59b6ee522e812bd587f2ce033a793272041466
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: 49c2f010a96eca109cb7d877c3c91f3da0ce0231ae07fb35b95949c7141f0d52
 """
 
 import math

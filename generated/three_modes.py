@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 40cb0a60bb8257242ec2afc6c11218a640692d7006461772c48a794f77822fc6
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: 0d520c03ad6bd24d1f127eccb124c0fc5440eb494601b2b055307db26c2065d6
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: 4f0b6bb870d1d1fe6b5f863f90e746b88c70f542fa3a737048d7f7c6c5ea09d8
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: 2f9c545368cfadf77551bcb5c6b2f1d670c0fe471ad0dc86db18af75c2622b8e
 """
 
 import math

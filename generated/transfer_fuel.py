@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py 368ae8e816b2fce072ae5d156224b4c5
-Digest: 03b0077a66133c0fd50be586f5bde4c298e4c18cc87d803e873de6098a509dbf
+Source: ../derivations/examples/transfer_fuel.py a904c020c776e62343ad23874a7b6f37
+Digest: 39f35ddf9a1cd3d0ee886fdfb6548028ac1a2bb90897acf9da729ef0e50bccf3
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'Transfer between circular orbits with minimum fuel',
     'source': 'derivations/examples/transfer_fuel.py',
     'states': (
-        {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre', 'positive': True},
+        {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre of force', 'positive': True},
         {'symbol': 'theta', 'latex': '\\theta', 'meaning': 'polar angle', 'kind': 'angle'},
         {'symbol': 'u', 'latex': 'u', 'meaning': 'radial velocity'},
         {'symbol': 'v', 'latex': 'v', 'meaning': 'transverse velocity'},

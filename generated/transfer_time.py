@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py f3f85ae410ede7ac5e9208e0b9191e12
-Digest: 532877d063fde9e687c8903a6fbce0dc1f9ab22b5d12cda01a4d2c185dd0bb8c
+Source: ../derivations/examples/transfer_time.py 8dac91d34931c9427d3d84056043063d
+Digest: 93baeb951a87ea6576aceecb59d211e3a73b521de881a7fd995743bdf8ae8e18
 """
 
 import math
@@ -17,7 +17,7 @@ MODEL = {
     'title': 'Transfer between circular orbits in minimum time',
     'source': 'derivations/examples/transfer_time.py',
     'states': (
-        {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre', 'positive': True},
+        {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre of force', 'positive': True},
         {'symbol': 'u', 'latex': 'u', 'meaning': 'radial velocity'},
         {'symbol': 'v', 'latex': 'v', 'meaning': 'transverse velocity'},
     ),

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Source: ../derivations/two_body.py 79fc86b56a168dac4a7575d445d06059
-Digest: 9a7f143228240de28f066ccdbc635a734f533182b64b3c6831398af493e86dd1
+Source: ../derivations/two_body.py b89d46b2bea74c144897b0bf79994229
+Digest: 43372efb14139b876b922e4a680c8637b1b521af036e8063b091abbe1c489ff8
 """
 
 import math

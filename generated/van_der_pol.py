@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
-Digest: dc0827c3f974aad2a21c009b38b6044710bdfb3a2a2cf56e0bcb24d56395c289
+Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
+Digest: 02b81998f6bd567bd3bb98586e67a88c7c855281a67601eed32824036289640f
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
-Digest: d036aee13e36446d19f30cbc8a691caa29c701287a1d4164f44f8decda9dbbab
+Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
+Digest: ddbb5b8e5f114489efdec504816ad19215db38c7e0af781c645c5be6c2958b74
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Source: ../derivations/examples/zermelo.py 02bab05fb4ab60a4d234d6fd8e9b20c9
-Digest: 644775cd5c1e3cc13842a51ab8c92d28b7469eec32c1f19c8ccfed15629d7752
+Source: ../derivations/examples/zermelo.py 3971a73f58bc2a2d63f8d2ea1665e8d7
+Digest: 47726c07f8314122f743b0dd3db1793b7c4d33ec6cbe1ebb8b915f8734f7d97d
 """
 
 import math
@@ -18,14 +18,14 @@ MODEL = {
     'source': 'derivations/examples/zermelo.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'distance along the current'},
-        {'symbol': 'y', 'latex': 'y', 'meaning': 'distance across it'},
+        {'symbol': 'y', 'latex': 'y', 'meaning': 'distance across the current'},
     ),
     'controls': (
-        {'symbol': 'heading', 'latex': '\\theta', 'meaning': 'heading', 'kind': 'angle'},
+        {'symbol': 'heading', 'latex': '\\theta', 'meaning': 'heading, from the direction of x', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'V', 'latex': 'V', 'meaning': 'speed of the ship in the water', 'default': 1.0, 'positive': True},
-        {'symbol': 'h', 'latex': 'h', 'meaning': 'distance over which the current grows by that speed', 'default': 1.0, 'positive': True},
+        {'symbol': 'h', 'latex': 'h', 'meaning': "distance over which the current grows by the ship's speed", 'default': 1.0, 'positive': True},
     ),
     'control_set': 'product',
     'has_cost': True,
