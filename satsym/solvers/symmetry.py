@@ -60,6 +60,11 @@ class Rotation:
     vectors: NDArray[np.bool_]
     """Which states such rotations mix, about whatever axis, shape (n, n): components of one vector."""
 
+    @property
+    def moved(self) -> NDArray[np.bool_]:
+        """Which states such rotations move, shape (n,): a mass or a temperature they leave as it is."""
+        return _moved(self.vectors)
+
     def turned(self, states: Array, angle: Array | float) -> Array:
         """States (n, M), each by its angle (M,)."""
         phases = np.exp(np.multiply.outer(self.angular, np.atleast_1d(angle)))
@@ -83,15 +88,20 @@ def rotation(instance: Instance) -> Rotation | None:
 def rotations(instance: Instance) -> Iterator[Rotation]:
     """Rotations that follow the motion: at all ends that are given, and at either of them where they differ from that.
 
-    In space the first is about an axis between those of the momenta at start and end, whatever the coordinates.
+    In space the first is about an axis between those of the momenta at start and end, whatever the coordinates. An end
+    is given where every state is that rotations move.
     """
-    model, ends = instance.model, np.array([instance.initial, *_given_end(instance)]).T
+    model, (end, given) = instance.model, _end(instance)
+    ends = np.array([instance.initial, end]).T
     sizes = _sizes(model, ends)[:, None]
     rounded = np.ldexp(1.0, np.rint(np.log2(sizes[:, 0])).astype(int))
     about = _about(model, ends[:, 0], rounded)
     found = _generators(model, instance.t0, about, tuple(rounded.tolist()), instance.parameters)
     if found is None:
         return
+    vectors = _vectors(found / sizes * sizes.T)
+    if not given[_moved(vectors)].all():
+        ends = ends[:, :1]
     here, _ = _motion(model, instance.t0, instance.parameters, ends)
     known: list[Array] = []
     for at in ([*range(ends.shape[1])], [0], [ends.shape[1] - 1]):
@@ -102,13 +112,14 @@ def rotations(instance: Instance) -> Iterator[Rotation]:
         unit /= max(float(np.linalg.norm(unit)), 1e-300)
         if all(float((unit * other).sum()) < ALIKE for other in known):
             known.append(unit)
-            around = _about_its_axis(matrix, _vectors(found / sizes * sizes.T))
+            around = _about_its_axis(matrix, vectors)
             yield from () if around is None else (around,)
 
 
 def _about_its_axis(matrix: Array, vectors: NDArray[np.bool_]) -> Rotation | None:
     """The rotation that a matrix generates, if it is one that comes back."""
-    angular, axes = np.linalg.eig(matrix)
+    # rounding that mixes what is not mixed leaves states that stand still without axes of their own
+    angular, axes = np.linalg.eig(np.where(vectors, matrix, 0.0))
     fastest = float(np.abs(angular).max())
     if fastest == 0.0 or (np.abs(angular.real) > PERTURBED * fastest).any() or np.linalg.cond(axes) > 1e6:
         return None
@@ -123,16 +134,25 @@ def _vectors(found: Array) -> NDArray[np.bool_]:
     return np.asarray(np.linalg.matrix_power(steps, len(steps)) > 0.0)
 
 
-def _given_end(instance: Instance) -> list[Array]:
-    """The final state, where all of it is given and the final time is, if it moves with the reference."""
-    final, names, curve = instance.final, instance.model.spec.state_names, np.zeros(0)
-    if final.keys() != set(names):
-        return []
-    if "reference" in final.values():
-        if instance.tf is None:
-            return []
-        curve = np.array(instance.model.reference(instance.tf, instance.parameters))
-    return [np.array([curve[i] if (value := final[s]) == "reference" else value for i, s in enumerate(names)])]
+def _moved(vectors: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which states are mixed with others, shape (n,)."""
+    return np.asarray(vectors.sum(axis=1) > 1)
+
+
+def _end(instance: Instance) -> tuple[Array, NDArray[np.bool_]]:
+    """The final state, shape (n,), and what of it is given; elsewhere it is the initial one.
+
+    Nothing is given on a reference that moves while the final time is free.
+    """
+    final, names, end = instance.final, instance.model.spec.state_names, np.array(instance.initial, dtype=float)
+    on_curve = "reference" in final.values()
+    if on_curve and instance.tf is None:
+        return end, np.zeros(len(names), dtype=bool)
+    curve = np.array(instance.model.reference(instance.tf or 0.0, instance.parameters)) if on_curve else end
+    for i, name in enumerate(names):
+        value = final.get(name, end[i])
+        end[i] = curve[i] if value == "reference" else value
+    return end, np.array([name in final for name in names])
 
 
 def _sizes(model: Kernels, ends: Array) -> Array:
@@ -202,7 +222,7 @@ class Spiral:
 def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
     """Paths that turn with the motion from the start to the given end, by their turns; the likeliest first.
 
-    Empty where the motion has no such rotation, the end is not given as a whole, or the duration is free.
+    Empty where the motion has no such rotation, not all that it moves is given at the end, or the duration is free.
 
     Parameters
     ----------
@@ -211,10 +231,10 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
     around
         The rotation, where it is known.
     """
-    if problem.free_time or not problem.fixed.all():
+    if problem.free_time or not problem.fixed.any():
         return []
     around = around or rotation(problem.instance)
-    if around is None:
+    if around is None or not problem.fixed[around.moved].all():
         return []
     start, end = (column[:, None] * problem.scale.state[:, None] for column in straight(problem).T)
     back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, TURN, ANGLES, endpoint=False))
@@ -231,6 +251,12 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
     between = _Between(problem, around, start, end, (first, last))
 
     return [Spiral(angle / TURN, between.spiral(angle)) for angle in likeliest]
+
+
+def other_spirals(problem: TwoPoint, states: Array, most: int) -> list[Spiral]:
+    """Those of other numbers of turns than a motion (n, M) has, the likeliest first; of any about further axes."""
+    found = [(k, turns(one, states), spirals(problem, most, one)) for k, one in enumerate(rotations(problem.instance))]
+    return [one for k, own, each in found for one in each if k or abs(one.turns - own) > 0.5]
 
 
 @dataclass(frozen=True, eq=False)

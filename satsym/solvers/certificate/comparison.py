@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.reintegration.flow import products
 
@@ -103,6 +104,13 @@ class Comparison:
         """The cheapest of all that are cheaper than the solution, and have states and costates to start from."""
         cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None and c.cheapest.curve]
         return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
+
+
+def going_round(instance: Instance) -> list[Kind]:
+    """Revolutions, where the motion without control looks the same when it is turned: then other numbers may do."""
+    from satsym.solvers.symmetry import rotation
+
+    return [Kind.REVOLUTIONS] if rotation(instance) else []
 
 
 def summed(solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool) -> Compared:

@@ -32,7 +32,7 @@ from satsym.solvers.revolutions import shifted
 if TYPE_CHECKING:
     from satsym.solvers.collocation.curve import Curve
     from satsym.solvers.collocation.problem import TwoPoint
-    from satsym.solvers.symmetry import Rotation, Spiral
+    from satsym.solvers.symmetry import Spiral
 
 WORK = 15_000
 """Columns that may be linearised for one attempt; a revolution has some 30 of them an iteration."""
@@ -183,7 +183,7 @@ def _tried(
 def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
     """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
     from satsym.solvers.collocation.scaling import two_point
-    from satsym.solvers.symmetry import rotation, rotations
+    from satsym.solvers.symmetry import other_spirals, rotation
 
     instance, cost = solution.instance, solution.objective
     problem, lasting = at_its_duration(solution), float(solution.times[-1]) - instance.t0
@@ -193,6 +193,8 @@ def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[K
         bent = tuple(BENT[k % len(BENT)] for k in range(SEEDS))
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
             yield kind, _made_accurate(searches, cost)
+        if rotation(fixed):
+            yield Kind.REVOLUTIONS, []
         return
     yield Kind.STARTS, [from_path(problem, path, 1.0, cost, answer=answer) for path in _bent(problem, rng)]
     if instance.control_set.bounded:
@@ -202,9 +204,10 @@ def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[K
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
     around: list[Search] = [_cold(one, cost) for one in turned]
-    if problem.fixed.all() and not angles:
-        around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotations(fixed))]
-    elif not angles and not problem.fixed.all() and rotation(fixed):
+    symmetry = None if angles else rotation(fixed)
+    if symmetry and problem.fixed[symmetry.moved].all():
+        around = [_from_spiral(problem, one, cost) for one in other_spirals(problem, solution.x, TURNS + 1)]
+    elif symmetry:
         yield Kind.REVOLUTIONS, []
     if around:
         yield Kind.REVOLUTIONS, around
@@ -339,14 +342,6 @@ def _bent(
 
     for k in range(count):
         yield paths.bent(problem, rng, amplitudes[k % len(amplitudes)])
-
-
-def _spirals(solution: Solution, problem: TwoPoint, rotations: Iterator[Rotation]) -> list[Spiral]:
-    """Paths of other numbers of revolutions than the solution's, the likeliest first; of any about other axes."""
-    from satsym.solvers.symmetry import spirals, turns
-
-    found = [(k, turns(one, solution.x), spirals(problem, TURNS + 1, one)) for k, one in enumerate(rotations)]
-    return [one for k, own, each in found for one in each if k or abs(one.turns - own) > 0.5]
 
 
 def none_conceivable(solution: Solution) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.comparison import Comparison
+from satsym.solvers.certificate.comparison import Comparison, going_round
 from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
@@ -62,6 +62,7 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
                 second += _sufficient(solution, again)
                 if compared:
                     others = comparison.compared(solution, deadline, seed)
+                    others = others.joined(Comparison((), tuple(going_round(solution.instance))))
                     second += others.checks
     return Certificate(
         verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),

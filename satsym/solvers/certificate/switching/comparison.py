@@ -10,7 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.comparison import COST_MARGIN, UNCOMPARED, margin
+from satsym.solvers.certificate.comparison import COST_MARGIN, UNCOMPARED, going_round, margin
 from satsym.solvers.certificate.switching import competitors as switching_competitors
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.iteration import Limits
@@ -43,12 +43,12 @@ class Comparison:
 
 def allowed(instance: Instance, bounded: bool = False) -> list[Kind]:
     """Kinds of competitors that a problem has; where path constraints decided, with those of these."""
-    durations = [Kind.DURATIONS] if instance.tf is None else []
+    durations, around = [Kind.DURATIONS] if instance.tf is None else [], going_round(instance)
     if instance.model.spec.throttled:
-        return durations or [Kind.STARTS]
+        return [*(durations or [Kind.STARTS]), *around]
     if bounded:
-        return [Kind.NEIGHBOURS, Kind.SIGNS, Kind.ARCS, *durations]
-    return [Kind.NEIGHBOURS, Kind.SIGNS, *durations, Kind.STARTS]
+        return [Kind.NEIGHBOURS, Kind.SIGNS, Kind.ARCS, *durations, *around]
+    return [Kind.NEIGHBOURS, Kind.SIGNS, *durations, Kind.STARTS, *around]
 
 
 def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
@@ -63,7 +63,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     if bounded:  # others know nothing of path constraints
         sources = (lambda: [_other_boundaries(solution, limits, seed)],)
     if solution.instance.model.spec.throttled:
-        sources = (lambda: [_drawn(solution, limits)],)
+        sources = (lambda: [_drawn(solution, limits)], lambda: [_around(solution, limits)])
     found: dict[Kind, Competitors] = {}
     with np.errstate(all="ignore"):
         for source in sources:
@@ -110,6 +110,15 @@ def _drawn(solution: Solution, limits: Limits) -> Competitors:
     costs = [exact.trajectory.cost(instance) for exact in found]
     kind = allowed(instance)[0]
     return Competitors(kind, len(by_throttle.AMPLITUDES), len(costs), min(costs, default=float("nan")))
+
+
+def _around(solution: Solution, limits: Limits) -> Competitors | None:
+    """Extremals with throttled vectors that go round more or less often; ``None`` where it is not known how."""
+    from satsym.solvers.switching.cold_start.by_turns import other_turns
+
+    found = list(other_turns(solution.instance, solution.x, limits))
+    costs = [exact.trajectory.cost(solution.instance) for exact in found if exact is not None]
+    return Competitors(Kind.REVOLUTIONS, len(found), len(costs), min(costs, default=float("nan"))) if found else None
 
 
 def _meeting(solution: Solution, limits: Limits) -> Competitors | None:

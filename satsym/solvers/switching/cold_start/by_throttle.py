@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
 from satsym.solvers.switching.cold_start.by_duration import by_duration
 from satsym.solvers.switching.cold_start.by_easier import followed
+from satsym.solvers.switching.cold_start.by_turns import other_turns
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.solvers.switching.structure import LOWER, Structure
 from satsym.solvers.switching.structure import Guess as Arcs
@@ -40,7 +42,10 @@ def best(instance: Instance, limits: Limits) -> Exact | Stopped:
     found = _first(instance, limits)
     if isinstance(found, Stopped):
         return found
-    for other in others(instance, found.refined.at.end - instance.t0, limits, np.random.default_rng(SEED), BESIDE):
+    drawn = others(instance, found.refined.at.end - instance.t0, limits, np.random.default_rng(SEED), BESIDE)
+    states = np.concatenate([z[: len(instance.initial)] for _, _, z, _ in found.trajectory.points], axis=1)
+    around = other_turns(instance, states, limits)
+    for other in filter(None, chain(drawn, around)):
         cost, least = (one.trajectory.cost(instance) for one in (other, found))
         if cost < least - CHEAPER * abs(least):
             found = other
