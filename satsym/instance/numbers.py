@@ -29,6 +29,9 @@ class Table(str, Enum):
     CONTROL = "control"
 
 
+GUESS = "tf_guess"
+"""Of a free final time: may be set where none is given."""
+
 SIDES = ("lower", "upper")
 """Of bounds on one control, as ``control.u1.lower``."""
 
@@ -91,7 +94,7 @@ class Key:
         """Its value in an instance; ``None`` where that gives no number."""
         spec = instance.model.spec
         if self.table is Table.TIME:
-            return instance.t0 if self.name == "t0" else instance.tf
+            return {"t0": instance.t0, "tf": instance.tf, GUESS: instance.tf_guess}[self.name]
         if self.table is Table.CONTROL:
             if self.name == MAX_NORM:
                 return instance.max_norm
@@ -165,7 +168,7 @@ def known(spec: ProblemSpec) -> Iterator[Key]:
     for table, names in (
         (Table.INITIAL, spec.state_names),
         (Table.PARAMETERS, spec.parameter_names),
-        (Table.TIME, ("tf", "t0")),
+        (Table.TIME, ("tf", "t0", GUESS)),
         (Table.FINAL, spec.state_names),
         (Table.CONTROL, (MAX_NORM,) if spec.control_set == "ball" else ()),
         (Table.CONTROL, tuple(f"{name}.{side}" for name in _in_boxes(spec) for side in SIDES)),
@@ -192,7 +195,10 @@ def find(text: str, instance: Instance) -> Key:
     key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
         raise BadInput(f"{key.text}: {instance.called} has a range for it, which is set in its file alone")
-    if not key.given(instance):
+    guessed = key.name == GUESS and key.table is Table.TIME
+    if guessed and instance.tf is not None:
+        raise BadInput(f"{key.text}: {instance.called} gives the final time; set time.tf, or leave this out")
+    if not guessed and not key.given(instance):
         raise BadInput(f"{key.text}: {instance.called} gives no number for it; give it one there")
     return key
 
@@ -276,6 +282,7 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
     for one in found.continuation:
         begun = one.key.placed(begun, one.begin)
     for each in (found, begun):
-        if each.tf is not None and not each.tf > each.t0:
-            raise BadInput(f"time.tf: {each.tf:g} is not after t0 = {each.t0:g}; write a later time")
+        for name, end in (("tf", each.tf), (GUESS, each.tf_guess)):
+            if end is not None and not end > each.t0:
+                raise BadInput(f"time.{name}: {end:g} is not after t0 = {each.t0:g}; write a later time")
     return found

@@ -28,9 +28,9 @@ Examples:
   satsym study its-thesis --command simulate --vary initial.r=1.05:1.2:50 --trajectories
   satsym study my_case.toml --out DIR --resume    go on with a study that was interrupted
 
-KEY is initial.STATE, final.STATE, parameters.NAME, time.tf, time.t0, control.max_norm, control.NAME.lower or
-control.NAME.upper. The table [study] of an instance says the same: command, sample, method, seed, and
-[study.vary] "initial.r" = "0.9:1.1:50".
+KEY is initial.STATE, final.STATE, parameters.NAME, time.tf, time.t0, time.tf_guess, control.max_norm,
+control.NAME.lower or control.NAME.upper. The table [study] of an instance says the same: command, sample, method,
+seed, and [study.vary] "initial.r" = "0.9:1.1:50".
 
 Exit codes: 0 done (rows that fail say so in the table), 3 the study cannot be carried out, 4 no row has an answer."""
 

@@ -137,7 +137,7 @@ def _without_duration(chosen: Extremal, instance: Instance) -> Extremal:
     """No duration of the regularised problem, which says little about the problem itself."""
     status, message = chosen.status, chosen.message
     if status is Status.NO_MINIMISER:
-        status = Status.NOT_CONVERGED
+        status, message = Status.NOT_CONVERGED, "no duration was found; give a tf_guess"
     message = f"of the regularised problem from which one starts: {message}"
     return replace(chosen, problem=_exact(chosen.problem, instance), status=status, message=message)
 
@@ -145,7 +145,7 @@ def _without_duration(chosen: Extremal, instance: Instance) -> Extremal:
 def steered(instance: Instance) -> Instance | None:
     """An instance that starts from the motion in one direction which comes nearest to the end, at the time it does.
 
-    ``None`` with a guess of its own, or where nothing is asked of the end.
+    ``None`` with a guess of its own, where nothing is asked of the end, or where no direction comes nearer to it.
     """
     fixed = [i for i, name in enumerate(instance.model.spec.state_names) if isinstance(instance.final.get(name), float)]
     if instance.guess or not fixed:
@@ -161,7 +161,8 @@ def steered(instance: Instance) -> Instance | None:
         missed = np.abs((x[fixed] - target[:, None]) / unit[:, None]).max(axis=0)
         missed[~np.isfinite(missed)] = np.inf
         at = int(missed[1:].argmin()) + 1 if instance.tf is None else len(times) - 1
-        if np.isfinite(x[:, : at + 1]).all() and (best is None or missed[at] < (1.0 - NEARER) * best[0]):
+        nearer = (best is None or missed[at] < (1.0 - NEARER) * best[0]) and at > 1
+        if nearer and np.isfinite(x[:, : at + 1]).all():
             best = float(missed[at]), at, x[:, : at + 1]
     if best is None:
         return None

@@ -21,8 +21,9 @@ that where each one costs great effort."""
 MOST_SCALES, SMALLEST_SCALES = 64.0, 1e-7
 """Durations, in units of the first one, at which a search gives up that has no reason of its own to end."""
 
-LONG = 8.0
-"""A cost that falls over durations of such a ratio, where time costs nothing, falls for ever."""
+LONG = 100.0
+"""A cost that falls over durations of such a ratio, up to some that are long on the problem's own scale, falls for ever
+where time costs nothing."""
 
 MOST_INTERVALS = 300
 """Mesh beyond which no longer durations are tried: about fifty revolutions."""
@@ -48,10 +49,12 @@ class Search:
         Solve for given durations.
     tries
         Those that were solved for, the shortest first.
+    long
+        A duration that is long on the problem's own scale.
     """
 
-    def __init__(self, trials: Trials, effort: bool) -> None:
-        self.trials, self.limits = trials, trials.limits
+    def __init__(self, trials: Trials, effort: bool, long: float) -> None:
+        self.trials, self.limits, self.long = trials, trials.limits, long
         self.tries: list[Try] = []
         self._quick, self._effort = True, effort
 
@@ -79,8 +82,11 @@ class Search:
     def ends_in_a_fall(self) -> bool:
         """Whether long durations are the cheapest, and nothing ever makes longer ones cost more."""
         longest = self.tries[-1]
-        far = longest.duration >= LONG * self.tries[0].duration * (1.0 - 1e-9)
-        return self.falls_to_the_longest and longest.floor <= 0.0 and far
+        return self.falls_to_the_longest and longest.floor <= 0.0 and self._far(longest.duration)
+
+    def _far(self, duration: float) -> bool:
+        """Whether so long a duration would have shown a minimum."""
+        return duration >= max(LONG * self.tries[0].duration, self.long) * (1.0 - 1e-9)
 
     def flat(self, least: float) -> bool:
         """Whether costs at all durations differ by no more than this."""
@@ -166,8 +172,9 @@ class Search:
             return False
         if self._timed:
             return duration < self._dearest()
-        falls = last.cost <= min(costs) and last.duration >= LONG * self.tries[0].duration
-        return planned or (not falls and duration <= MOST_SCALES * self.trials.first)
+        falls = last.cost <= min(costs) and self._far(last.duration)
+        most = RATIO * max(MOST_SCALES * self.trials.first, self.long)
+        return planned or (not falls and duration <= most)
 
     def _walk(self, down: bool) -> None:
         """On from the shortest or the longest duration while the cost falls that way, in smaller steps where need be.

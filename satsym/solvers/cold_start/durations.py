@@ -15,6 +15,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
 from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
+from satsym.solvers.cold_start.own_time import long_time, own_time
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.scaling import NO_SLOPE
 from satsym.solvers.control.regularised import sloping
@@ -23,6 +24,9 @@ from satsym.status import Status
 
 POLISHED = 3
 """Brackets, the cheapest first, in which a minimum is looked for."""
+
+APART = 4.0
+"""Ratio of two time scales around each of which durations are tried."""
 
 FLAT = 1e-12
 """Costs at all durations that differ by less, relative to the problem's own scale, leave the duration open."""
@@ -33,7 +37,7 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Mi
     scale = time_scale(instance)
     guess = scale if instance.tf_guess is None else instance.tf_guess - instance.t0
     trials = Trials(instance, limits, guess)
-    search = Search(trials, effort)
+    search = Search(trials, effort, long_time(instance, scale))
     for around, powers, quick in _plans(instance, scale, guess):
         if not search.tries and (quick or effort):
             search.scan(around, powers, quick)
@@ -54,7 +58,10 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Mi
 
 
 def time_scale(instance: Instance) -> float:
-    """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control; one if zero."""
+    """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control.
+
+    Where these are zero, what the instance's own numbers tell; one if they tell nothing.
+    """
     n = len(instance.initial)
     none = np.zeros((n, 1))
     nothing = tuple((sloping(instance, none) if instance.model.spec.throttled else none)[:, 0].tolist())
@@ -62,20 +69,29 @@ def time_scale(instance: Instance) -> float:
         instance.t0, instance.initial, nothing, instance.parameters, instance.control_set.without_bounds.arguments
     )
     fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(2 * n, 2 * n)[:n, :n])).max()
-    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > NO_SLOPE else 1.0
+    if np.isfinite(fastest) and fastest > NO_SLOPE:
+        return 1.0 / float(fastest)
+    return own_time(instance) or 1.0
 
 
 def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, tuple[int, int], bool]]:
     """Where durations are looked for, one place after the other: around what, at which powers, and whether quickly."""
+    own = own_time(instance) or scale
     if instance.tf_guess is None:
-        return [(scale, AROUND_SCALE, True), (scale, FEWER, False)]
+        elsewhere = [(own, AROUND_SCALE, True)] if max(own / scale, scale / own) > APART else []
+        return [(scale, AROUND_SCALE, True), *elsewhere, (scale, FEWER, False)]
     return [(guess, AROUND_GUESS, True), (scale, AROUND_SCALE, True), (guess, (0, 0), False)]
 
 
 def _unsolved(trials: Trials, limits: Limits) -> Extremal:
     if limits.expired:
         return _none(trials, Status.TIME_LIMIT, "time was up before any duration was solved for")
-    return _none(trials, Status.NOT_CONVERGED, "no extremal found at any duration that was tried")
+    message = f"no extremal found at any duration that was tried; {_advice(trials)}"
+    return _none(trials, Status.NOT_CONVERGED, message)
+
+
+def _advice(trials: Trials) -> str:
+    return "give a tf_guess" if trials.instance.tf_guess is None else "give another tf_guess"
 
 
 def _why(search: Search) -> tuple[Status, str]:
@@ -86,7 +102,7 @@ def _why(search: Search) -> tuple[Status, str]:
     if search.ends_at_nothing:
         advice = "weigh time less, ask something of the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_costs(_spread(search.tries))}; {advice}"
-    advice = "give a tf_guess" if search.trials.instance.tf_guess is None else "give another tf_guess"
+    advice = _advice(search.trials)
     if search.falls_to_the_longest:
         costs = _costs(_records(search.tries))
         return Status.NOT_CONVERGED, f"the cost still falls at the longest duration solved: {costs}; {advice}"

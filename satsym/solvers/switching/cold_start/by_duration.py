@@ -13,6 +13,7 @@ from satsym.instance import Instance
 from satsym.solvers.cold_start.directions import directed
 from satsym.solvers.cold_start.duration_search import LONG, LONGER, RATIO, SHORTER, SMALLEST
 from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.cold_start.own_time import long_time
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -65,6 +66,7 @@ def by_duration(instance: Instance, limits: Limits) -> Exact | Stopped | None:
     if first is None:
         return None
     seen, ratio = [first], RATIO if first.falls else 1.0 / RATIO
+    long = long_time(instance, time_scale(instance))
     while not limits.expired and abs(ratio - 1.0) > SMALLEST - 1.0:
         here = seen[-1]
         there = _timed(instance, attempt(_given(instance, ratio * here.duration), here.guess(instance, ratio), limits))
@@ -77,7 +79,7 @@ def by_duration(instance: Instance, limits: Limits) -> Exact | Stopped | None:
             near = min(here, there, key=lambda one: abs(one.slope))
             freed = attempt(instance, near.guess(instance), limits)
             return None if freed is None else replace(freed, origin=Origin.GIVEN)
-        if there.falls and there.duration >= LONG * first.duration:
+        if there.falls and there.duration >= max(LONG * first.duration, long):
             return _endless(instance, seen)
     advice = "give a tf_guess, or fix the final time"
     message = f"the cost still falls at the longest duration solved: {_costs(seen)}; {advice}"

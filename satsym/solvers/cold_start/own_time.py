@@ -1,0 +1,65 @@
+"""How long an instance lasts by its own numbers: what its states are to change by, and how quickly they can."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+
+STEP = 1e-6
+"""By which a state is moved along its rate to see its second derivative, relative to what it is to change by."""
+
+SLOWEST = 1e4
+"""Times the quickest state's time beyond which a time comes of rounding."""
+
+FAR = 10.0
+"""Own times that are long."""
+
+
+def own_time(instance: Instance) -> float | None:
+    """The time that the slowest state takes for its way at its quickest, roughly; ``None`` where nothing tells it.
+
+    A state has so far to go, ``d``, as given final states are from the initial ones; at the start it has a rate ``v``
+    and a second derivative ``a``, without controls and at each of their finite bounds. It takes the least of all
+    ``|d/v|`` and ``sqrt|d/a|``.
+    """
+    names, start = instance.model.spec.state_names, np.array(instance.initial)
+    goal = [instance.final.get(name) for name in names]
+    way = np.array(
+        [float(end) - x if isinstance(end, float | int) else 0.0 for end, x in zip(goal, start, strict=True)]
+    )
+    if not way.any():
+        return None
+    with np.errstate(all="ignore"):
+        u = _extremes(instance)
+        v = _rates(instance, 0.0, start[:, None], u)
+        step = STEP * float(np.nanmin(np.where(v != 0.0, np.abs(way).max() / np.abs(v), np.inf)))
+        a = (_rates(instance, step, start[:, None] + step * v, u) - v) / step
+        far = np.abs(way)[:, None]
+        times = np.minimum(far / np.abs(v), np.sqrt(far / np.abs(a))).min(axis=1)
+    times = times[(way != 0.0) & np.isfinite(times) & (times > 0.0)]
+    return float(times[times <= SLOWEST * times.min()].max()) if times.size else None
+
+
+def long_time(instance: Instance, scale: float) -> float:
+    """A time that is long for an instance whose motion has this time scale."""
+    return FAR * max(own_time(instance) or 0.0, scale)
+
+
+def _extremes(instance: Instance) -> Array:
+    """No controls, and each at each of its finite bounds, as far as that is admissible, a column each."""
+    count = len(instance.model.spec.controls)
+    columns = [np.zeros(count)]
+    for bounds in instance.control_set.around(count):
+        for place, bound in enumerate(np.ravel(bounds)):
+            if np.isfinite(bound):
+                columns.append(np.where(np.arange(count) == place, bound, 0.0))
+    return np.asarray(instance.control_set.project(np.array(columns).T))
+
+
+def _rates(instance: Instance, later: float, x: Array, u: Array) -> Array:
+    """Rates of change of states after a while, a column for each of the controls."""
+    columns = u.shape[1]
+    given = np.full(columns, instance.t0 + later), np.broadcast_to(x, (len(x), columns)).copy(), u
+    return np.asarray(instance.model.dynamics_batch(*given, instance.parameters))
