@@ -17,6 +17,7 @@ from satsym.solvers.iteration import TimeUp
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
+    from satsym.solvers.redundant_ends import Redundant
     from satsym.solvers.simulation.closed_loop import Law
 
 __all__ = ["simulate", "solve"]
@@ -82,34 +83,53 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
     """By the method alone."""
+    return _in_time(_named(instance))(instance, progress)
+
+
+def _named(instance: Instance) -> Method:
+    """The method that an instance names, or the one that is made for its model."""
     name = instance.solver.method
-    method = methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
-    return _in_time(method)(instance, progress)
+    return methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
 
 
 def _found(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
     """What is found, without a final state that follows from the others."""
     from satsym.solvers import iteration
+    from satsym.solvers.conserved import contradiction
     from satsym.solvers.redundant_ends import redundant
 
+    began = time.perf_counter()
     less = redundant(instance)
     if less is None:
         return _by_method(instance, progress, examined)
+    if why := contradiction(instance):
+        nothing = iteration.unsolved(instance, _named(instance).name, time.perf_counter() - began)
+        return replace(nothing, status=Status.INFEASIBLE, message=why)
     solution = _by_method(less.instance, progress, examined)
     if not less.met(solution) and not instance.model.spec.switching:
         again = _by_method(less.towards, progress, examined)
         solution = again if again.status.answered else solution
+    if solution.status.answered and not less.met(solution):
+        less, solution = _beside(less, solution, progress, examined)
     if not solution.status.answered or less.met(solution):
         return replace(solution, message=f"{solution.message}; {less.note}")
     nothing = iteration.unsolved(instance, solution.method, solution.wall_s)
     return replace(nothing, status=Status.NOT_CONVERGED, message=less.missed(solution))
 
 
+def _beside(less: Redundant, found: Solution, progress: Progress | None, examined: bool) -> tuple[Redundant, Solution]:
+    """Another final state left out, and the answer that ends as is asked; what was found where there is none."""
+    for other in less.others:
+        solution = _by_method(other.instance, progress, examined)
+        if other.met(solution):
+            return other, solution
+    return less, found
+
+
 def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
     """What the method finds, or the sweep in its place."""
-    spec, name = instance.model.spec, instance.solver.method
-    automatic = name == methods.AUTO
-    method = methods.automatic(spec) if automatic else methods.METHODS[name]
+    spec, method = instance.model.spec, _named(instance)
+    automatic = instance.solver.method == methods.AUTO
     solution = _solved(method, instance, progress, examined)
     if automatic and spec.throttled and solution.status is Status.NOT_CONVERGED:
         steady = _solved(methods.METHODS["collocation"], instance, progress, examined)

@@ -32,11 +32,17 @@ MORE, STEPS = 3, 16
 STEP = 1e-4
 """By which they are varied, relative to their size."""
 
+SEEN = 1e-5
+"""By which they then move the end at least, relative to sizes: by more where that is less."""
+
 OFF = (0.3, 0.7)
 """By how much a final state that is free is off its start, relative to that."""
 
 SAME = 1e-4
 """Difference of the directions that two controls leave open, if it is one of the motion and none of these controls."""
+
+LARGE_ENOUGH = 0.1
+"""Of the largest component of a direction, with which a state follows from the others well enough."""
 
 HORIZON = 0.25
 """Of the motion's own time scale, in which controls are varied."""
@@ -55,6 +61,8 @@ class Redundant:
     instance: Instance
     state: str
     given: float
+    others: tuple[Redundant, ...] = ()
+    """The same without another one in its place, which the rest leaves other signs open to."""
 
     @property
     def towards(self) -> Instance:
@@ -112,7 +120,13 @@ def redundant(instance: Instance) -> Redundant | None:
         return None
     if np.abs(one[~fixed]).max(initial=0.0) > SAME:
         return None  # a state that is free makes up for it
-    state = names[int(np.abs(one).argmax())]
+    share = np.abs(one)
+    most, *rest = (_without(instance, names[i]) for i in np.argsort(-share, kind="stable") if share[i] >= LARGE_ENOUGH)
+    return replace(most, others=tuple(rest))
+
+
+def _without(instance: Instance, state: str) -> Redundant:
+    """What is left where this one is not asked for."""
     final = {name: value for name, value in instance.final.items() if name != state}
     return Redundant(replace(instance, final=final), state, float(instance.final[state]))
 
@@ -209,14 +223,19 @@ def _still(instance: Instance, end: Array, rng: np.random.Generator) -> Array | 
         u = at @ hats
         return np.asarray(model.forward(times, tuple(start.tolist()), u[:, ::2], u[:, 1::2], p)[0][:, -1])
 
-    columns = []
-    for place in np.ndindex(drawn.shape):
-        change = np.zeros_like(drawn)
-        change[place] = STEP * max(float(np.abs(drawn).max()), 1e-6)
-        columns.append((reached(drawn + change) - reached(drawn - change)) / change[place])
+    def responses(step: float) -> Array:
+        unit = np.eye(drawn.size).reshape(-1, *drawn.shape)
+        return np.array([(reached(drawn + step * one) - reached(drawn - step * one)) / step for one in unit])
+
+    step = STEP * max(float(np.abs(drawn).max()), 1e-6)
+    columns = responses(step)
+    moved = float(np.abs(columns / size).max()) * step
+    if 0.0 < moved < SEEN:  # heavy bodies hardly answer to controls of size one, and rounding is all that is left
+        columns = responses(step * SEEN / moved)
     if instance.tf is None:
-        columns.append(np.array(model.dynamics(last, tuple(end.tolist()), tuple(drawn[:, -1].tolist()), p)))
-    table = np.array(columns).T / size[:, None]
+        rate = np.array(model.dynamics(last, tuple(end.tolist()), tuple(drawn[:, -1].tolist()), p))
+        columns = np.vstack([columns, rate])
+    table = columns.T / size[:, None]
     if not np.isfinite(table).all():
         return None
     left, values, _ = np.linalg.svd(table, full_matrices=True)

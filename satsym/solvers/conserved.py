@@ -1,0 +1,146 @@
+"""Polynomials of the states that the motion conserves whatever its controls do, up to the second degree.
+
+They are found in numbers: at states, times and controls that are drawn, the gradient of such a polynomial is
+perpendicular to the rates of change. Where one has another value at the end that is asked for than at the
+start, nothing arrives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations_with_replacement
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+
+DRAWN = 4
+"""Times as many points are drawn as there are monomials."""
+
+SPREAD = 0.4
+"""Of states round the start, relative to their sizes."""
+
+CANCELS = 1e-11
+"""Share of the largest singular value below which rates cancel for every state and control."""
+
+SAME = 1e-6
+"""Share of its terms by which a conserved quantity may differ at the end, from numbers that were rounded."""
+
+SEEN = 1e-8
+"""Coefficients below this share of the largest are rounding."""
+
+
+@dataclass(frozen=True)
+class Conserved:
+    """A polynomial that no control changes."""
+
+    names: tuple[str, ...]
+    """Of the states in each monomial, joined as formulas have them."""
+    powers: Array
+    """Of states in each monomial, shape (K, n)."""
+    coefficients: Array
+
+    @property
+    def formula(self) -> str:
+        """As people write it."""
+        text = ""
+        for value, name in zip(self.coefficients.tolist(), self.names, strict=True):
+            size = "" if abs(abs(value) - 1.0) < SEEN else f"{abs(value):.6g}*"
+            text += (" - " if value < 0.0 else " + ") + size + name
+        return text.removeprefix(" + ").strip()
+
+    def terms(self, x: Array) -> Array:
+        """Of which it consists at states."""
+        return np.asarray(self.coefficients * np.prod(x**self.powers, axis=1))
+
+
+def contradiction(instance: Instance) -> str:
+    """Why the final states that are asked for cannot follow from the initial ones; empty where nothing says so."""
+    names = instance.model.spec.state_names
+    fixed = [i for i, name in enumerate(names) if isinstance(instance.final.get(name), float | int)]
+    fixed = [i for i in fixed if names[i] not in instance.solver.free_angles]
+    if instance.free or not fixed:
+        return ""
+    start, end = np.array(instance.initial), np.array(instance.initial)
+    end[fixed] = [float(instance.final[names[i]]) for i in fixed]
+    for one in sorted(conserved(instance, fixed, start, end), key=lambda one: len(one.names)):
+        before, after = one.terms(start), one.terms(end)
+        if abs(after.sum() - before.sum()) > SAME * max(np.abs(before).sum(), np.abs(after).sum()):
+            return (
+                f"{one.formula} is conserved whatever the controls do: it is {before.sum():.8g} at the start, "
+                f"and the final states ask for {after.sum():.8g}; leave one of these states free"
+            )
+    return ""
+
+
+def conserved(instance: Instance, states: list[int], start: Array, end: Array) -> list[Conserved]:
+    """Independent ones of these states.
+
+    Parameters
+    ----------
+    states
+        Their places.
+    start, end
+        All initial and final states, which give their sizes.
+    """
+    n, rng = len(start), np.random.default_rng(0)
+    kinds = [(i,) for i in states] + list(combinations_with_replacement(states, 2))
+    powers = np.array([np.bincount(kind, minlength=n) for kind in kinds])
+    size = np.maximum(np.abs(start), np.abs(end))
+    size = np.where(size > 0.0, size, 1.0)
+    x = start[:, None] + SPREAD * size[:, None] * rng.uniform(-1.0, 1.0, (n, DRAWN * len(kinds)))
+    with np.errstate(all="ignore"):
+        rates = _rates(instance, x, rng) / size[:, None]
+    x = x / size[:, None]
+    whole = np.isfinite(rates).all(axis=0)
+    if whole.sum() < 2 * len(kinds):
+        return []
+    table = np.zeros((int(whole.sum()), len(kinds)))
+    for column, power in enumerate(powers):
+        for i in np.flatnonzero(power):
+            less = power - (np.arange(n) == i)
+            table[:, column] += power[i] * np.prod(x.T[whole] ** less, axis=1) * rates[i, whole]
+    norms = np.linalg.norm(table, axis=0)
+    table = table / np.where(norms > 0.0, norms, 1.0)
+    _, values, rows = np.linalg.svd(table, full_matrices=False)
+    kernel = rows[values <= CANCELS * values[0]]
+    units = np.where(norms > 0.0, norms, 1.0) * np.prod(size**powers, axis=1)
+    labels = [_label(instance.model.spec.state_names, power) for power in powers.tolist()]
+    return [_tidied(labels, powers, row / units) for row in _reduced(kernel)]
+
+
+def _rates(instance: Instance, x: Array, rng: np.random.Generator) -> Array:
+    """Rates of change at states, under controls and at times that are drawn."""
+    count = len(instance.model.spec.controls)
+    low, high = instance.control_set.around(count)
+    largest = np.maximum(np.abs(low), np.abs(high))
+    largest = np.where(np.isfinite(largest) & (largest > 0.0), largest, 1.0)
+    u = instance.control_set.project(largest * rng.normal(size=(count, x.shape[1])))
+    last = instance.t0 + 1.0 if instance.tf is None else instance.tf
+    t = rng.uniform(instance.t0, last, x.shape[1])
+    return np.asarray(instance.model.dynamics_batch(t, x, u, instance.parameters))
+
+
+def _reduced(rows: Array) -> Array:
+    """The same space, spanned by rows that have a monomial of their own each."""
+    found = rows.copy()
+    for k in range(len(found)):
+        place = int(np.abs(found[k]).argmax())
+        found[k] /= found[k, place]
+        for other in range(len(found)):
+            if other != k:
+                found[other] -= found[other, place] * found[k]
+    return found
+
+
+def _label(names: tuple[str, ...], powers: list[int]) -> str:
+    return "*".join(
+        name if power == 1 else f"{name}**{power}" for name, power in zip(names, powers, strict=True) if power
+    )
+
+
+def _tidied(labels: list[str], powers: Array, coefficients: Array) -> Conserved:
+    """Without what is rounding, the first coefficient being one."""
+    seen = np.flatnonzero(np.abs(coefficients) > SEEN * np.abs(coefficients).max())
+    return Conserved(tuple(labels[i] for i in seen), powers[seen], coefficients[seen] / coefficients[seen[0]])
