@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -30,6 +31,7 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
 
     By default that is collocation, or exact arcs where controls switch between their bounds; collocation again where
     vectors might do so that have their full norms all the time. Where collocation
+    finds an extremal but not accurately, multiple shooting is tried. Where it
     finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its steps
     allow; a certificate asks for more, so its answers have none.
 
@@ -134,9 +136,20 @@ def _by_method(instance: Instance, progress: Progress | None, examined: bool) ->
     if automatic and spec.throttled and solution.status is Status.NOT_CONVERGED:
         steady = _solved(methods.METHODS["collocation"], instance, progress, examined)
         return steady if steady.status.answered else solution
+    if automatic and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
+        shot = _solved(methods.METHODS["shooting"], instance, progress, examined)
+        if shot.status.answered:
+            return replace(shot, message=f"{shot.message}; by collocation {solution.message}")
     if automatic and solution.status is Status.NOT_CONVERGED and not methods.refusal(methods.SWEEP.name, instance):
         return _confirmed(_solved(methods.SWEEP, instance, progress), method, progress)
     return solution
+
+
+def _nearly(solution: Solution) -> bool:
+    """Whether there is no answer, but an extremal that is not accurate enough: of others no trajectory is kept."""
+    return solution.status is Status.NOT_CONVERGED and not any(
+        math.isnan(value) for value in solution.x[:, -1].tolist()
+    )
 
 
 def _solved(method: Method, instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
