@@ -198,7 +198,7 @@ def test_the_transfer_takes_as_long_as_by_shooting():
 def test_a_law_that_turns_the_wrong_way_is_refused(monkeypatch: pytest.MonkeyPatch):
     right = product.law_of
     monkeypatch.setattr(product, "law_of", lambda problem, one: [v + 1 for v in right(problem, one)])
-    with pytest.raises(DerivationError, match="failed its check 'cheapest admissible'"):
+    with pytest.raises(DerivationError, match="failed its check 'cheapest of all'"):
         derive(steered(sympify(1), PUSHED, name="turned"))
 
 

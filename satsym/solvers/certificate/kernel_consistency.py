@@ -25,7 +25,7 @@ NODES = 4
 ASIDE = 1e-3
 """How far aside of the nodes, relative to the largest value of each component."""
 
-FAINT = 1e-25
+FAINT = 1e-20
 """Share of the largest component below which another is none but rounding."""
 
 WIDE, NARROW = 1e3, 0.5
