@@ -197,6 +197,7 @@ def test_the_page_states_what_controls_and_motion_obey(name: str, said: str) -> 
     assert not re.search(r"\\[a-z]", page), "LaTeX that no browser shows"
 
 
+@pytest.mark.slow
 def test_long_equations_are_broken_into_lines_and_wide_matrices_are_small() -> None:
     """Paper cannot be scrolled."""
     page = Derived(derived(stated("shuttle")), load("en"), {}).render()

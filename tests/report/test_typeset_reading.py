@@ -214,6 +214,7 @@ def test_fixed_axes_are_not_said_to_turn() -> None:
     assert "The unit vectors turn" in render(shipped("polar_orbit"))
 
 
+@pytest.mark.slow
 def test_a_fraction_that_all_terms_share_stands_before_the_parentheses() -> None:
     text = render(shipped("reorientation"))
     assert r"\tfrac{1}{2} \lambda_{q_1} (q_2 \omega_3 - q_3 \omega_2 + q_4 \omega_1)" in text

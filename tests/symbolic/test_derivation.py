@@ -347,7 +347,9 @@ def test_symmetry_finds_what_is_conserved(name: str, expected: set[str]) -> None
     assert kept(name) == expected
 
 
-@pytest.mark.parametrize("name", [POLAR.name, "cartesian 3-D", "spherical", "rotating axes"])
+@pytest.mark.parametrize(
+    "name", [POLAR.name, "cartesian 3-D", pytest.param("spherical", marks=pytest.mark.slow), "rotating axes"]
+)
 def test_conserved_quantities_are_constant_in_simulation(name: str) -> None:
     found = derived(name)
     values = {"mu": 1.3, "sigma": 1.2, "omega": 0.8, "Omega": 0.4}
