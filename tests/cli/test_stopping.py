@@ -70,7 +70,10 @@ def test_a_signal_ends_a_run_with_one_line_and_no_file(tmp_path: Path, sign: str
         assert going.stdout.readline() == b"solving\n"
         time.sleep(0.2)
         going.send_signal(getattr(signal, sign))
-        _, err = going.communicate(timeout=60)
+        try:
+            _, err = going.communicate(timeout=60)
+        finally:
+            going.kill()  # or one that went on would be waited for without end
     assert (going.returncode, err.decode()) == (code, f"satsym: {word}\n")
     assert not (tmp_path / "there").exists()
 

@@ -1,6 +1,7 @@
 """The free-flying robot of Sakawa (1999; Betts 2010, 6.13), whose printed optimum, 7.9101471, is none.
 
-Its four jets are on or off there. With two of them throttled for a moment, along a singular arc, it costs less.
+Its four jets are on or off there. With one of them throttled for a while, along a singular arc, and other burns, it
+costs 7.6886191.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import pytest
 import sympy as sp
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from scipy.interpolate import make_interp_spline
 
 from satsym.instance import load
 from satsym.solvers import solve
@@ -77,10 +79,10 @@ def test_throttled_jets_are_cheaper_than_what_is_printed(tmp_path: Path) -> None
     assert found.status is Status.CONVERGED, found.message
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY  # singular arcs of what is not convex
-    assert "+s-" in found.message
+    assert "s" in found.message.removeprefix("structure ").partition(",")[0]
 
     def rates(t: float, z: NDArray[np.float64]) -> list[float]:
-        one, two, three, four = (float(np.interp(t, found.times[inside], row[inside])) for row in found.u)
+        one, two, three, four = held(t)
         push = one - two + three - four
         forces = [push * np.cos(z[2]), push * np.sin(z[2]), (one - two - three + four) / 5.0]
         return [*z[3:6], *forces, one + two + three + four]
@@ -90,10 +92,13 @@ def test_throttled_jets_are_cheaper_than_what_is_printed(tmp_path: Path) -> None
     for first, last in pairwise([-1, *edges, len(found.times) - 1]):
         inside = slice(first + 1, last + 1)
         span = found.times[first + 1], found.times[last]
+        held = make_interp_spline(found.times[inside], found.u[:, inside], k=min(3, last - first - 1), axis=1)
         z = solve_ivp(rates, span, z, "DOP853", rtol=1e-10, atol=1e-12, max_step=0.05).y[:, -1]
     assert z[:6] == pytest.approx(np.zeros(6), abs=1e-6)
     assert z[6] == pytest.approx(found.objective, rel=1e-8)
-    assert z[6] < PRINTED - 3e-6
+    assert found.u.min() >= 0.0
+    assert found.u.max() <= 1.0
+    assert z[6] < 7.6887  # pinned: what was found at last; one jet throttled after other burns costs 7.91014
 
 
 @pytest.mark.parametrize(("name", "advised"), [("double-integrator-fuel", True), ("double-integrator-time", False)])
