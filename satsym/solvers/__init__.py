@@ -30,10 +30,9 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
     """Solve an instance by the method it names and certify the answer.
 
     By default that is collocation, or exact arcs where controls switch between their bounds; collocation again where
-    vectors might do so that have their full norms all the time. Where collocation
-    finds an extremal but not accurately, multiple shooting is tried. Where it
-    finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its steps
-    allow; a certificate asks for more, so its answers have none.
+    vectors might do so that have their full norms all the time. Where collocation finds an extremal but not accurately,
+    multiple shooting is tried. Where it finds nothing and no final state is given, the sweep is tried as well. The
+    sweep is as accurate as its steps allow; a certificate asks for more, so its answers have none.
 
     Parameters
     ----------

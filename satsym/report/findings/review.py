@@ -48,7 +48,7 @@ class Review:
         return cls(ledger, rows, texts)
 
     def translated(self, row: Judged) -> bool:
-        """Whether what a row is about is told in the language of the report; a ledger may have it in English alone."""
+        """Whether what a row is about is in the language of the report; a ledger may have it in English alone."""
         return self.texts.language == "en" or (self.texts.language == "id" and bool(row.says_id))
 
     @property
@@ -226,8 +226,8 @@ def items(judged: Sequence[Judged]) -> list[str]:
 
 
 def _in_indonesian(row: Judged) -> Judged:
-    told = {name: getattr(row, f"{name}_id") or getattr(row, name) for name in ("says", "why", "diagnosis")}
-    return replace(row, **told, derived=row.derived if row.by_formula else measured_in_indonesian(row.derived))
+    texts = {name: getattr(row, f"{name}_id") or getattr(row, name) for name in ("says", "why", "diagnosis")}
+    return replace(row, **texts, derived=row.derived if row.by_formula else measured_in_indonesian(row.derived))
 
 
 def quote(row: Judged) -> tuple[str, str]:
