@@ -8,7 +8,8 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import FrameType
+from queue import SimpleQueue
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING
 
 from satsym.cli.output import complain
@@ -20,8 +21,11 @@ INTERRUPTED = 130
 TERMINATED = 143
 """As the shell reports programs that SIGINT or SIGTERM ended."""
 
-AGAIN = 0.02
-"""Seconds after which a stop that Python ignored is repeated."""
+AGAIN = 0.05
+"""Seconds after which a stop is repeated that nobody is answering."""
+
+_NO_MORE = 0
+"""No signal has this number."""
 
 _asked: list[int] = []
 """Signals that have come to stop the command."""
@@ -38,30 +42,61 @@ def terminable() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is signal.SIG_IGN:
         yield
         return
-    interrupt, hook = signal.getsignal(signal.SIGINT), sys.unraisablehook
-    terminate = signal.signal(signal.SIGTERM, _raise)
+    interrupt, hooks = signal.getsignal(signal.SIGINT), (sys.unraisablehook, sys.excepthook)
+    heard: SimpleQueue[int] = SimpleQueue()
+    over = threading.Event()
+
+    def stop(sign: int, _frame: FrameType | None) -> None:
+        if over.is_set():
+            return
+        _asked.append(sign)
+        heard.put(sign)
+        raise Terminated if sign == signal.SIGTERM else KeyboardInterrupt
+
+    def unraisable(report: UnraisableHookArgs) -> None:
+        """Python ignores what is raised in a finaliser or a weak reference's callback, and says so."""
+        if not (_asked and issubclass(report.exc_type, KeyboardInterrupt)):
+            hooks[0](report)
+
+    def printed(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        """C code that loads a module may print what was raised meanwhile, and go on."""
+        if not (_asked and issubclass(kind, KeyboardInterrupt)):
+            hooks[1](kind, error, trace)
+
+    terminate = signal.signal(signal.SIGTERM, stop)
     if interrupt is signal.default_int_handler:
-        signal.signal(signal.SIGINT, _raise)
-    repeats: list[threading.Timer] = []
-
-    def ignored(report: UnraisableHookArgs) -> None:
-        """Python ignores what is raised in a finaliser or a weak reference's callback: stop once that is over."""
-        if not _asked:
-            hook(report)
-        elif issubclass(report.exc_type, KeyboardInterrupt):
-            repeats.append(threading.Timer(AGAIN, os.kill, (os.getpid(), _asked[-1])))
-            repeats[-1].daemon = True
-            repeats[-1].start()
-
-    sys.unraisablehook = ignored
+        signal.signal(signal.SIGINT, stop)
+    sys.unraisablehook, sys.excepthook = unraisable, printed
+    insisting = threading.Thread(target=_insist, args=(threading.main_thread().ident, heard, over), daemon=True)
+    insisting.start()
     try:
         yield
     finally:
-        for repeat in repeats:
-            repeat.cancel()
-        sys.unraisablehook = hook
+        over.set()
+        heard.put(_NO_MORE)
+        insisting.join()
+        sys.unraisablehook, sys.excepthook = hooks
         signal.signal(signal.SIGTERM, terminate)
         signal.signal(signal.SIGINT, interrupt)
+
+
+def _insist(thread: int | None, heard: SimpleQueue[int], over: threading.Event) -> None:
+    """Repeat a stop that is lost: Python ignores some, and C code that looks for something may forget any error."""
+    sign = heard.get()
+    while not over.wait(AGAIN):
+        if not _answers(thread):
+            os.kill(os.getpid(), sign)
+
+
+def _answers(thread: int | None) -> bool:
+    """Whether a thread is handling a stop, or what came of one: cleaning up may take its time."""
+    found: object = sys._current_exceptions().get(thread or 0)
+    error = found[1] if isinstance(found, tuple) else found  # Python 3.11 has the type and the traceback as well
+    while isinstance(error, BaseException):
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__context__
+    return False
 
 
 def comes_of_a_stop(error: BaseException) -> bool:
@@ -74,8 +109,3 @@ def stopped(error: BaseException) -> int:
     terminated = isinstance(error, Terminated) or signal.SIGTERM in _asked
     complain("; ".join(["terminated" if terminated else "interrupted", *getattr(error, "__notes__", ())]))
     return TERMINATED if terminated else INTERRUPTED
-
-
-def _raise(sign: int, _frame: FrameType | None) -> None:
-    _asked.append(sign)
-    raise Terminated if sign == signal.SIGTERM else KeyboardInterrupt

@@ -8,12 +8,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
 
-from satsym.cli.stopping import Terminated, terminable
+from satsym.cli.stopping import AGAIN, Terminated, terminable
 from tests.cli.test_cli import INSTANCE, Run, case, one_line, program, run
 
 __all__ = ["case", "run"]
@@ -118,6 +118,43 @@ def test_a_stop_that_comes_within_a_finaliser_is_not_lost(
     with pytest.raises(error):
         working()
     assert capfd.readouterr().err == ""
+
+
+def test_a_stop_that_a_library_swallows_comes_again(capfd: pytest.CaptureFixture[str]) -> None:
+    def working() -> None:
+        with interruptible(), terminable():
+            try:
+                signal.raise_signal(signal.SIGTERM)
+            except Terminated:
+                sys.excepthook(*sys.exc_info())  # as PyErr_Print does
+            time.sleep(30.0)
+
+    began = time.monotonic()
+    with pytest.raises(Terminated):
+        working()
+    assert time.monotonic() - began < 15.0
+    assert capfd.readouterr().err == ""
+
+
+def test_cleaning_up_after_a_stop_is_not_stopped() -> None:
+    cleaned: list[bool] = []
+
+    def tidy() -> None:
+        with suppress(OSError):
+            raise OSError
+        time.sleep(4 * AGAIN)
+        cleaned.append(True)
+
+    def working() -> None:
+        with interruptible(), terminable():
+            try:
+                signal.raise_signal(signal.SIGTERM)
+            finally:
+                tidy()
+
+    with pytest.raises(Terminated):
+        working()
+    assert cleaned
 
 
 def test_what_a_library_raises_when_it_is_stopped_is_the_stop(
