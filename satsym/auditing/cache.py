@@ -101,6 +101,7 @@ _tell: list[Any] = []
 
 
 def _telling(queue: Any) -> None:
+    queue.cancel_join_thread()  # what nobody reads any more does not keep the process from ending
     _tell.append(queue)
 
 

@@ -43,7 +43,7 @@ def first():
     with single_threaded():
         begun.set()
         leave.wait()
-other = Thread(target=first)
+other = Thread(target=first, daemon=True)
 other.start()
 begun.wait()
 with single_threaded():
