@@ -75,9 +75,15 @@ def _timer(seconds: float) -> Iterator[None]:
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        _disarm()
 
 
 def _over(_sign: int, _frame: FrameType | None) -> None:
-    raise _TimeUp
+    if _deadlines:
+        raise _TimeUp
+    _disarm()  # this signal, or the one before it, came while the timer was being stopped
+
+
+def _disarm() -> None:
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)

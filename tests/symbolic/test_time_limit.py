@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import threading
 import time
 from contextlib import suppress
@@ -11,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from satsym.cli import main
+from satsym.symbolic import time_limit
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.time_limit import entering, within
+from satsym.symbolic.time_limit import AGAIN, entering, within
 
 SLOW = """
 import sympy as sp
@@ -70,6 +72,19 @@ def test_nothing_is_left_of_a_limit_that_was_kept() -> None:
         entering("model", "first")
     time.sleep(0.3)
     entering("model", "second")
+
+
+def test_a_signal_that_comes_while_the_timer_is_stopped_leaves_no_timer_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late() -> None:
+        monkeypatch.undo()
+        signal.raise_signal(signal.SIGALRM)
+
+    monkeypatch.setattr(time_limit, "_disarm", late)
+    with pytest.raises(DerivationError), within(0.05, "mine"):
+        time.sleep(5.0)
+    time.sleep(2.0 * AGAIN)
+    assert signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
 def test_a_thread_looks_at_the_time_between_steps() -> None:
