@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
 Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 3714355dbba8f119e2d883ae1642b28163cb7245cd32032b4a876cdfd79d982d
+Digest: c6982f48064f5c8ff8926adee8b9e700cdf2a2d5cdecf9e2e72561c232f6db1e
 """
 
 import math
@@ -694,24 +694,14 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 3.0*omega_sq
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[3, 0] = 0.0
     out[3, 1] = -twice_omega
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -723,13 +713,8 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = 1.0
     return out
 
@@ -886,10 +871,7 @@ def path_effect_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -1013,74 +995,23 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     omega_sq = omega*omega
     w = 3.0*omega_sq
     twice_omega = 2.0*omega
     w_2 = -twice_omega
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
     out[1, 0] = w
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[1, 4] = 0.0
     out[1, 5] = -1.0
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[2, 6] = 0.0
-    out[2, 7] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = w_2
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = -1.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
     out[4, 5] = -w
-    out[4, 6] = 0.0
-    out[4, 7] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
     out[5, 4] = -1.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
     out[5, 7] = twice_omega
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
-    out[6, 4] = 0.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
-    out[7, 0] = 0.0
-    out[7, 1] = 0.0
-    out[7, 2] = 0.0
-    out[7, 3] = 0.0
-    out[7, 4] = 0.0
     out[7, 5] = w_2
     out[7, 6] = -1.0
-    out[7, 7] = 0.0
     return out
 
 
@@ -1131,6 +1062,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x1 + on_reference_x1
     w_2 = given_x2 + on_reference_x2
     w_3 = given_x3 + on_reference_x3
@@ -1139,48 +1071,18 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_5 = 3.0*omega_sq
     twice_omega = 2.0*omega
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
-    out[2, 8] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
     out[4, 0] = lambda_x2*w_5
     out[4, 1] = lambda_x1 - lambda_x4*twice_omega
-    out[4, 2] = 0.0
     out[4, 3] = lambda_x2*twice_omega + lambda_x3
     out[4, 4] = x2
     out[4, 5] = twice_omega*x4 + w_5*x1 - lambda_x2
     out[4, 6] = x4
     out[4, 7] = -lambda_x4 - twice_omega*x2
-    out[4, 8] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
 Source: ../derivations/examples/bryson_denham.py a9c3edbc54598754d0b528e1f2a1368f
-Digest: 15af679637f4bcba41d697edf53ae519e42a587650ddc159da4237e1db52f53c
+Digest: 9b3bfc2b5a530083d537eb0bc455e0c68e7bf00c8f47ad4c0f224466f5e735cf
 """
 
 import math
@@ -417,10 +417,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -570,7 +568,7 @@ def path_effect_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((1, 1, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -622,7 +620,7 @@ def boundary_control_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((1, 1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -649,22 +647,10 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -0.5
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -707,21 +693,14 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x + on_reference_x
     w_2 = given_v + on_reference_v
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_x
     out[2, 2] = v
     out[2, 3] = -0.5*lambda_v
-    out[2, 4] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
 Source: ../derivations/examples/brachistochrone.py b9455fccc0aa385baf206355ed20faf7
-Digest: cfd69413b358e2522fafad3ad9aaea041385b1e72a38a48194556b9acddfe863
+Digest: 01e0592bb38799ce31a3e4f64efdf67fdc40e5b8688ea639800287fb05635643
 """
 
 import math
@@ -523,15 +523,9 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 3, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[0, 2] = np.cos(theta)
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = -np.sin(theta)
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     return out
 
 
@@ -708,6 +702,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     lambda_y_v = lambda_y*v
     w = g*lambda_v - lambda_y_v
     w_sq = w*w
@@ -737,38 +732,18 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_8 = g*twice_v*w_3*w_sq + g_w_5*v
     g_w_5_lambda_y = g_w_5*lambda_y
     g_sq = g*g
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[0, 2] = -lambda_x_twice_v_w_5 - lambda_x_v_sq*w_4
     out[0, 3] = -lambda_x_sq*twice_w_3*v*v*v*v - v_sq_w_5
     out[0, 4] = lambda_x_w_w_6
     out[0, 5] = w_7
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = v*w_w_4 + w_w_5 - lambda_y_v_w_5
     out[1, 3] = lambda_x_w_w_6
     out[1, 4] = -twice_w_3_w_sq*v_sq - v_sq_w_5
     out[1, 5] = w_8
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = g_w_5_lambda_y - g*w_w_4
     out[2, 3] = w_7
     out[2, 4] = w_8
     out[2, 5] = -g_sq*twice_w_3_w_sq - g_sq*w_5
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = lambda_x_sq*v*w_4 + lambda_x_sq*w_5 + lambda_y*lambda_y*w_5 - lambda_y_w*w_4
     out[5, 3] = lambda_x*lambda_x*lambda_x*w_6 + lambda_x_twice_v_w_5 - lambda_x_v_sq*twice_lambda_y_w*w_3
     out[5, 4] = lambda_y_v*twice_w_3_w_sq + lambda_y_v_w_5 - lambda_x_sq_v_sq*twice_w_3_w - w_w_5
@@ -827,6 +802,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 7, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x + on_reference_x
     w_2 = given_y + on_reference_y
     w_3 = given_v + on_reference_v
@@ -861,31 +837,13 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_10_w_7_w_4 = w_10_w_7*w_4
     g_twice_w_4 = g*twice_w_4
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0 - w
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0 - w_2
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0 - w_3
-    out[2, 6] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = 2.0*lambda_y*w_4*w_6 + 0.5*smoothing*(lambda_x_sq_twice_v*w_6_sq + lambda_x_sq_v_sq_w_8*twice_w_6 + twice_w_6*w_4_sq_w_8 - lambda_y_twice_w_4*w_6_sq) - lambda_x_sq_twice_v*w_6 - lambda_x_sq_v_sq_w_8 - w_4_sq_w_8
     out[3, 3] = 0.5*smoothing*(lambda_x_v_sq*w_10_w_7*w_4_sq + twice_lambda_x_v_sq*w_6_sq + w_10_w_7*w_9) - twice_lambda_x_v_sq*w_4_sq*w_7 - twice_lambda_x_v_sq*w_6 - twice_w_7*w_9
     out[3, 4] = 0.5*smoothing*(-twice_w_4_v*w_6_sq - v*w_10_w_4_cubed_w_7 - w_10_w_7_w_4*w_11) + twice_v*w_4_cubed_w_7 + twice_w_4*w_11*w_7 + twice_w_4_v*w_6
     out[3, 5] = 0.5*smoothing*(g*lambda_x_sq_v_sq*w_10_w_7_w_4 + g*w_10_w_4_cubed_w_7 + g_twice_w_4*w_6_sq) - g*twice_w_7*w_4_cubed - g_twice_w_4*lambda_x_sq_v_sq*w_7 - g_twice_w_4*w_6
-    out[3, 6] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
 Source: ../derivations/examples/chain.py 26edb034318c5de06f36975a5d6abdfa
-Digest: 51340634d522d620c3c3ff5252bebe007683440cdad7fafd339f39772a72111c
+Digest: c3aa5127455a335ab89910f1107676dbbf331880329a049ee867b2f737b686c0
 """
 
 import math
@@ -448,10 +448,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -711,6 +708,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_height + on_reference_height
     w_2 = given_length + on_reference_length
     law_part_1 = height + lambda_length
@@ -741,18 +739,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     d_law_part_3_by_lambda_height = -d_law_part_2_by_lambda_height*w_11
     d_law_of_slope_by_lambda_height = -d_law_part_3_by_lambda_height*w_9 - inv_law_part_1_sqrt_w_3
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
     out[2, 0] = d_law_of_slope_by_height*w_8 + sqrt_w_7
-    out[2, 1] = 0.0
     out[2, 2] = d_law_of_slope_by_lambda_height*w_8 + w_6
     out[2, 3] = d_law_of_slope_by_height*w_8 + sqrt_w_7
-    out[2, 4] = 0.0
     return out

@@ -4,7 +4,7 @@ Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that
     satsym derive derivations/clohessy_wiltshire.py
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
 Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: f608ac364e46946e7d4ae709a33288cdc227c353c735152109edadafeb41740b
+Digest: 3fd4ce2a34e253bf732f8a9979b2df5fd24d43d83dd9e5d861e101cedb7fee98
 """
 
 import math
@@ -489,24 +489,14 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 3.0*omega_sq
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[3, 0] = 0.0
     out[3, 1] = -twice_omega
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -518,13 +508,8 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = 1.0
     return out
 
@@ -535,24 +520,14 @@ def state_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 3.0*omega_sq
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[3, 0] = 0.0
     out[3, 1] = -twice_omega
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -562,13 +537,8 @@ def input_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = 1.0
     return out
 
@@ -579,14 +549,9 @@ def output_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((2, 4, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     out[0, 0] = 1.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = 1.0
-    out[1, 3] = 0.0
     return out
 
 
@@ -596,10 +561,7 @@ def feedthrough_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -689,13 +651,8 @@ def eigenvalues_batch(p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(p[0]), np.shape(p[1]))
         out = np.empty((4, 2, *shape), np.result_type(float, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
+    out[...] = 0.0
     out[2, 1] = omega
-    out[3, 0] = 0.0
     out[3, 1] = -omega
     return out
 

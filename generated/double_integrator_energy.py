@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: 0712a4fcd35cba11c779bbf3b9848c22a1caffaedf05ac05eff785ea90cb8f5c
+Digest: db3fb153ab0d30e6d5366aafba04a31eb58756638237a3719c056646ba9cf142
 """
 
 import math
@@ -333,10 +333,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -472,24 +470,12 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     w = -lambda_q_dot
     w_2 = np.heaviside(w - u1_min, 1.0)*np.heaviside(u1_max - w, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -w_2
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -534,24 +520,17 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_q + on_reference_q
     w_2 = given_q_dot + on_reference_q_dot
     w_3 = -lambda_q_dot
     w_4 = np.heaviside(w_3 - u1_min, 1.0)*np.heaviside(u1_max - w_3, 1.0)
     w_5 = np.minimum(np.maximum(w_3, u1_min), u1_max)
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_q
     out[2, 2] = q_dot
     out[2, 3] = w_5 - lambda_q_dot*w_4 - w_4*w_5
-    out[2, 4] = 0.0
     return out

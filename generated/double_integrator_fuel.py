@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: 04965d3a98cf145e6e3e82fd29262d99e4503602dd1cec2c8c33abe6a47ab230
+Digest: 5979573d820c8fb80d6222c8b1956b246bae6deb20196bb921b56fab044548d3
 """
 
 import math
@@ -410,10 +410,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -540,22 +538,9 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, lam, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -602,27 +587,15 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_smoothing = 1.0/smoothing
     w = np.heaviside(lambda_q_dot - magnitude_share, 0.0) - np.heaviside(-lambda_q_dot - magnitude_share, 0.0)
     w_2 = np.maximum(lambda_q_dot - magnitude_share, 0.0) + np.minimum(lambda_q_dot + magnitude_share, 0.0)
     w_3 = -inv_smoothing*w_2
     w_4 = np.heaviside(w_3 - u1_min, 1.0)*np.heaviside(u1_max - w_3, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -inv_smoothing*w*w*w_4
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -673,6 +646,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_q + on_reference_q
     w_2 = given_q_dot + on_reference_q_dot
     inv_smoothing = 1.0/smoothing
@@ -686,18 +660,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_6_w_8_sq = w_6*w_8_sq
     inv_smoothing_w_6_w_8_sq = inv_smoothing*w_6_w_8_sq
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_q
     out[2, 2] = q_dot
     out[2, 3] = inv_smoothing*w_6*w_7*w_8_sq*(1.0 - magnitude_share) + w_5 - inv_smoothing_w_6_w_8_sq*lambda_q_dot - inv_smoothing_w_6_w_8_sq*w_7 - w_5*w_6_w_8_sq
-    out[2, 4] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: b627f05bf55139634c68c7c638cc05cc2d338425a9b05e5e138dd5a1f07dd774
+Digest: 4d2cd2f6673b91e02367705a2a3a741474c24a97680ee7d22a210fe82cad94fb
 """
 
 import math
@@ -440,10 +440,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -558,22 +556,9 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, lam, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -699,25 +684,13 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_smoothing = 1.0/smoothing
     w = -inv_smoothing*lambda_q_dot
     w_2 = np.heaviside(w - u1_min, 1.0)*np.heaviside(u1_max - w, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -inv_smoothing*w_2
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -763,6 +736,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_q + on_reference_q
     w_2 = given_q_dot + on_reference_q_dot
     inv_smoothing = 1.0/smoothing
@@ -771,18 +745,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_5 = np.minimum(np.maximum(w_4, u1_min), u1_max)
     w_6 = np.heaviside(w_4 - u1_min, 1.0)*np.heaviside(u1_max - w_4, 1.0)
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_q
     out[2, 2] = q_dot
     out[2, 3] = w_5 - w_3*w_6 - w_5*w_6
-    out[2, 4] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
 Source: ../derivations/examples/goddard.py f910bce215a6ccf293711b457bbce341
-Digest: 7a930ccd465b60cd132c9f62a8836ac00febaaa24e904ba21330af6f228d1d86
+Digest: d381af853080740b73aff7b2dbede8e3881528d049ba31d88be4cfa79f405577
 """
 
 import math
@@ -655,19 +655,15 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 3, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_h = 1.0/h
     inv_m = 1.0/m
     w = D0*np.exp(-beta*(h - 1.0))
     w_2 = v*v*w
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
     out[1, 0] = beta*inv_m*w_2 + 2.0*g0*inv_h*inv_h*inv_h
     out[1, 1] = -2.0*inv_m*v*w
     out[1, 2] = inv_m*inv_m*(w_2 - T)
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     return out
 
 
@@ -806,6 +802,7 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, u, lam, *p))
+    out[...] = 0.0
     inv_h = 1.0/h
     inv_m = 1.0/m
     w = D0*np.exp(-beta*(h - 1.0))
@@ -822,42 +819,23 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     w_5 = -beta*inv_m_w_v*twice_lambda_v
     w_6 = beta*inv_m_sq*lambda_v*w_2
     w_7 = -inv_m_sq*twice_lambda_v*v*w
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
     out[1, 0] = w_3
     out[1, 1] = -twice_inv_m_w_v
     out[1, 2] = -inv_m_sq_w_4
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[3, 0] = lambda_v*(beta*beta*inv_m_w_2 + 6.0*g0*inv_h*inv_h*inv_h*inv_h)
     out[3, 1] = w_5
     out[3, 2] = w_6
-    out[3, 3] = 0.0
     out[3, 4] = -w_3
-    out[3, 5] = 0.0
     out[4, 0] = w_5
     out[4, 1] = inv_m_w*twice_lambda_v
     out[4, 2] = w_7
     out[4, 3] = -1.0
     out[4, 4] = twice_inv_m_w_v
-    out[4, 5] = 0.0
     out[5, 0] = w_6
     out[5, 1] = w_7
     out[5, 2] = -inv_m*inv_m*inv_m*twice_lambda_v*w_4
-    out[5, 3] = 0.0
     out[5, 4] = inv_m_sq_w_4
-    out[5, 5] = 0.0
     return out
 
 
@@ -1035,6 +1013,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 7, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_h + on_reference_h
     w_2 = given_v + on_reference_v
     w_3 = given_m + on_reference_m
@@ -1057,31 +1036,15 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_7_w_9 = w_7*w_9
     inv_c_w_9 = inv_c*w_9
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0 - w
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0 - w_2
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0 - w_3
-    out[2, 6] = 0.0
     out[3, 0] = lambda_v*(beta*inv_m*w_5 + 2.0*g0*inv_h*inv_h*inv_h)
     out[3, 1] = lambda_h - 2.0*inv_m_lambda_v*v*w_4
     out[3, 2] = inv_m_sq*lambda_v*w_7_w_9 + lambda_v*(inv_m*inv_m*inv_m*w_8 - inv_m_sq*w_10) - inv_c_lambda_m*inv_m_sq_w_8
     out[3, 3] = v
     out[3, 4] = inv_c*inv_m*inv_smoothing*lambda_m*w_7 + inv_m*w_10 - g0*inv_h*inv_h - inv_m*w_7_w_9 - inv_m_sq_w_8
     out[3, 5] = inv_c*inv_m_lambda_v*inv_smoothing_w_7 + inv_c_w_9*w_7 - inv_c*inv_c*inv_smoothing_w_7*lambda_m - inv_c_w_9
-    out[3, 6] = 0.0
     return out

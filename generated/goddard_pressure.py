@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
 Source: ../derivations/examples/goddard_pressure.py bd529685d69fdd4bd230aa01eccbf41a
-Digest: 3ff858a2fbe7ae1d6da588b8da73228fd13ea6e24ab34352898794c58a25bbcb
+Digest: be0e9c3f46b2581c854841289beb48f309a7cbe5706baebb155b84c222a08d9c
 """
 
 import math
@@ -781,20 +781,16 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 3, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_h = 1.0/h
     inv_m = 1.0/m
     v_sq = v*v
     w = np.exp(-beta*(h - 1.0))
     area_rho0_w = area*rho0*w
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
     out[1, 0] = 0.5*area_rho0_w*beta*inv_m*v_sq + 2.0*g0*inv_h*inv_h*inv_h
     out[1, 1] = -area_rho0_w*inv_m*v
     out[1, 2] = 0.5*inv_m*inv_m*(area*rho0*v_sq*w - 2.0*T)
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     return out
 
 
@@ -933,6 +929,7 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, u, lam, *p))
+    out[...] = 0.0
     inv_h = 1.0/h
     inv_m = 1.0/m
     w = area*rho0*np.exp(-beta*(h - 1.0))
@@ -949,42 +946,23 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     w_5 = beta_lambda_v*half_inv_m_sq*w_2
     w_6 = -inv_m_sq*lambda_v*v*w
     w_7 = 2.0*T - w_2
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
     out[1, 0] = w_3
     out[1, 1] = -inv_m_w_v
     out[1, 2] = -inv_m_sq*(T - half_w_2)
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[3, 0] = lambda_v*(beta*beta*half_w_2_inv_m + 6.0*g0*inv_h*inv_h*inv_h*inv_h)
     out[3, 1] = w_4
     out[3, 2] = w_5
-    out[3, 3] = 0.0
     out[3, 4] = -w_3
-    out[3, 5] = 0.0
     out[4, 0] = w_4
     out[4, 1] = inv_m_w*lambda_v
     out[4, 2] = w_6
     out[4, 3] = -1.0
     out[4, 4] = inv_m_w_v
-    out[4, 5] = 0.0
     out[5, 0] = w_5
     out[5, 1] = w_6
     out[5, 2] = -inv_m*inv_m*inv_m*lambda_v*w_7
-    out[5, 3] = 0.0
     out[5, 4] = half_inv_m_sq*w_7
-    out[5, 5] = 0.0
     return out
 
 
@@ -1030,16 +1008,10 @@ def path_gradient_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 3, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     w = rho0*np.exp(-beta*(h - 1.0))
     out[0, 0] = -0.5*beta*v*v*w
     out[0, 1] = v*w
-    out[0, 2] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     return out
 
 
@@ -1065,6 +1037,7 @@ def path_rates_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_m = 1.0/m
     inv_h = 1.0/h
     w = beta*(h - 1.0)
@@ -1072,11 +1045,6 @@ def path_rates_batch(t, x, u, p, out=None):
     rho0_w_2 = rho0*w_2
     w_3 = 0.5*v*v*v
     out[0, 0] = T*inv_m*rho0*v*w_2 - area*inv_m*rho0*rho0*w_3*np.exp(-2.0*w) - beta*rho0_w_2*w_3 - g0*inv_h*inv_h*rho0_w_2*v
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     return out
 
 
@@ -1293,6 +1261,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 7, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_h + on_reference_h
     w_2 = given_v + on_reference_v
     w_3 = given_m + on_reference_m
@@ -1315,31 +1284,15 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_7_w_9 = w_7*w_9
     inv_c_w_9 = inv_c*w_9
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0 - w
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0 - w_2
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0 - w_3
-    out[2, 6] = 0.0
     out[3, 0] = lambda_v*(beta*inv_m*w_5 + 2.0*g0*inv_h*inv_h*inv_h)
     out[3, 1] = lambda_h - inv_m_lambda_v*v*w_4
     out[3, 2] = inv_m_sq*lambda_v*w_7_w_9 + lambda_v*(inv_m*inv_m*inv_m*w_8 - inv_m_sq*w_10) - inv_c_lambda_m*inv_m_sq_w_8
     out[3, 3] = v
     out[3, 4] = inv_c*inv_m*inv_smoothing*lambda_m*w_7 + inv_m*w_10 - g0*inv_h*inv_h - inv_m*w_7_w_9 - inv_m_sq_w_8
     out[3, 5] = inv_c*inv_m_lambda_v*inv_smoothing_w_7 + inv_c_w_9*w_7 - inv_c*inv_c*inv_smoothing_w_7*lambda_m - inv_c_w_9
-    out[3, 6] = 0.0
     return out

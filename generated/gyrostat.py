@@ -3,7 +3,7 @@
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
 Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: 9be3e9c2c80b3f639ac5f2493d204d7521b66b9dcb66d9877c706cc92048dceb
+Digest: aedf8d0c18205749c4ca594520343bb32eb8683a1bc36cb2ce036002335f2423
 """
 
 import math
@@ -492,19 +492,10 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     inv_I_z = 1.0/I_z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[3, 0] = inv_I_x
-    out[3, 1] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[5, 0] = 0.0
     out[5, 1] = inv_I_z
     return out
 

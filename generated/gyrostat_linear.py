@@ -3,7 +3,7 @@
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
 Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: 650f364ded53bee24b5bd470f8f809b74c8297cd0d223c0bab12916abd6b1717
+Digest: a26a97e0b4ebf9f6a487133e530270318e8502bac4a2f51f370bbc8ef5966783
 """
 
 import math
@@ -368,48 +368,21 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     I_y_w0 = I_y*w0
     I_x_w0 = I_x*w0
     w = I_x_w0 + I_z*w0 - I_y_w0 - h
     inv_I_z = 1.0/I_z
     inv_I_y = 1.0/I_y
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0
     out[3, 0] = inv_I_x*w0*(4.0*I_z*w0 - 4.0*I_y_w0 - h)
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     out[3, 4] = inv_I_x*w
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = inv_I_z*w0*(I_x_w0 - I_y_w0 - h)
-    out[4, 2] = 0.0
     out[4, 3] = -inv_I_z*w
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = 3.0*inv_I_y*w0*w0*(I_z - I_x)
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
     return out
 
 
@@ -421,20 +394,11 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     inv_I_z = 1.0/I_z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[3, 0] = inv_I_x
-    out[3, 1] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = inv_I_z
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     return out
 
 
@@ -444,48 +408,21 @@ def state_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]), np.shape(p[2]), np.shape(p[3]), np.shape(p[4]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     I_y_w0 = I_y*w0
     I_x_w0 = I_x*w0
     w = I_x_w0 + I_z*w0 - I_y_w0 - h
     inv_I_z = 1.0/I_z
     inv_I_y = 1.0/I_y
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0
     out[3, 0] = inv_I_x*w0*(4.0*I_z*w0 - 4.0*I_y_w0 - h)
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     out[3, 4] = inv_I_x*w
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = inv_I_z*w0*(I_x_w0 - I_y_w0 - h)
-    out[4, 2] = 0.0
     out[4, 3] = -inv_I_z*w
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = 3.0*inv_I_y*w0*w0*(I_z - I_x)
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
     return out
 
 
@@ -495,18 +432,9 @@ def input_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]), np.shape(p[2]), np.shape(p[3]), np.shape(p[4]))
         out = np.empty((6, 2, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     inv_I_z = 1.0/I_z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[3, 0] = inv_I_x
-    out[3, 1] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = inv_I_z
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
 Source: ../derivations/hill.py 66258a956b3e347b9dc50d88cd6e9d3c
-Digest: b5335c4d8e9e6173e00e557ce60e5a1c7a75841debc01217fb676e28b3150cc4
+Digest: 78d0a90016f730ee84c4f94f34fa2e26724e71baa21075bbb208553cbb4ec05e
 """
 
 import math
@@ -540,44 +540,16 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0
     out[3, 0] = 3.0*omega_sq
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     out[3, 4] = twice_omega
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
     out[4, 3] = -twice_omega
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = -omega_sq
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
     return out
 
 
@@ -589,23 +561,9 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 3, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
+    out[...] = 0.0
     out[3, 0] = 1.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = 1.0
-    out[4, 2] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = 1.0
     return out
 
@@ -616,44 +574,16 @@ def state_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0
     out[3, 0] = 3.0*omega_sq
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     out[3, 4] = twice_omega
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
     out[4, 3] = -twice_omega
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = -omega_sq
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
     return out
 
 
@@ -663,23 +593,9 @@ def input_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((6, 3, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
+    out[...] = 0.0
     out[3, 0] = 1.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = 1.0
-    out[4, 2] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = 1.0
     return out
 
@@ -690,18 +606,9 @@ def output_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((2, 6, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     out[0, 0] = 1.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = 1.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
     return out
 
 
@@ -711,12 +618,7 @@ def feedthrough_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((2, 3, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -818,18 +720,11 @@ def eigenvalues_batch(p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(p[0]), np.shape(p[1]))
         out = np.empty((6, 2, *shape), np.result_type(float, *p))
+    out[...] = 0.0
     w = -omega
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = omega
-    out[3, 0] = 0.0
     out[3, 1] = omega
-    out[4, 0] = 0.0
     out[4, 1] = w
-    out[5, 0] = 0.0
     out[5, 1] = w
     return out
 
@@ -840,6 +735,7 @@ def transition_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(p[0]), np.shape(p[1]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, *p))
+    out[...] = 0.0
     omega_t = omega*t
     cos_omega_t = np.cos(omega_t)
     inv_omega = 1.0/omega
@@ -850,39 +746,20 @@ def transition_matrix_batch(t, p, out=None):
     twice_sin_omega_t = 2.0*sin_omega_t
     w_2 = 6.0*omega
     out[0, 0] = 4.0 - 3.0*cos_omega_t
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = inv_omega_sin_omega_t
     out[0, 4] = -w
-    out[0, 5] = 0.0
     out[1, 0] = 6.0*sin_omega_t - 6.0*omega_t
     out[1, 1] = 1.0
-    out[1, 2] = 0.0
     out[1, 3] = w
     out[1, 4] = 4.0*inv_omega_sin_omega_t - 3.0*t
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = cos_omega_t
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = inv_omega_sin_omega_t
     out[3, 0] = 3.0*omega_sin_omega_t
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = cos_omega_t
     out[3, 4] = twice_sin_omega_t
-    out[3, 5] = 0.0
     out[4, 0] = cos_omega_t*w_2 - w_2
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
     out[4, 3] = -twice_sin_omega_t
     out[4, 4] = 4.0*cos_omega_t - 3.0
-    out[4, 5] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = -omega_sin_omega_t
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
     out[5, 5] = cos_omega_t
     return out

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/inspection.py. Do not edit: mend tha
 Source: ../derivations/examples/inspection.py 6da5a587341891c6f4801fc2c03ae8fe
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
 Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 17c39fccb7b015f1ef503a49e26688bcc0405556337980860be1858ab8ddc05d
+Digest: 32139de970e89c39cf8309c13223514fff5c8c710568d6f81dcd96cdc6ba617d
 """
 
 import math
@@ -766,24 +766,14 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     omega_sq = omega*omega
     twice_omega = 2.0*omega
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 3.0*omega_sq
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[3, 0] = 0.0
     out[3, 1] = -twice_omega
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -795,13 +785,8 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = 1.0
     return out
 
@@ -947,22 +932,7 @@ def path_gradient_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -993,14 +963,7 @@ def path_rates_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -1083,14 +1046,9 @@ def interior_gradient_batch(t, x, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((2, 4, *shape), np.result_type(float, t, x, *p))
+    out[...] = 0.0
     out[0, 0] = 1.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = 1.0
-    out[1, 3] = 0.0
     return out
 
 
@@ -1142,6 +1100,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     omega_sq = omega*omega
     w = 3.0*omega_sq
     twice_omega = 2.0*omega
@@ -1150,70 +1109,18 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_4 = -twice_omega
     w_5 = -lambda_x4
     w_6 = np.heaviside(w_5 - u2_min, 1.0)*np.heaviside(u2_max - w_5, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
     out[1, 0] = w
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = twice_omega
-    out[1, 4] = 0.0
     out[1, 5] = -w_3
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[2, 6] = 0.0
-    out[2, 7] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = w_4
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = -w_6
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
     out[4, 5] = -w
-    out[4, 6] = 0.0
-    out[4, 7] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
     out[5, 4] = -1.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
     out[5, 7] = twice_omega
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
-    out[6, 4] = 0.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
-    out[7, 0] = 0.0
-    out[7, 1] = 0.0
-    out[7, 2] = 0.0
-    out[7, 3] = 0.0
-    out[7, 4] = 0.0
     out[7, 5] = w_4
     out[7, 6] = -1.0
-    out[7, 7] = 0.0
     return out
 
 
@@ -1271,6 +1178,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x1 + on_reference_x1
     w_2 = given_x2 + on_reference_x2
     w_3 = given_x3 + on_reference_x3
@@ -1285,48 +1193,18 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_10 = np.heaviside(w_9 - u2_min, 1.0)*np.heaviside(u2_max - w_9, 1.0)
     w_11 = np.minimum(np.maximum(w_9, u2_min), u2_max)
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
-    out[2, 8] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
     out[4, 0] = lambda_x2*w_5
     out[4, 1] = lambda_x1 - lambda_x4*twice_omega
-    out[4, 2] = 0.0
     out[4, 3] = lambda_x2*twice_omega + lambda_x3
     out[4, 4] = x2
     out[4, 5] = twice_omega*x4 + w_5*x1 + w_8 - lambda_x2*w_7 - w_7*w_8
     out[4, 6] = x4
     out[4, 7] = w_11 - lambda_x4*w_10 - twice_omega*x2 - w_10*w_11
-    out[4, 8] = 0.0
     return out

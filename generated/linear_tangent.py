@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
 Source: ../derivations/examples/linear_tangent.py 21100ef60880ff810d69f603f7045b00
-Digest: 3cba4b4dd2490d79058f64c587df3cfad4c2265e04089ea98cf0852ff904b0e4
+Digest: 820255ab7691db2363e6ff325a1117a0658c87cbe500c9445db94248008c7d05
 """
 
 import math
@@ -539,22 +539,9 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -730,6 +717,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     lambda_vx_sq = lambda_vx*lambda_vx
     a_sq = a*a
     lambda_vy_sq = lambda_vy*lambda_vy
@@ -739,70 +727,14 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_3 = -0.5*np.heaviside(np.sqrt(w) - smoothing*beta_reach, 0.0)*np.minimum(beta_reach, 1e100)/np.maximum(w*np.sqrt(w), 1e-200)
     w_4 = 2.0*a*a*a*a*w_3
     w_5 = -lambda_vx*lambda_vy*w_4
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = -a_sq_w_2 - lambda_vx_sq*w_4
     out[2, 7] = w_5
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
     out[3, 6] = w_5
     out[3, 7] = -a_sq_w_2 - lambda_vy_sq*w_4
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[4, 6] = 0.0
-    out[4, 7] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
-    out[5, 7] = 0.0
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
     out[6, 4] = -1.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
-    out[7, 0] = 0.0
-    out[7, 1] = 0.0
-    out[7, 2] = 0.0
-    out[7, 3] = 0.0
-    out[7, 4] = 0.0
     out[7, 5] = -1.0
-    out[7, 6] = 0.0
-    out[7, 7] = 0.0
     return out
 
 
@@ -860,6 +792,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x + on_reference_x
     w_2 = given_y + on_reference_y
     w_3 = given_vx + on_reference_vx
@@ -882,48 +815,17 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     lambda_vy_cubed = lambda_vy*lambda_vy*lambda_vy
     lambda_vx_sq_lambda_vy = lambda_vx_sq*lambda_vy
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
-    out[2, 8] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
     out[4, 2] = lambda_x
     out[4, 3] = lambda_y
     out[4, 4] = vx
     out[4, 5] = vy
     out[4, 6] = 0.5*smoothing*(lambda_vx_cubed*w_9 + lambda_vx_lambda_vy_sq*w_9 + lambda_vx_twice_a_sq*w_6_sq) - lambda_vx_cubed*twice_w_8 - lambda_vx_lambda_vy_sq*twice_w_8 - lambda_vx_twice_a_sq*w_6
     out[4, 7] = 0.5*smoothing*(lambda_vx_sq_lambda_vy*w_9 + lambda_vy_cubed*w_9 + lambda_vy_twice_a_sq*w_6_sq) - lambda_vx_sq_lambda_vy*twice_w_8 - lambda_vy_cubed*twice_w_8 - lambda_vy_twice_a_sq*w_6
-    out[4, 8] = 0.0
     return out

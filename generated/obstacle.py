@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
 Source: ../derivations/examples/obstacle.py 0cd032b520fe23bf490ab4bdbd67e31b
-Digest: b5ee185ed34b8481d474851231b67d38e03dd5d1d62460d04544572d09040199
+Digest: b8789407434e8d837d4d0c741057079be8f1395f13a8ae200fbef121d91daec2
 """
 
 import math
@@ -637,22 +637,9 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -664,13 +651,8 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     out[2, 0] = 1.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = 1.0
     return out
 
@@ -831,10 +813,7 @@ def path_effect_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -960,70 +939,13 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = -1.0
-    out[2, 7] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = -1.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
-    out[4, 6] = 0.0
-    out[4, 7] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
-    out[5, 7] = 0.0
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
     out[6, 4] = -1.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
-    out[7, 0] = 0.0
-    out[7, 1] = 0.0
-    out[7, 2] = 0.0
-    out[7, 3] = 0.0
-    out[7, 4] = 0.0
     out[7, 5] = -1.0
-    out[7, 6] = 0.0
-    out[7, 7] = 0.0
     return out
 
 
@@ -1072,53 +994,23 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x + on_reference_x
     w_2 = given_y + on_reference_y
     w_3 = given_vx + on_reference_vx
     w_4 = given_vy + on_reference_vy
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
-    out[2, 8] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
     out[4, 2] = lambda_x
     out[4, 3] = lambda_y
     out[4, 4] = vx
     out[4, 5] = vy
     out[4, 6] = -lambda_vx
     out[4, 7] = -lambda_vy
-    out[4, 8] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 2469e8eebe48cfbca751c60a3554a26095d634eb9ac43fdf6a6d86d1b82e57bd
+Digest: b62b2fe23da3bee853d2f3b81189ad8ef4498be0179da2239030c2cebb18f773
 """
 
 import math
@@ -513,10 +513,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -725,6 +723,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_I_wy = 1.0/I_wy
     inv_K_m = 1.0/K_m
     K_t_inv_I_wy_inv_K_m = K_t*inv_I_wy*inv_K_m
@@ -740,19 +739,9 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_5 = np.heaviside(w_4 - wheel_torque_min, 1.0)*np.heaviside(wheel_torque_max - w_4, 1.0)
     w_3_w_5 = w_3*w_5
     w_6 = 0.5*inv_R_a*inv_w_2*w_5
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = K_t_inv_I_wy_inv_K_m*w*w_3_w_5
-    out[1, 2] = 0.0
     out[1, 3] = -K_t*K_t*w_3_w_5
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = I_y*inv_I_wy*inv_I_wy*inv_K_m*inv_K_m*w*w_6
     out[3, 2] = -1.0
     out[3, 3] = -I_y_K_t_inv_I_wy_inv_K_m*w_6
@@ -815,6 +804,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_theta + on_reference_theta
     w_2 = given_theta_dot + on_reference_theta_dot
     inv_I_wy = 1.0/I_wy
@@ -847,18 +837,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     K_t_sq = K_t*K_t
     w_9 = K_t_sq*half_inv_w_3_sq_w_5
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = K_t_lambda_theta_dot*half_inv_w_3_sq_w_5_w_7*inv_I_wy_inv_K_m_inv_R_a + inv_I_wy*inv_I_wy*inv_K_m*inv_K_m*inv_K_t*inv_R_a*w_7*w_8 + inv_I_wy_inv_K_m*inv_I_y_sq*inv_K_t_sq*w_3*w_6*(0.5*I_wy*I_y*K_t*inv_w_3_sq*w_5*w_7 - I_y_sq_K_t*half_inv_w_3_sq_w_5_w_7 - I_y_sq_K_t) + lambda_theta
     out[2, 2] = theta_dot
     out[2, 3] = inv_I_wy*inv_I_y_sq*inv_K_m*inv_K_t_sq*w_3*w_6*(0.5*I_wy*I_y_sq*K_m*K_t_sq*inv_w_3_sq*w_5 - I_wy_sq*I_y*K_m*w_9) + inv_I_y*w_6 - inv_I_wy_inv_K_m_inv_R_a*w_8 - inv_R_a*lambda_theta_dot*w_9
-    out[2, 4] = 0.0
     return out

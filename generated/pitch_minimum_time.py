@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 0d07e71057a57d709fdc38c2d984c4bef9d511c7c8eb7e1708e408dbbf6d286b
+Digest: d20e71f42ac93fd2963d5b56c7d36cbedd40f421e78944eaebdf76278bcd2674
 """
 
 import math
@@ -521,10 +521,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -679,22 +677,9 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, lam, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -828,26 +813,14 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_I_y = 1.0/I_y
     inv_smoothing = 1.0/smoothing
     w = -inv_I_y*inv_smoothing*lambda_theta_dot
     w_2 = np.heaviside(w - wheel_torque_min, 1.0)*np.heaviside(wheel_torque_max - w, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -inv_I_y*inv_I_y*inv_smoothing*w_2
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -898,6 +871,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_theta + on_reference_theta
     w_2 = given_theta_dot + on_reference_theta_dot
     inv_I_y = 1.0/I_y
@@ -907,18 +881,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_5 = np.minimum(np.maximum(w_4, wheel_torque_min), wheel_torque_max)
     w_6 = np.heaviside(w_4 - wheel_torque_min, 1.0)*np.heaviside(wheel_torque_max - w_4, 1.0)
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_theta
     out[2, 2] = theta_dot
     out[2, 3] = inv_I_y*w_5 - inv_I_y*inv_I_y*w_3*w_6 - inv_I_y*w_5*w_6
-    out[2, 4] = 0.0
     return out

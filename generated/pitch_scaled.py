@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: b94377f25152463aa6b2b258af611c3d1266cc48c645c03f6733387b10c474cd
+Digest: f99222f98d0b75f7737b36cc50e827d290a1a61ff036fc4052bf214506a5cc0c
 """
 
 import math
@@ -224,10 +224,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -248,10 +246,8 @@ def state_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t))
         out = np.empty((2, 2, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -292,10 +288,7 @@ def eigenvalues_batch(p, out=None):
     if out is None:
         shape = np.broadcast_shapes()
         out = np.empty((2, 2, *shape), np.result_type(float, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
+    out[...] = 0.0
     return out
 
 

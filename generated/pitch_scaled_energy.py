@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 8fbcbc72f7771586ba89a2102996e04630d5cf6e0cff2e65b14aecc64b584321
+Digest: a3ffefd881361fb68a97e1a6eaab01203a71c94f8d0f968c9e89697b35aa412c
 """
 
 import math
@@ -390,10 +390,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -552,23 +550,14 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     w = -0.5*C_p*X2 - 0.5*lambda_X2
     w_2 = np.heaviside(w - U_min, 1.0)*np.heaviside(U_max - w, 1.0)
     half_w_2 = 0.5*w_2
     C_p_half_w_2 = C_p*half_w_2
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = -C_p_half_w_2
-    out[1, 2] = 0.0
     out[1, 3] = -half_w_2
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = C_p*C_p*half_w_2
     out[3, 2] = -1.0
     out[3, 3] = C_p_half_w_2
@@ -620,6 +609,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_X1 + on_reference_X1
     w_2 = given_X2 + on_reference_X2
     half_lambda_X2 = 0.5*lambda_X2
@@ -632,18 +622,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     C_p_half_w_5 = C_p*half_w_5
     w_6 = C_p_X2 + w_4
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_X1 + w_4*(C_p - C_p_half_w_5) - C_p*half_lambda_X2_w_5 - C_p_half_w_5*w_6
     out[2, 2] = X2
     out[2, 3] = w_4 - half_lambda_X2_w_5 - half_w_5*w_4 - half_w_5*w_6
-    out[2, 4] = 0.0
     return out

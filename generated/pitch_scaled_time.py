@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 7cd0b8718352ecfb11e2bbc79b73371f9dc1b77d53c85b1d63a18a3c75b69711
+Digest: 521f2291f8317ac82323ebb16adceba5ef6590a7d778e9a20d31573efe79421f
 """
 
 import math
@@ -440,10 +440,8 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -558,22 +556,9 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, lam, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -699,25 +684,13 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_smoothing = 1.0/smoothing
     w = -inv_smoothing*lambda_X2
     w_2 = np.heaviside(w - U_min, 1.0)*np.heaviside(U_max - w, 1.0)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = -inv_smoothing*w_2
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = -1.0
-    out[3, 3] = 0.0
     return out
 
 
@@ -763,6 +736,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_X1 + on_reference_X1
     w_2 = given_X2 + on_reference_X2
     inv_smoothing = 1.0/smoothing
@@ -771,18 +745,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_4 = np.minimum(np.maximum(w_3, U_min), U_max)
     w_5 = np.heaviside(w_3 - U_min, 1.0)*np.heaviside(U_max - w_3, 1.0)
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = lambda_X1
     out[2, 2] = X2
     out[2, 3] = w_4 - inv_smoothing_lambda_X2*w_5 - w_4*w_5
-    out[2, 4] = 0.0
     return out

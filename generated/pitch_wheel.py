@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 91b5b01fa533934f6183702dd1db6a2e89af6f79075267155a4a1071f2aa0b09
+Digest: f67aa3aff3ea9b1e6fd385dc4aeeffa577dce1ffcdaa9ff2a5387681af206203
 """
 
 import math
@@ -222,18 +222,12 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((3, 3, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_y = 1.0/I_y
     sin_theta = np.sin(theta)
     cos_theta = np.cos(theta)
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
     out[1, 0] = -3.0*inv_I_y*w0*w0*(I_x - I_z)*(cos_theta - sin_theta)*(cos_theta + sin_theta)
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     return out
 
 

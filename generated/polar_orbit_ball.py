@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: a0d0a017ce8eaed8eeaaa602848da3e8c6b7aa0275cce99b8033b82d33422c62
+Digest: 7d3e1e5e8a27e4d53ea425768606c9c53da0e73c027ce40b8ebfd37bdd427369
 """
 
 import math
@@ -773,24 +773,16 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     twice_theta_dot = 2.0*theta_dot
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 2.0*inv_r*inv_r*inv_r*mu + theta_dot*theta_dot
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = r*twice_theta_dot
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
     out[3, 0] = inv_r*inv_r*(r_dot*twice_theta_dot - u2)
     out[3, 1] = -inv_r*twice_theta_dot
-    out[3, 2] = 0.0
     out[3, 3] = -2.0*inv_r*r_dot
     return out
 
@@ -803,14 +795,9 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_r = 1.0/r
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = inv_r
     return out
 
@@ -1043,6 +1030,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_r = 1.0/r
     w = 2.0*inv_r*inv_r*inv_r
     lambda_theta_dot_sq = lambda_theta_dot*lambda_theta_dot
@@ -1076,67 +1064,29 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_14 = -twice_theta_dot*w_8
     w_15 = -lambda_r_dot*twice_theta_dot - 2.0*r_dot*w_8
     w_16 = lambda_theta_dot*twice_inv_r
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
     out[1, 0] = w_6
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = r_twice_theta_dot
-    out[1, 4] = 0.0
     out[1, 5] = -inv_c1_w_7 - lambda_r_dot_sq*twice_w_4
-    out[1, 6] = 0.0
     out[1, 7] = w_9
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[2, 6] = 0.0
-    out[2, 7] = 0.0
     out[3, 0] = inv_r*w_12 - inv_r_sq_w_10
     out[3, 1] = -inv_r_twice_theta_dot
-    out[3, 2] = 0.0
     out[3, 3] = -r_dot_twice_inv_r
-    out[3, 4] = 0.0
     out[3, 5] = w_9
-    out[3, 6] = 0.0
     out[3, 7] = inv_r*w_13
     out[4, 0] = 6.0*lambda_r_dot*mu*w_11 + w_12*w_8 - lambda_theta_dot*w*w_10
     out[4, 1] = w_14
-    out[4, 2] = 0.0
     out[4, 3] = w_15
-    out[4, 4] = 0.0
     out[4, 5] = -w_6
-    out[4, 6] = 0.0
     out[4, 7] = inv_r_sq_w_10 + w_13*w_8
     out[5, 0] = w_14
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
     out[5, 3] = w_16
     out[5, 4] = -1.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
     out[5, 7] = inv_r_twice_theta_dot
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
-    out[6, 4] = 0.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
     out[7, 0] = w_15
     out[7, 1] = w_16
-    out[7, 2] = 0.0
     out[7, 3] = -r*twice_lambda_r_dot
-    out[7, 4] = 0.0
     out[7, 5] = -r_twice_theta_dot
     out[7, 6] = -1.0
     out[7, 7] = r_dot_twice_inv_r
@@ -1210,6 +1160,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_r + on_reference_r
     w_2 = 1.0 - w
     w_3 = given_r_dot + on_reference_r_dot
@@ -1252,41 +1203,14 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_20 = lambda_r_dot_sq*twice_w_15
     w_21 = 2.0*inv_c1_sq*w_11_sq
     out[0, 0] = w - k1*w_2
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = w_2
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_3 - k2*w_4
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = w_4
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_5 - k3_w_6
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = w_6
-    out[2, 7] = 0.0
     out[2, 8] = k3_w_6*omega - omega_on_reference_theta
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_7 - k4*w_8
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = w_8
-    out[3, 8] = 0.0
     out[4, 0] = half_c1*(-inv_r*inv_r_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*w_18 - inv_r_cubed*lambda_r_dot_sq_w_18*lambda_theta_dot_sq - twice_inv_r_cubed*w_11_sq*w_9) + inv_r_lambda_theta_dot*(inv_c1_w_11*w_13 + twice_w_15*w_16) + lambda_r_dot*(lambda_r_dot*w_17 + mu*twice_inv_r_cubed + theta_dot_sq) - w_12*w_13
     out[4, 1] = lambda_r - inv_r_lambda_theta_dot*twice_theta_dot
     out[4, 2] = k3*omega_on_reference_theta - k3*omega

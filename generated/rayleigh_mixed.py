@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
 Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
-Digest: d7884e881ed1c030a4bc27ad903567b8dea9c039be7c2d7f7eee2995c9178c9d
+Digest: 51586845f8e1f3bb0dc80a8f8abf2d1ee1f2458c565240187590ce5ce81ae4c1
 """
 
 import math
@@ -585,8 +585,7 @@ def path_rates_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     return out
 
 

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
 Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
 Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 1bc6ea6aba9f61e4d05de8479f17f5898784fe27a664e49cba63bbeea9518c14
+Digest: 82daa054f31226489972013f86c68836e00e8d99012a0fa45d440dba49b29250
 """
 
 import math
@@ -814,24 +814,16 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     twice_theta_dot = 2.0*theta_dot
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[1, 0] = 2.0*inv_r*inv_r*inv_r*mu + theta_dot*theta_dot
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = r*twice_theta_dot
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
     out[3, 0] = inv_r*inv_r*(r_dot*twice_theta_dot - u2)
     out[3, 1] = -inv_r*twice_theta_dot
-    out[3, 2] = 0.0
     out[3, 3] = -2.0*inv_r*r_dot
     return out
 
@@ -844,14 +836,9 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_r = 1.0/r
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[1, 0] = 1.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = inv_r
     return out
 
@@ -1056,10 +1043,8 @@ def path_gradient_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((1, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     out[0, 0] = -1.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     return out
 
 
@@ -1071,8 +1056,7 @@ def path_effect_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -1188,6 +1172,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_r = 1.0/r
     inv_r_cubed = inv_r*inv_r*inv_r
     twice_inv_r_cubed = 2.0*inv_r_cubed
@@ -1209,67 +1194,27 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_6 = -twice_theta_dot*w_5
     w_7 = -lambda_r_dot*twice_theta_dot - 2.0*r_dot*w_5
     w_8 = lambda_theta_dot*twice_inv_r
-    out[0, 0] = 0.0
     out[0, 1] = 1.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
     out[1, 0] = w
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = r_twice_theta_dot
-    out[1, 4] = 0.0
     out[1, 5] = -inv_c1
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = 1.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[2, 6] = 0.0
-    out[2, 7] = 0.0
     out[3, 0] = w_3
     out[3, 1] = -inv_r_twice_theta_dot
-    out[3, 2] = 0.0
     out[3, 3] = -r_dot_twice_inv_r
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = -inv_c2*inv_r_sq
     out[4, 0] = inv_c2*lambda_theta_dot*lambda_theta_dot*w_4 + 6.0*lambda_r_dot*mu*w_4 - lambda_theta_dot*twice_inv_r_cubed*w_2
     out[4, 1] = w_6
-    out[4, 2] = 0.0
     out[4, 3] = w_7
-    out[4, 4] = 0.0
     out[4, 5] = -w
-    out[4, 6] = 0.0
     out[4, 7] = -w_3
     out[5, 0] = w_6
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
     out[5, 3] = w_8
     out[5, 4] = -1.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
     out[5, 7] = inv_r_twice_theta_dot
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
-    out[6, 4] = 0.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
-    out[6, 7] = 0.0
     out[7, 0] = w_7
     out[7, 1] = w_8
-    out[7, 2] = 0.0
     out[7, 3] = -2.0*lambda_r_dot*r
-    out[7, 4] = 0.0
     out[7, 5] = -r_twice_theta_dot
     out[7, 6] = -1.0
     out[7, 7] = r_dot_twice_inv_r
@@ -1329,6 +1274,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_r + on_reference_r
     w_2 = given_r_dot + on_reference_r_dot
     w_3 = given_theta + on_reference_theta
@@ -1344,48 +1290,19 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     mu = omega*omega*sigma*sigma*sigma
     inv_c1 = 1.0/c1
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
     out[2, 8] = -omega_on_reference_theta
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
     out[4, 0] = lambda_r_dot*(2.0*inv_r*inv_r*inv_r*mu + theta_dot_sq) - inv_r_sq*lambda_theta_dot*w_5
     out[4, 1] = lambda_r - inv_r_lambda_theta_dot*twice_theta_dot
-    out[4, 2] = 0.0
     out[4, 3] = lambda_r_dot*r*twice_theta_dot + lambda_theta - 2.0*inv_r_lambda_theta_dot*r_dot
     out[4, 4] = r_dot
     out[4, 5] = r*theta_dot_sq - inv_c1*lambda_r_dot - inv_r_sq*mu
     out[4, 6] = theta_dot - omega_on_reference_theta
     out[4, 7] = inv_r*w_5
-    out[4, 8] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
 Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: 514b866c55168ec63ec81ca978553790c6a87a5855839a03a204fc3f913d713e
+Digest: 4aafbce8f9ef6a836d6cca1e32cff378106cee672ea947175d0cb7b1ba0247da
 """
 
 import math
@@ -675,27 +675,18 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     I_y_w0 = I_y*w0
     I_x_w0 = I_x*w0
     w = I_x_w0 + I_z*w0 - I_y_w0 - h
     inv_I_z = 1.0/I_z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
     out[2, 0] = inv_I_x*w0*(4.0*I_z*w0 - 4.0*I_y_w0 - h)
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = inv_I_x*w
-    out[3, 0] = 0.0
     out[3, 1] = inv_I_z*w0*(I_x_w0 - I_y_w0 - h)
     out[3, 2] = -inv_I_z*w
-    out[3, 3] = 0.0
     return out
 
 
@@ -707,15 +698,10 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     inv_I_z = 1.0/I_z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[2, 0] = inv_I_x
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = inv_I_z
     return out
 
@@ -894,6 +880,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((8, 8, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_I_x = 1.0/I_x
     I_y_w0 = I_y*w0
     I_z_w0 = I_z*w0
@@ -908,70 +895,20 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     inv_I_z_w_2 = inv_I_z*w_2
     w_6 = -inv_I_z*lambda_psi_dot
     w_7 = np.heaviside(w_6 - torque_z_min, 1.0)*np.heaviside(torque_z_max - w_6, 1.0)
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
     out[0, 2] = 1.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
     out[1, 3] = 1.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
     out[2, 0] = -w
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
     out[2, 3] = inv_I_x*w_2
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = -inv_I_x*inv_I_x*w_4
-    out[2, 7] = 0.0
-    out[3, 0] = 0.0
     out[3, 1] = -inv_I_z_w0*w_5
     out[3, 2] = -inv_I_z_w_2
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = -inv_I_z*inv_I_z*w_7
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
     out[4, 6] = w
-    out[4, 7] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
-    out[5, 6] = 0.0
     out[5, 7] = inv_I_z_w0*w_5
-    out[6, 0] = 0.0
-    out[6, 1] = 0.0
-    out[6, 2] = 0.0
-    out[6, 3] = 0.0
     out[6, 4] = -1.0
-    out[6, 5] = 0.0
-    out[6, 6] = 0.0
     out[6, 7] = inv_I_z_w_2
-    out[7, 0] = 0.0
-    out[7, 1] = 0.0
-    out[7, 2] = 0.0
-    out[7, 3] = 0.0
-    out[7, 4] = 0.0
     out[7, 5] = -1.0
     out[7, 6] = -inv_I_x*w_2
-    out[7, 7] = 0.0
     return out
 
 
@@ -1032,6 +969,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((5, 9, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_phi + on_reference_phi
     w_2 = given_psi + on_reference_psi
     w_3 = given_phi_dot + on_reference_phi_dot
@@ -1052,41 +990,13 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_12 = np.minimum(np.maximum(w_11, torque_z_min), torque_z_max)
     w_13 = np.heaviside(w_11 - torque_z_min, 1.0)*np.heaviside(torque_z_max - w_11, 1.0)
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
     out[0, 4] = 1.0 - w
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
     out[1, 5] = 1.0 - w_2
-    out[1, 6] = 0.0
-    out[1, 7] = 0.0
-    out[1, 8] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
     out[2, 6] = 1.0 - w_3
-    out[2, 7] = 0.0
-    out[2, 8] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
     out[3, 7] = 1.0 - w_4
-    out[3, 8] = 0.0
     out[4, 0] = -inv_I_x_lambda_phi_dot*w_5
     out[4, 1] = inv_I_z_lambda_psi_dot*w0*w_6
     out[4, 2] = lambda_phi - inv_I_z_lambda_psi_dot*w_7
@@ -1095,5 +1005,4 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[4, 5] = psi_dot
     out[4, 6] = inv_I_x*psi_dot*w_7 + inv_I_x*w_9 - inv_I_x*inv_I_x*lambda_phi_dot*w_10 - inv_I_x*phi*w_5 - inv_I_x*w_10*w_9
     out[4, 7] = inv_I_z*psi*w0*w_6 + inv_I_z*w_12 - inv_I_z*inv_I_z*lambda_psi_dot*w_13 - inv_I_z*phi_dot*w_7 - inv_I_z*w_12*w_13
-    out[4, 8] = 0.0
     return out

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
 Source: ../derivations/examples/shuttle.py bc2e05b62d9104c208bda8f0f26309bc
-Digest: 341bebe1f606ad905bff2e760210fe68a1643e36db9f537ffd58efabb71ce62d
+Digest: b1bedbd83740e9011596e5fb9d211af17422c73ee58ad9cd62925a0fc72805e3
 """
 
 import math
@@ -2318,6 +2318,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_m = 1.0/m
     inv_h_r = 1.0/h_r
     w = 0.5*area*inv_m*rho_0*np.exp(-h*inv_h_r)
@@ -2328,14 +2329,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
     w_2 = v_w*(a_0 + a_1*alpha)
     cos_gamma = np.cos(gamma)
     inv_cos_gamma = 1.0/cos_gamma
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[3, 0] = -v*v*w*(2.0*alpha*b_2 + b_1)
-    out[3, 1] = 0.0
     out[4, 0] = a_1_v_w*cos_beta
     out[4, 1] = -sin_beta*w_2
     out[5, 0] = a_1_v_w*inv_cos_gamma*sin_beta
@@ -2633,39 +2627,12 @@ def path_gradient_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((5, 6, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_h_r = 1.0/h_r
     half_inv_h_r = 0.5*inv_h_r
     w = q_r*(alpha*alpha*alpha*c_3 + alpha*alpha*c_2 + alpha*c_1 + c_0)*np.exp(-h*half_inv_h_r)/v_r**(307.0/100.0)
     out[0, 0] = -half_inv_h_r*v**(307.0/100.0)*w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = (307.0/100.0)*v**(207.0/100.0)*w
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
     return out
 
 
@@ -2699,16 +2666,7 @@ def path_rates_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((5, 2, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -3495,6 +3453,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((7, 13, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_h + on_reference_h
     w_2 = given_phi + on_reference_phi
     w_3 = given_theta + on_reference_theta
@@ -3691,85 +3650,18 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     d_law_of_alpha_by_lambda_psi = d_law_part_21_by_lambda_psi*w_35 + d_law_part_25_by_lambda_psi*w_36
     d_law_of_beta_by_lambda_psi = d_law_part_14_by_lambda_psi*w_35 + d_law_part_23_by_lambda_psi*w_36
     out[0, 0] = w
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
     out[0, 6] = 1.0 - w
-    out[0, 7] = 0.0
-    out[0, 8] = 0.0
-    out[0, 9] = 0.0
-    out[0, 10] = 0.0
-    out[0, 11] = 0.0
-    out[0, 12] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
-    out[1, 4] = 0.0
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
     out[1, 7] = 1.0 - w_2
-    out[1, 8] = 0.0
-    out[1, 9] = 0.0
-    out[1, 10] = 0.0
-    out[1, 11] = 0.0
-    out[1, 12] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_3
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
-    out[2, 5] = 0.0
-    out[2, 6] = 0.0
-    out[2, 7] = 0.0
     out[2, 8] = 1.0 - w_3
-    out[2, 9] = 0.0
-    out[2, 10] = 0.0
-    out[2, 11] = 0.0
-    out[2, 12] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
     out[3, 3] = w_4
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
-    out[3, 6] = 0.0
-    out[3, 7] = 0.0
-    out[3, 8] = 0.0
     out[3, 9] = 1.0 - w_4
-    out[3, 10] = 0.0
-    out[3, 11] = 0.0
-    out[3, 12] = 0.0
-    out[4, 0] = 0.0
-    out[4, 1] = 0.0
-    out[4, 2] = 0.0
-    out[4, 3] = 0.0
     out[4, 4] = w_5
-    out[4, 5] = 0.0
-    out[4, 6] = 0.0
-    out[4, 7] = 0.0
-    out[4, 8] = 0.0
-    out[4, 9] = 0.0
     out[4, 10] = 1.0 - w_5
-    out[4, 11] = 0.0
-    out[4, 12] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
-    out[5, 2] = 0.0
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
     out[5, 5] = w_6
-    out[5, 6] = 0.0
-    out[5, 7] = 0.0
-    out[5, 8] = 0.0
-    out[5, 9] = 0.0
-    out[5, 10] = 0.0
     out[5, 11] = 1.0 - w_6
-    out[5, 12] = 0.0
     out[6, 0] = d_law_of_alpha_by_h*w_34 + d_law_of_beta_by_h*w_33 + lambda_gamma*(cos_gamma*(inv_v*w_9 - inv_w_7_sq_v) - inv_h_r*w_32) + lambda_psi*(-inv_h_r*w_31 - sin_theta*w_8) + lambda_v*(half_w_11_v_sq_w_28*inv_h_r + sin_gamma*w_9) - cos_gamma_inv_w_7_sq_v*cos_psi_lambda_theta - lambda_phi*w_8
-    out[6, 1] = 0.0
     out[6, 2] = lambda_phi*sin_theta*w_46 + lambda_psi*(sin_theta*sin_theta*w_46 + w_45)
     out[6, 3] = cos_gamma_inv_w_7*cos_psi_lambda_theta + d_law_of_alpha_by_v*w_34 + d_law_of_beta_by_v*w_33 + lambda_gamma*(cos_gamma*(inv_v*inv_v*inv_w_7_sq_mu + inv_w_7) + cos_w_29*half_w_11_w_30) + lambda_h*sin_gamma + lambda_phi*w_47 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sin_w_29 + sin_theta*w_47) - lambda_v*v*w_11*w_28
     out[6, 4] = cos_gamma*lambda_h*v + d_law_of_alpha_by_gamma*w_34 + d_law_of_beta_by_gamma*w_33 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sq*sin_gamma_v*sin_w_29 - sin_theta*w_49) - cos_gamma*inv_w_7_sq_mu*lambda_v - cos_psi_lambda_theta*inv_w_7_v_sin_gamma - lambda_gamma*sin_gamma*w_50 - lambda_phi*w_49
@@ -3780,5 +3672,4 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[6, 9] = d_law_of_alpha_by_lambda_v*w_34 - half_w_11_v_sq_w_28 - inv_w_7_sq_mu*sin_gamma
     out[6, 10] = cos_gamma*w_50 + d_law_of_alpha_by_lambda_gamma*w_34 + d_law_of_beta_by_lambda_gamma*w_33 + w_32
     out[6, 11] = d_law_of_alpha_by_lambda_psi*w_34 + d_law_of_beta_by_lambda_psi*w_33 + inv_cos_theta_w_45*sin_theta + w_31
-    out[6, 12] = 0.0
     return out

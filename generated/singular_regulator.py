@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: c2bdf594d72bc4e49b78f113308fbd4570965bd15531a59c1114015a98a42636
+Digest: ce06b273f0d7aca63ec1d82310405c6bdf8c29ac27a96516f56e8232fce07f36
 """
 
 import math
@@ -322,7 +322,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((1, 1, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     return out
 
 
@@ -435,10 +435,8 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
+    out[...] = 0.0
     out[1, 0] = -1.0
-    out[1, 1] = 0.0
     return out
 
 

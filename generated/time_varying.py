@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 2f9c545368cfadf77551bcb5c6b2f1d670c0fe471ad0dc86db18af75c2622b8e
+Digest: 3ed82203a840260aec1df9406e93461a9f6de0c032384ade53aa94e029eca920
 """
 
 import math
@@ -279,7 +279,7 @@ def feedthrough_matrix_batch(t, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t))
         out = np.empty((1, 1, *shape), np.result_type(float, t, *p))
-    out[0, 0] = 0.0
+    out[...] = 0.0
     return out
 
 

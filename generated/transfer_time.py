@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
 Source: ../derivations/examples/transfer_time.py 8dac91d34931c9427d3d84056043063d
-Digest: 93baeb951a87ea6576aceecb59d211e3a73b521de881a7fd995743bdf8ae8e18
+Digest: 51eb025bd0274510da729dcc175bec90d3a4465c522a509c2274f0a525dc980c
 """
 
 import math
@@ -973,6 +973,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 7, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w_2 = given_r + on_reference_r
     w_3 = given_u + on_reference_u
     w_4 = given_v + on_reference_v
@@ -1014,26 +1015,11 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     twice_w_8_sq_w_12 = twice_w_8_sq*w_12
     twice_w_9_w_13_w_8 = twice_w_9*w_13*w_8
     out[0, 0] = w_2
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0 - w_2
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[0, 6] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_3
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0 - w_3
-    out[1, 5] = 0.0
-    out[1, 6] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
     out[2, 2] = w_4
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0 - w_4
-    out[2, 6] = 0.0
     out[3, 0] = inv_r_sq*lambda_v*u_value_v + lambda_u*(2.0*inv_r*inv_r*inv_r*mu - inv_r_sq*v_sq)
     out[3, 1] = lambda_r - inv_r_lambda_v*v
     out[3, 2] = inv_r*twice_lambda_u*v - inv_r_lambda_v*u_value

@@ -3,7 +3,7 @@
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
 Source: ../derivations/two_body.py b89d46b2bea74c144897b0bf79994229
-Digest: 43372efb14139b876b922e4a680c8637b1b521af036e8063b091abbe1c489ff8
+Digest: 0d5ec325869d1e45bec249aba50eb458c8fa47c7098402ba0dbe08e6fbc41415
 """
 
 import math
@@ -565,6 +565,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 6, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     x_value_sq = x_value*x_value
     y_sq = y*y
     z_sq = z*z
@@ -578,42 +579,18 @@ def jacobian_x_batch(t, x, u, p, out=None):
     w_4_y = w_4*y
     w_4_z = w_4*z
     w_5 = 3.0*w_3*y*z
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
     out[0, 3] = 1.0
-    out[0, 4] = 0.0
-    out[0, 5] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[1, 3] = 0.0
     out[1, 4] = 1.0
-    out[1, 5] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[2, 4] = 0.0
     out[2, 5] = 1.0
     out[3, 0] = w_3*(2.0*x_value_sq - w)
     out[3, 1] = w_4_y
     out[3, 2] = w_4_z
-    out[3, 3] = 0.0
-    out[3, 4] = 0.0
-    out[3, 5] = 0.0
     out[4, 0] = w_4_y
     out[4, 1] = w_3*(2.0*y_sq - x_value_sq - z_sq)
     out[4, 2] = w_5
-    out[4, 3] = 0.0
-    out[4, 4] = 0.0
-    out[4, 5] = 0.0
     out[5, 0] = w_4_z
     out[5, 1] = w_5
     out[5, 2] = w_3*(2.0*z_sq - x_value_sq - y_sq)
-    out[5, 3] = 0.0
-    out[5, 4] = 0.0
-    out[5, 5] = 0.0
     return out
 
 
@@ -625,23 +602,9 @@ def jacobian_u_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((6, 3, *shape), np.result_type(float, t, x, u, *p))
-    out[0, 0] = 0.0
-    out[0, 1] = 0.0
-    out[0, 2] = 0.0
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
-    out[1, 2] = 0.0
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
+    out[...] = 0.0
     out[3, 0] = 1.0
-    out[3, 1] = 0.0
-    out[3, 2] = 0.0
-    out[4, 0] = 0.0
     out[4, 1] = 1.0
-    out[4, 2] = 0.0
-    out[5, 0] = 0.0
-    out[5, 1] = 0.0
     out[5, 2] = 1.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
 Source: ../derivations/examples/zermelo.py 3971a73f58bc2a2d63f8d2ea1665e8d7
-Digest: 47726c07f8314122f743b0dd3db1793b7c4d33ec6cbe1ebb8b915f8734f7d97d
+Digest: e2873b8fdafe45980f20ac664baa5aa29b9f8f716d601f8ba050c754e233ea9f
 """
 
 import math
@@ -421,11 +421,9 @@ def jacobian_x_batch(t, x, u, p, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
+    out[...] = 0.0
     inv_h = 1.0/h
-    out[0, 0] = 0.0
     out[0, 1] = -V*inv_h
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     return out
 
 
@@ -595,6 +593,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+    out[...] = 0.0
     inv_h = 1.0/h
     V_inv_h = V*inv_h
     lambda_x_sq = lambda_x*lambda_x
@@ -606,22 +605,12 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     w_3 = -0.5*np.heaviside(np.sqrt(w) - smoothing*heading_reach, 0.0)*np.minimum(heading_reach, 1e100)/np.maximum(w*np.sqrt(w), 1e-200)
     w_4 = 2.0*V*V*V*V*w_3
     w_5 = -lambda_x*lambda_y*w_4
-    out[0, 0] = 0.0
     out[0, 1] = -V_inv_h
     out[0, 2] = -V_sq_w_2 - lambda_x_sq*w_4
     out[0, 3] = w_5
-    out[1, 0] = 0.0
-    out[1, 1] = 0.0
     out[1, 2] = w_5
     out[1, 3] = -V_sq_w_2 - lambda_y_sq*w_4
-    out[2, 0] = 0.0
-    out[2, 1] = 0.0
-    out[2, 2] = 0.0
-    out[2, 3] = 0.0
-    out[3, 0] = 0.0
-    out[3, 1] = 0.0
     out[3, 2] = V_inv_h
-    out[3, 3] = 0.0
     return out
 
 
@@ -674,6 +663,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
+    out[...] = 0.0
     w = given_x + on_reference_x
     w_2 = given_y + on_reference_y
     inv_h = 1.0/h
@@ -696,18 +686,10 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     lambda_y_cubed = lambda_y*lambda_y*lambda_y
     lambda_x_sq_lambda_y = lambda_x_sq*lambda_y
     out[0, 0] = w
-    out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
-    out[0, 3] = 0.0
-    out[0, 4] = 0.0
-    out[1, 0] = 0.0
     out[1, 1] = w_2
-    out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
-    out[1, 4] = 0.0
-    out[2, 0] = 0.0
     out[2, 1] = -V_inv_h*lambda_x
     out[2, 2] = 0.5*smoothing*(lambda_x_cubed*w_7 + lambda_x_lambda_y_sq*w_7 + lambda_x_twice_V_sq*w_4_sq) - V_inv_h*y - lambda_x_cubed*twice_w_6 - lambda_x_lambda_y_sq*twice_w_6 - lambda_x_twice_V_sq*w_4
     out[2, 3] = 0.5*smoothing*(lambda_x_sq_lambda_y*w_7 + lambda_y_cubed*w_7 + lambda_y_twice_V_sq*w_4_sq) - lambda_x_sq_lambda_y*twice_w_6 - lambda_y_cubed*twice_w_6 - lambda_y_twice_V_sq*w_4
-    out[2, 4] = 0.0
     return out

@@ -210,16 +210,19 @@ def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment],
     sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES and s.of(a)]
     sizes += [f"p[{k}]" for k in range(len(s.p))] if function.over_parameters else []
     types = [f"*{a}" if a in TUPLES else a for a in function.arguments]
+    blank = function.kind == "matrix" and 2 * outputs.count(sp.S.Zero) > len(outputs)
     body = [
         *_unpack(function, s),
         "if out is None:",
         f"    shape = np.broadcast_shapes({', '.join(f'np.shape({a})' for a in sizes)})",
         f"    out = np.empty({shape}, np.result_type(float, {', '.join(types)}))",
+        *(["out[...] = 0.0"] if blank else []),
         *(line for a, e in assignments for line in _lines(a, e, "np", code)),
     ]
     for k, output in enumerate(outputs):
         place = {"scalar": "...", "vector": str(k), "matrix": f"{k // columns}, {k % columns}"}[function.kind]
-        body.append(f"out[{place}] = {code(output)}")
+        if not (blank and output == 0):
+            body.append(f"out[{place}] = {code(output)}")
     return _function(
         f"{function.name}_batch({', '.join(function.arguments)}, out=None)",
         f"{function.summary} Batch form.",

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
+from itertools import product
 from math import prod
 from typing import NoReturn
 
@@ -109,6 +110,11 @@ class Body:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 self._number(value)
                 self.numbers.add(name if name in self.numbers else self._new(node, name))
+            case ast.Assign(
+                targets=[ast.Subscript(value=ast.Name(id="out"), slice=ast.Constant(value=place))],
+                value=ast.Constant(value=float(number)),
+            ) if self.allocated and not self.stored and place is ... and number == 0.0 and len(self.shape) == 2:
+                self.stored |= {*product(*map(range, self.shape))}  # of a matrix that is zero for the most part
             case ast.Assign(targets=[ast.Subscript(value=ast.Name(id="out"), slice=place)], value=value) if (
                 self.allocated
             ):

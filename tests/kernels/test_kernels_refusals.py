@@ -217,6 +217,8 @@ ATTACKS = {
     "an entry that is none": ("    out[3] = ", "    out[True] = "),
     "an entry left out": ("    out[2] = theta_dot\n", ""),
     "a part of the result": ("    out[3] = ", "    out[...] = "),
+    "zeros that are no zeros": ("    out[...] = 0.0\n", "    out[...] = 1.0\n"),
+    "zeros in the end": ("    out[0, 1] = 1.0\n", "    out[0, 1] = 1.0\n    out[...] = 0.0\n"),
     "an array that is changed": ("    out[3] = ", "    x[3] = "),
 }
 
