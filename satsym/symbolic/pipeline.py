@@ -20,6 +20,7 @@ from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
+from satsym.symbolic.principle.parts import as_one
 from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls
 from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import boundary, singular
@@ -138,7 +139,9 @@ def derive(subject: Problem | Model) -> Derivation:
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:
     """The motion, then its outputs, then what follows from the cost."""
-    derivation, known = _moving(model, problem, "steps")
+    derivation, known = _moving(model, one := problem and as_one(problem), "steps")
+    if one is not problem and product.needs_its_sets(derivation):
+        derivation, known = _moving(model, problem, "steps")
     if problem is not None:
         _refuse_unsolved(problem.name, derivation)
     derivation = _with_quantities(derivation)

@@ -230,7 +230,7 @@ def test_products_of_controls_in_different_sets_are_refused():
         title="",
         model=POINT,
         running_cost=EFFORT + ux * uy,
-        control_sets={"a": Free("ux"), "b": Free("uy")},
+        control_sets={"a": Free("ux"), "b": Box("uy")},
     )
     with pytest.raises(DerivationError, match="H has products of ux with uy, which are in other control sets"):
         derived(mixed)

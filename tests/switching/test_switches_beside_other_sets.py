@@ -190,7 +190,6 @@ def test_what_switches_needs_bounds():
 @pytest.mark.parametrize(
     ("sets", "said"),
     [
-        ({"both": Box("k", "w")}, 'which switch one by one; state them so: control_sets={"k": Box("k"), "w": Box("w")'),
         ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which nothing limits; state a Box or a Ball"),
         ({"push": Box("k"), "rate": Ball("w")}, "H is linear in w alone, which does not turn; state a Box"),
     ],
@@ -198,3 +197,19 @@ def test_what_switches_needs_bounds():
 def test_what_is_linear_has_a_set_of_its_own(sets: dict[str, Box | Free | Ball], said: str):
     with pytest.raises(DerivationError, match=re.escape(said)):
         derive(replace(cart(), running_cost=x**2, control_sets=sets))
+
+
+def test_what_is_linear_shares_no_box_beside_other_sets():
+    states = (*CART, Variable("b", "b"))
+    moving = FirstOrder(
+        name="turned",
+        title="T",
+        states=states,
+        controls=(*PUSHED, Variable("c", "c", kind="angle")),
+        parameters=(),
+        rates={x: v, v: k, y: w, symbols_of(states)[3]: cos(symbols_of((Variable("c", "c"),))[0])},
+    )
+    sets = {"both": Box("k", "w"), "way": Angle("c")}
+    said = 'which switch one by one; state them so: control_sets={"k": Box("k"), "w": Box("w")'
+    with pytest.raises(DerivationError, match=re.escape(said)):
+        derive(Problem(name="turning", title="T", model=moving, running_cost=x**2 + y**2, control_sets=sets))

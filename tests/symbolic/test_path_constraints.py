@@ -154,12 +154,21 @@ def test_it_is_typeset(language: str):
     assert r"\zeta_{2}" in text
 
 
+WAY = Variable("w", "w", kind="angle")
+TURNED = replace(
+    CHAIN, rates={a: b, b: d, d: u, e: sp.cos(symbols_of((WAY,))[0])}, controls=(*CHAIN.controls, WAY)
+)
+
+
 @pytest.mark.parametrize(
     ("problem", "message"),
     [
         (kept(e - 1), "no control influences it, so nothing can keep it"),
         (kept(a - 1), "its order is more than 2"),
-        (kept(b - 1, running_cost=a**2, control_sets={"push": Box("u")}), "H is linear in u; they are derived where"),
+        (
+            kept(b - 1, model=TURNED, running_cost=a**2, control_sets={"push": Box("u"), "way": Angle("w")}),
+            "H is linear in u; they are derived where",
+        ),
         (kept(b - 1, running_cost=a * u**2, control_sets={"push": Box("u")}), "not always convex in u, which may jump"),
         (kept(b - 1, control_sets={"push": Ball("u")}), "beside bounds of the controls other than those of a box"),
         (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),

@@ -12,6 +12,7 @@ import pytest
 import sympy as sp
 
 from satsym.symbolic import (
+    Ball,
     Box,
     Derivation,
     DerivationError,
@@ -175,7 +176,7 @@ def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
         (switching({x1: sp.sign(x2), x2: u1}, 1), "the rate of x1 has sign(x2) in it, whose derivatives jump"),
         (switching({x1: u1}, sp.Abs(u1) + sp.Max(x1, 0)), "the running cost has Max(0, x1) in it"),
         (
-            switching({x1: u1 + u2}, sp.Abs(u1), control_set="free", control_sets={"both": Box("u1", "u2")}),
+            switching({x1: u1 + u2}, sp.Abs(u1), control_set="free", control_sets={"a": Box("u1"), "b": Ball("u2")}),
             "|u1| among control_sets is not supported",
         ),
         (switching({x1: u1, x2: x1}, u2**2 + x2), "H_uu is singular"),

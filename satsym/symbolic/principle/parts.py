@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -94,6 +94,22 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
             message = f"control_sets: {control!r} is {where}; put each control into one set"
             raise DerivationError(f"{problem.name}: {message}")
     return tuple(found)
+
+
+def as_one(problem: Problem) -> Problem:
+    """The same with one control set where its sets are all boxes, or all free: the product of boxes is a box.
+
+    Raises
+    ------
+    DerivationError
+        If they are not sets of the model's controls, each control in one of them.
+    """
+    if not problem.control_sets or problem.control_set != "free":
+        return problem
+    kinds = {part.kind for part in parts_of(problem)}
+    if kinds == {"box"}:
+        return replace(problem, control_set="box", control_sets={})
+    return replace(problem, control_sets={}) if kinds == {"free"} else problem
 
 
 def limits_of(problem: Problem) -> tuple[Variable, ...]:

@@ -38,6 +38,7 @@ from satsym.symbolic.principle.set_laws import (
     shortened,
     written_out,
 )
+from satsym.symbolic.principle.stationary import indefinite
 from satsym.symbolic.roots import Argmin, Choice, Vertex
 
 STEP = "control_parts"
@@ -65,13 +66,37 @@ def applies(so_far: Derivation) -> bool:
         cost, *rates = stated
         if problem.control_set == "box" and any(sp.simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
             return True  # the costates decide whether H is convex
-        if problem.control_set == "box" and any(sp.simplify(sp.diff(cost, u, 2)).is_negative for u in controls):
+        if problem.control_set == "box" and any(_falls(so_far, cost, u) for u in controls):
             return True  # the better end is the minimiser
         slopes = [sp.diff(e, u) for e in stated for u in controls]
         return any(sp.simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
     if len(controls) == 1:
         return False
     return not any(sp.simplify(sp.diff(e, u, v)) != 0 for e in stated for u in controls for v in controls)
+
+
+def _falls(so_far: Derivation, cost: sp.Expr, u: sp.Symbol) -> bool:
+    """Whether a cost bends downwards by a control, always or in some states."""
+    curvature = sp.simplify(sp.diff(cost, u, 2))
+    return bool(curvature.is_negative) or _either_sign(so_far, curvature, symbols_of(so_far.model.states))
+
+
+def _either_sign(so_far: Derivation, curvature: sp.Expr, by: Sequence[sp.Symbol]) -> bool:
+    """Whether some of these symbols may turn its sign."""
+    return curvature.has(*by) and indefinite(so_far.name, curvature)
+
+
+def needs_its_sets(so_far: Derivation) -> bool:
+    """Whether H is minimised set by set where sets that are all boxes, or free, have been put together in one.
+
+    That is so where a cost bends up or down by what parameters are given, too: a box asks for their sign.
+    """
+    problem = problem_of(so_far)
+    if problem.control_set != "box" or applies(so_far):
+        return applies(so_far)
+    parameters, cost = symbols_of(so_far.model.parameters), problem.running_cost
+    bends = (sp.simplify(sp.diff(cost, u, 2)) for u in symbols_of(so_far.model.controls))
+    return any(_either_sign(so_far, bend, parameters) for bend in bends)
 
 
 def control_parts(so_far: Derivation) -> Step:
