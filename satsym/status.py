@@ -22,8 +22,12 @@ class Status(str, Enum):
         return _ADVICE[self]
 
     def explain(self, message: str) -> str:
-        """A message with the advice behind it, unless it says so itself."""
-        return "; ".join(filter(None, [message, "" if self.advice in message else self.advice]))
+        """A message with the advice behind it, unless it has some itself."""
+        return "; ".join(filter(None, [message, self.advice_beside(message)]))
+
+    def advice_beside(self, message: str) -> str:
+        """What is left to be advised beside a message: nothing where it says that itself, or what helps instead."""
+        return "" if self.advice in message or any(one in message for one in _INSTEAD) else self.advice
 
     @property
     def answered(self) -> bool:
@@ -40,6 +44,12 @@ _ADVICE = {
     Status.NON_FINITE: "check the initial state and the parameters for values that divide by zero or overflow",
     Status.TIME_LIMIT: "raise [solver] max_seconds, or use fewer steps",
 }
+
+
+LEAVE_FREE = "leave one of these states free"
+"""What helps where no control changes something, whatever time it has."""
+_INSTEAD = (LEAVE_FREE,)
+"""Advice that takes the place of a status's own."""
 
 
 class Verdict(str, Enum):

@@ -14,6 +14,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.status import LEAVE_FREE
 
 DRAWN = 4
 """Times as many points are drawn as there are monomials."""
@@ -69,7 +70,7 @@ def contradiction(instance: Instance) -> str:
         if abs(after.sum() - before.sum()) > SAME * max(np.abs(before).sum(), np.abs(after).sum()):
             return (
                 f"{one.formula} is conserved whatever the controls do: it is {before.sum():.8g} at the start, "
-                f"and the final states ask for {after.sum():.8g}; leave one of these states free"
+                f"and the final states ask for {after.sum():.8g}; {LEAVE_FREE}"
             )
     return ""
 

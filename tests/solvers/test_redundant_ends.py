@@ -12,6 +12,7 @@ from sympy import Expr, Symbol, sympify
 
 from satsym import instance
 from satsym.report.said import message, spoken
+from satsym.report.terminal.solution import solution_text
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.conserved import conserved
@@ -70,6 +71,11 @@ def test_an_end_with_another_value_of_a_conserved_polynomial_is_infeasible(
     found = solved(tmp_path, rates, start, end)
     assert found.status is Status.INFEASIBLE, found.message
     assert found.message.startswith(said)
+    # no time and no bound of the control would help
+    explained, shown = found.status.explain(found.message), " ".join(solution_text(found).split())
+    assert explained.endswith("leave one of these states free")
+    assert "leave one of these states free" in shown
+    assert "more time" not in shown
     with spoken("id"):
         assert "kekal" in message(found.message)
 

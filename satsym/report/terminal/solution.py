@@ -202,8 +202,7 @@ def _effort(solution: Solution) -> str:
 
 
 def _message(status: Status, reason: str) -> list[str]:
-    advice = "" if status.advice in reason else status.advice
-    return wrapped("; ".join(filter(None, [message(reason), message(advice)])))
+    return wrapped("; ".join(filter(None, [message(reason), message(status.advice_beside(reason))])))
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
