@@ -155,9 +155,7 @@ def test_it_is_typeset(language: str):
 
 
 WAY = Variable("w", "w", kind="angle")
-TURNED = replace(
-    CHAIN, rates={a: b, b: d, d: u, e: sp.cos(symbols_of((WAY,))[0])}, controls=(*CHAIN.controls, WAY)
-)
+TURNED = replace(CHAIN, rates={a: b, b: d, d: u, e: sp.cos(symbols_of((WAY,))[0])}, controls=(*CHAIN.controls, WAY))
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.active import control, multipliers
+from satsym.solvers.constrained.active import control, deciding, multipliers
 from satsym.solvers.constrained.arcs import Arcs, effects, gradient, values
 from satsym.solvers.constrained.arcs import sizes as measured
-from satsym.solvers.constrained.structure import FREE, Contact, Event, Passage, Structure, ordered
+from satsym.solvers.constrained.structure import FREE, Active, Contact, Event, Passage, Structure, ordered
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
@@ -314,6 +314,29 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     return None
 
 
+def without_idle(arcs: Arcs) -> Structure | None:
+    """The structure without arcs of constraints that the law keeps to by itself; ``None`` where it has none.
+
+    They hold a control, their multiplier vanishes all along, and nothing tells when such an arc begins.
+    """
+    room, idle = sizes(arcs), list[int]()
+    for place, one in enumerate(contacts(arcs)):
+        if _order(arcs, one.constraint) > 0:
+            continue
+        push = (deciding(arcs.instance, active, one.constraint, t, z) for active, t, z in _of(arcs, one))
+        if max(float(np.abs(by).max()) for by in push) <= SLACK / 2 * room[one.constraint]:
+            idle.append(place)
+    return _instead(arcs, idle) if idle else None
+
+
+def _of(arcs: Arcs, one: Contact) -> Iterable[tuple[Active, Array, Array]]:
+    """What is active on the arcs of a contact, with times and values there."""
+    for arc, active in enumerate(arcs.active):
+        a, b = arcs.times[arc : arc + 2]
+        if one.constraint in active and one.start <= 0.5 * (a + b) <= one.end:
+            yield active, *along(arcs, arc)
+
+
 def _pushing(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
     """Where the multiplier along an arc is positive; of a constraint on states alone nowhere, as it has to be kept."""
     if _order(arcs, one.constraint) > 0:
@@ -347,12 +370,9 @@ def _released(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
 def multiplier(arcs: Arcs, place: int) -> tuple[Array, Array]:
     """Times along a contact, and its eta there, shapes (N,)."""
     one, times, eta = contacts(arcs)[place], [], []
-    for arc, active in enumerate(arcs.active):
-        a, b = arcs.times[arc : arc + 2]
-        if one.constraint in active and one.start <= 0.5 * (a + b) <= one.end:
-            t, z = along(arcs, arc)
-            times.append(t)
-            eta.append(multipliers(arcs.instance, active, t, z)[active.index(one.constraint)])
+    for active, t, z in _of(arcs, one):
+        times.append(t)
+        eta.append(multipliers(arcs.instance, active, t, z)[active.index(one.constraint)])
     return np.concatenate(times), np.concatenate(eta)
 
 

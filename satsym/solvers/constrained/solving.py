@@ -28,7 +28,7 @@ from satsym.solvers.constrained.regularised.interior_point import Path
 from satsym.solvers.constrained.regularised.search import searched
 from satsym.solvers.constrained.regularised.starts import drawn, first, straight
 from satsym.solvers.constrained.regularised.transcription import Program
-from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, wrong
+from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, without_idle, wrong
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.structure import Event as Happening
 from satsym.solvers.constrained.violation import violation
@@ -139,23 +139,32 @@ def _impossible(one: Arcs | Stopped) -> bool:
     return isinstance(one, Stopped) and one.status is Status.INFEASIBLE
 
 
-def others(instance: Instance, worth: float, seed: int, deadline: float) -> tuple[int, list[float], bool]:
-    """How many paths about the straight line led to what, costs of the extremals, and whether time was up before all.
+def others(instance: Instance, answer: Solution, seed: int, deadline: float) -> tuple[int, list[float], bool]:
+    """How many paths were followed, costs of the extremals to which they led, and whether time was up before all.
+
+    They are drawn about the straight line and, where none of these leads anywhere, about the answer: without given
+    ends, or where states grow fast, there may be no motion near any straight line.
 
     Parameters
     ----------
-    worth
-        The size of costs.
+    answer
+        Its cost is the size of costs.
     seed
         Of the paths.
     deadline
         On the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline, work=WORK)
+    count, worth, costs = 0, answer.objective, list[float]()
     with np.errstate(all="ignore"):
-        starts = drawn(program, straight(program), COMPARED, seed)
-        found = list(searched(program, starts, worth, limits, _exactly(program, worth)))
-    return len(found), [cost(one) for one in found if isinstance(one, Arcs)], limits.late
+        for about in (straight(program), first(program, answer)):
+            starts = drawn(program, about, COMPARED, seed)
+            found = list(searched(program, starts, worth, limits, _exactly(program, worth)))
+            count += len(found)
+            costs = [cost(one) for one in found if isinstance(one, Arcs)]
+            if costs or limits.late:
+                break
+    return count, costs, limits.late
 
 
 def _exactly(program: Program, worth: float) -> Callable[[Path, Limits], Arcs | Stopped]:
@@ -201,10 +210,18 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
             continue
         reason, others = wrong(found)
         if not reason:
-            return found
+            return _lean(found, limits)
         waiting = [*((other, found) for other in others), *waiting]
     near = first[0].name(begun.instance)
     return Stopped(Status.NOT_CONVERGED, f"no structure near ({near}) is an extremal: {reason}")
+
+
+def _lean(arcs: Arcs, limits: Limits) -> Arcs:
+    """Without arcs that nothing needs, where what is left is an extremal as well."""
+    if (structure := without_idle(arcs)) is None:
+        return arcs
+    found = solved(from_arcs(arcs, structure), limits)
+    return arcs if found is None or wrong(found)[0] else found
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:

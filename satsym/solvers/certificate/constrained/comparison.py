@@ -32,7 +32,7 @@ def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
         return Comparison((found,), () if costs and not interrupted else (Kind.TIMES,))
     if instance.tf is None:  # paths last as long as the solution does
         instance = replace(instance, tf_guess=float(solution.times[-1]))
-    tried, costs, interrupted = others(instance, solution.objective, seed + 1, deadline)
+    tried, costs, interrupted = others(instance, solution, seed + 1, deadline)
     count, more, late = (0, list[float](), True) if interrupted else near(solution, deadline)
     found = summed(solution, Kind.ARCS, tried + count, [*costs, *more], late)
     return Comparison((found,), () if (costs or count) and not late else (Kind.ARCS,))
