@@ -157,18 +157,15 @@ def _positive(variables: tuple[Variable, ...]) -> dict[int, float]:
 
 def _both_forms(of: Evaluation) -> Iterator[Relation]:
     """The form on floats and that on arrays, of every function; also where costates vanish and no law is decided."""
-    none = np.zeros_like(of.at["lam"])
     columns = _columns_of(of.at, len(of.at["t"]) // (1 + COPIES))
-    columns.append(column({**of.at, "lam": none}, 0))
+    columns.append({**columns[0], "lam": (0.0,) * len(of.at["lam"])})
     for name, signature in of.signatures.items():
-        everywhere = of(name).reshape(-1, len(of.at["t"]))
-        first = (
-            of(name, lam=none).reshape(everywhere.shape)[:, :1] if "lam" in signature.arguments else everywhere[:, :1]
-        )
-        rows = np.concatenate([everywhere[:, : len(columns) - 1], first], axis=1)
+        everywhere = of(name)[..., : len(columns) - 1]
+        rows = np.concatenate([everywhere, of.without_costates(name)], axis=-1).reshape(-1, len(columns))
         single, known = _singly(of.kernels.functions[name], signature.arguments, columns)
-        if known:
-            yield Relation(name, "the same on floats and on arrays", single.T, rows[:, known], _largest(rows))
+        if known:  # sizes are those at all places
+            terms = 0.0 if len(known) == len(columns) else _largest(rows)
+            yield Relation(name, "the same on floats and on arrays", single.T, rows[:, known], terms)
 
 
 def _singly(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.contract import BATCH, TUPLES, Signature, pointwise
+from satsym.kernels.contract import BATCH, TUPLES, Signature, pointwise, sizes
 from satsym.kernels.core import Kernels
 
 COMPLEX_STEP = 1e-30
@@ -20,6 +21,18 @@ COPIES, ASIDE = 2, 1e-4
 
 FAINT = 1e-4
 """Share of what a row of derivatives comes to at most, at which something smaller in it counts: terms may cancel."""
+
+TOGETHER = {
+    "dynamics": ("x", "u"),
+    "hamiltonian": ("x", "u", "lam"),
+    "canonical": ("x", "lam", "t"),
+    "boundary": ("x", "lam", "nu", "t"),
+    "terminal_cost": ("x", "t"),
+    "invariants": ("x", "t"),
+    "inertial_state": ("x", "t"),
+    "switching_function": ("x", "lam", "t"),
+}
+"""Functions whose derivatives by several arguments are wanted: one call gives them all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,68 +55,99 @@ class Evaluation:
         return set(names) <= set(self.signatures)
 
     @cached_property
+    def _shapes(self) -> dict[str, tuple[int, ...]]:
+        """Of a value at one place."""
+        counts = sizes(self.kernels.spec)
+        return {name: tuple(counts[k] for k in signature.shape) for name, signature in self.signatures.items()}
+
+    @cached_property
+    def _and_without_costates(self) -> dict[str, Any]:
+        """The arguments with a column more: the first place, without costates."""
+        found: dict[str, Any] = {}
+        for name in self.at:
+            table = self._table(name, {})
+            rows = np.concatenate([table, np.zeros_like(table[:, :1]) if name == "lam" else table[:, :1]], axis=1)
+            found[name] = tuple(rows) if name in TUPLES else rows[0] if name == "t" else rows
+        return found
+
+    @cached_property
     def _known(self) -> dict[tuple[str, str], Array]:
         """Values (with no argument) and derivatives by an argument at the columns themselves, kept."""
         return {}
 
     def __call__(self, name: str, **instead: Any) -> Array:
         """A function at all columns, some arguments being others; the last axis counts the columns."""
+        columns = len(self.at["t"])
         if instead:
-            return self._value(name, instead)
+            return self._value(name, {**self.at, **instead}, columns)
         if (name, "") not in self._known:
-            self._known[name, ""] = self._value(name, instead)
+            found = self._value(name, self._and_without_costates, columns + 1)
+            self._known[name, ""], self._known[name, "without costates"] = found[..., :-1], found[..., -1:]
         return self._known[name, ""]
+
+    def without_costates(self, name: str) -> Array:
+        """A function at the first place if all costates vanish there, where laws may decide nothing; a column."""
+        self(name)
+        return self._known[name, "without costates"]
 
     def slope(self, name: str, by: str, **instead: Any) -> Array:
         """Derivatives by all components of an argument, exact but for rounding; the last axis but one counts these."""
         if instead:
-            return self._slope(name, by, instead)
+            return self._slopes(name, (by,), instead)[by]
         if (name, by) not in self._known:
-            self._known[name, by] = self._slope(name, by, instead)
+            together = TOGETHER.get(name, ())
+            slopes = self._slopes(name, together if by in together else (by,), {})
+            self._known.update({(name, argument): slope for argument, slope in slopes.items()})
         return self._known[name, by]
 
-    def _value(self, name: str, instead: Mapping[str, Any]) -> Array:
-        found = np.asarray(self._called(name, instead), dtype=float)
-        # what takes nothing that varies has no columns
-        axes = len(self.signatures[name].shape)
-        return found if found.ndim > axes else np.broadcast_to(found[..., None], (*found.shape, len(self.at["t"])))
+    def _value(self, name: str, at: Mapping[str, Any], columns: int) -> Array:
+        found = np.empty((*self._shapes[name], columns))
+        self._called(name, at, found)
+        return found
 
-    def _slope(self, name: str, by: str, instead: Mapping[str, Any]) -> Array:
-        table = self._table(by, instead)
-        moved: Any = table[:, None, :] + 1j * COMPLEX_STEP * np.eye(len(table))[:, :, None]
-        moved = moved[0] if by == "t" else tuple(moved) if by in TUPLES else moved
-        others = {}
-        if by in TUPLES:  # functions take their shape from arrays, so these have as many copies
-            given = {a: np.asarray(instead.get(a, v)) for a, v in self.at.items() if a not in TUPLES}
-            others = {a: np.repeat(v[..., None, :], len(table), axis=-2) for a, v in given.items()}
-        return np.asarray(np.imag(self._called(name, {**instead, **others, by: moved})) / COMPLEX_STEP)
+    def _slopes(self, name: str, by: Sequence[str], instead: Mapping[str, Any]) -> dict[str, Array]:
+        """By several arguments in one call."""
+        tables = {a: self._table(a, instead) for a in by}
+        count, columns, first = sum(map(len, tables.values())), len(self.at["t"]), 0
+        steps = 1j * COMPLEX_STEP * np.eye(count)[:, :, None]
+        moved: dict[str, Any] = {}
+        for a, table in tables.items():
+            rows = table[:, None, :] + steps[first : first + len(table)]
+            moved[a] = rows[0] if a == "t" else tuple(rows) if a in TUPLES else rows
+            first += len(table)
+        values = np.empty((*self._shapes[name], count, columns), dtype=complex)
+        self._called(name, {**self.at, **instead, **moved}, values)
+        slopes, found, end = values.imag / COMPLEX_STEP, dict[str, Array](), 0
+        for a, table in tables.items():
+            begin, end = end, end + len(table)
+            found[a] = slopes[..., begin:end, :]
+        return found
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
         """How small derivatives may be before what they are made of is lost: see :data:`FAINT`."""
         if instead:
             unit, value = size(self._table(by, instead)), size(self(name, **instead))
         else:
-            unit, value = self._size("", by), self._size(name, "")
+            unit, value = self._sizes["", by], self._sizes[name, ""]
         return np.asarray(FAINT * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
 
     @cached_property
     def _sizes(self) -> dict[tuple[str, str], Array]:
-        """Of values and of arguments, kept."""
-        return {}
-
-    def _size(self, name: str, by: str) -> Array:
-        """Of a function at the columns themselves, or of an argument."""
-        if (name, by) not in self._sizes:
-            self._sizes[name, by] = size(self(name) if name else self._table(by, {}))
-        return self._sizes[name, by]
+        """Of functions at the columns themselves, and of arguments, in one go."""
+        tables = {(name, ""): self(name) for name in self.signatures} | {("", a): self._table(a, {}) for a in self.at}
+        columns, found, end = len(self.at["t"]), dict[tuple[str, str], Array](), 0
+        every = size(np.concatenate([table.reshape(-1, columns) for table in tables.values()]))
+        for key, table in tables.items():
+            begin, end = end, end + math.prod(table.shape[:-1])
+            found[key] = every[begin:end].reshape(*table.shape[:-1], 1)
+        return found
 
     def _table(self, by: str, instead: Mapping[str, Any]) -> Array:
         return np.asarray(instead.get(by, self.at[by]), dtype=float).reshape(-1, len(self.at["t"]))
 
-    def _called(self, name: str, instead: Mapping[str, Any]) -> Any:
-        arguments = {**self.at, **instead}
-        function = self.kernels.functions[name + BATCH]
-        return function(*(arguments[a] for a in self.signatures[name].arguments))
+    def _called(self, name: str, at: Mapping[str, Any], out: Array) -> None:
+        """A function into an array that is given, so that it need not find out shapes and types."""
+        self.kernels.functions[name + BATCH](*(at[a] for a in self.signatures[name].arguments), out=out)
 
 
 def with_copies(at: Mapping[str, Any], seed: int) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -42,21 +43,22 @@ def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> li
     scale
         Size of the rows of a table, shape (rows, 1).
     """
-    columns = found[0].left.shape[-1]
-    sides = [
-        np.concatenate([side.reshape(-1, columns) for side in group]) for group in zip(*map(_sides, found), strict=True)
-    ]
-    known = np.isfinite(sides[0])
-    one_sided = known != np.isfinite(sides[1])
-    left, right, terms = (np.where(known & np.isfinite(side), side, 0.0) for side in sides)
+    columns, ends = found[0].left.shape[-1], [0]
+    left, right = (
+        np.concatenate([side.reshape(-1, columns) for side in sides])
+        for sides in zip(*((each.left, each.right) for each in found), strict=True)
+    )
+    terms = np.empty(left.shape)
+    for each in found:
+        ends.append(ends[-1] + math.prod(each.left.shape[:-1]))
+        terms[ends[-2] : ends[-1]].reshape(each.left.shape)[...] = each.terms
+    known = np.isfinite(left)
+    one_sided = known != np.isfinite(right)
+    left, right, terms = (np.where(known & np.isfinite(side), side, 0.0) for side in (left, right, terms))
     sizes = np.maximum(np.maximum(scale(left), scale(right)), terms.max(axis=-1, initial=0.0, keepdims=True))
-    rows = (np.where(one_sided, np.inf, np.abs(left - right)) / np.maximum(sizes, 1e-300)).max(axis=-1, initial=0.0)
-    ends = np.cumsum([math.prod(each.left.shape[:-1]) for each in found])
-    return [float(part.max(initial=0.0)) for part in np.split(rows, ends[:-1])]
-
-
-def _sides(of: Relation) -> tuple[Array, Array, Array]:
-    return of.left, of.right, np.broadcast_to(of.terms, of.left.shape)
+    rows = np.where(one_sided, np.inf, np.abs(left - right)) / np.maximum(sizes, 1e-300)
+    worst = rows.max(axis=-1, initial=0.0).tolist()
+    return [max(worst[first:last], default=0.0) for first, last in pairwise(ends)]
 
 
 def derivative(

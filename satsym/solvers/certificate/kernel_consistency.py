@@ -48,15 +48,18 @@ def _places(solution: Solution) -> dict[str, Any]:
     chosen = np.tile(np.linspace(0, len(solution.times) - 1, NODES).astype(int), 3)
     columns = len(chosen)
 
-    def near(table: Array) -> Array:
-        unit = np.abs(table).max(axis=-1, keepdims=True)
+    def aside(values: Array, unit: Array) -> Array:
         unit = np.where(unit > FAINT * unit.max(initial=0.0), unit, 0.0)
-        return table[:, chosen] + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(table), columns))
+        return values + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(unit), columns))
+
+    def near(table: Array) -> Array:
+        return aside(table[:, chosen], np.abs(table).max(axis=-1, keepdims=True))
 
     x, u, lam = near(solution.x), near(solution.u), near(solution.lam)
     lam[:, 2 * NODES :] *= -1.0
     t = near(solution.times[None, :])[0]
-    p = tuple(near(np.array(instance.parameters).reshape(-1, 1) * np.ones_like(solution.times)))
+    given = np.array(instance.parameters).reshape(-1, 1)
+    p = tuple(aside(given, np.abs(given)))
     final = (*rng.uniform(0.2, 0.6, (2 * len(x), columns)), *x * rng.uniform(0.5, 1.5, x.shape))
     found = {"t": t, "x": x, "u": u, "lam": lam, "p": p, "final": final}
     found["nu"] = tuple(rng.uniform(0.5, 1.5, (len(spec.multipliers), columns)))
