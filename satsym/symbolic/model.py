@@ -82,11 +82,12 @@ class Line:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence of a statement, by its key, the model it names, and the equations that it leads to."""
+    """A sentence of a statement, by its key, the model and the letter it names, and the equations it leads to."""
 
     sentence: str
     of: Model | None = None
     lines: tuple[Line, ...] = ()
+    letter: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic.model import Problem
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
@@ -86,6 +87,25 @@ def accented(accent: str, latex: str) -> str:
 def barred(latex: str) -> str:
     """A symbol under a bar."""
     return accented("bar", latex)
+
+
+_DRESS = re.compile(r"[{}\s]|\\(?:d*dot|bar|hat|tilde|math[a-z]+|boldsymbol)(?![a-z])")
+_LETTER = re.compile(r"\\[A-Za-z]+|[A-Za-z]")
+
+
+def letter_of(latex: str) -> str:
+    """The letter of a symbol, without accents and indices."""
+    found = _LETTER.search(_DRESS.sub(" ", latex))
+    return found[0] if found else ""
+
+
+def free_letter(letters: Iterable[str], variables: Iterable[Variable]) -> str:
+    """The first of some letters, in order of preference, that no variable has; the last if each has one."""
+    taken, letter = {letter_of(v.latex) for v in variables}, ""
+    for letter in letters:
+        if letter not in taken:
+            break
+    return letter
 
 
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:

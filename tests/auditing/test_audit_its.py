@@ -10,7 +10,9 @@ import sympy as sp
 from satsym import auditing as audit
 from satsym.auditing import cache
 from satsym.auditing.causes import findings
+from satsym.report.said import spoken
 from satsym.report.terminal.audit import audit_text
+from satsym.report.texts import languages
 from tests.support import its_claim_routes as claims
 from tests.support import its_routes as by_hand
 from tests.support import its_sweep_routes as sweeps
@@ -180,10 +182,12 @@ def test_the_audit_and_the_second_routes_agree(judged, sample):
 
 
 @pytest.mark.slow
-def test_the_report_of_the_thesis_can_be_read(judged, monkeypatch):
+@pytest.mark.parametrize("language", languages())
+def test_the_report_of_the_thesis_can_be_read(judged, language, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     assert len(findings(judged["its_thesis"])) <= 40
-    text = audit_text([audit.read(audit.locate("its_thesis"))], judged)
+    with spoken(language):
+        text = audit_text([audit.read(audit.locate("its_thesis"))], judged, language=language)
     assert len(text.splitlines()) <= 150
     assert max(map(len, text.splitlines())) <= 100
 

@@ -11,12 +11,14 @@ from satsym.report.latex.document import render
 from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Row, array, display
 from satsym.report.latex.references import cited
 from satsym.report.texts import languages, load
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.rewriting import readable
 from satsym.symbolic.latex.terms import plain
+from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle.path import notation as path_notation
-from tests.support.derived import each, shipped
+from tests.support.derived import each, shipped, stated
 
 
 @pytest.mark.parametrize("name", each())
@@ -31,6 +33,39 @@ def test_letters_of_indicators_and_constraints_are_no_variables_of_the_model(nam
     letters = {re.split("[_^]", derivation.notation[s.name])[0] for s in derived}
     assert letters <= {r"\iota", r"\Gamma"}
     assert not letters & own
+
+
+@pytest.mark.parametrize("name", each())
+def test_no_symbol_of_a_document_stands_for_two_things(name: str) -> None:
+    derivation = shipped(name)
+    typeset, text = Typesetter(derivation), render(derivation)
+    sides = [side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs)]
+    used = {s.name for side in sides for s in side.free_symbols}
+    used = {s for s in used if not s.startswith("d_switching")}  # the first of the derivatives has two names
+    looks = [re.sub(r"[{} ]", "", typeset.symbol(s)) for s in used]
+    assert sorted(look for look in set(looks) if looks.count(look) > 1) == []
+    shown = {typeset.symbol(s) for s in used if s in derivation.notation}
+    entries = set(re.findall(r"(?<![A-Za-z\\])[a-z]_\{[1-9]\d*,?[1-9]\d*\}", text)) - shown
+    assert not {entry[0] for entry in entries} & {
+        n.letter_of(tex) for tex in shown if "_" in tex and r"\mathbf" not in tex
+    }
+    listed = re.findall(r"^\$(.+?)\$ &", text, re.MULTILINE)
+    named = {n.letter_of(said.letter) for said in derivation.model.statement() if said.letter}
+    assert not named & set(map(n.letter_of, listed))
+
+
+def test_letters_that_the_machine_chooses_are_free() -> None:
+    assert [said.letter for name in ("gyrostat", "gimballed_wheel") for said in stated(name).statement()] == [
+        r"\ell",
+        "h",
+    ]
+    assert n.letter_of(r"{\dot r}_0") == "r"
+    assert n.letter_of(r"\bar{\boldsymbol{\omega}}_{x}") == r"\omega"
+    assert r"A_{21} &=" in render(shipped("gyrostat"))  # where direction cosines are a_xy, and so on
+    assert r"a_{21} = " in render(shipped("goddard"))
+    variables = (Variable("x", "x_1"), Variable("s", r"\dot s"))
+    assert n.free_letter("xsv", variables) == "v"
+    assert n.free_letter("xs", variables) == "s"
 
 
 def test_an_index_joins_the_one_that_is_there() -> None:
@@ -54,6 +89,14 @@ def test_a_single_control_is_spoken_of_as_one(name: str) -> None:
     assert "Each control" not in text
     assert "The control is bounded" in text
     assert "The control stays between its bounds" in text
+
+
+def test_a_single_control_has_one_switching_function() -> None:
+    text = render(shipped("double_integrator_fuel"))
+    assert "{Switching function}" in text
+    assert r"is linear in the control and in its magnitude, $H = H_0 + \sigma u_1 + w |u_1|$" in text
+    assert r"with $\tfrac{1}{2} \varepsilon u_1^2$, $\varepsilon > 0$, added" in text
+    assert r"\sum_i" not in text
 
 
 def test_what_there_is_one_of_is_spoken_of_as_one() -> None:
@@ -223,7 +266,7 @@ def test_a_fraction_that_all_terms_share_stands_before_the_parentheses() -> None
 
 def test_bodies_in_space_are_named_in_the_language_of_the_document() -> None:
     text = render(shipped("gimballed_wheel"), "id")
-    assert r"\omega_{\mathrm{roda}, y}" in text
+    assert r"\omega_y^{\mathrm{roda}}" in text
     assert r"\mathrm{modus\ x}" in text
     assert not re.search(r"\\mathrm\{(?:body|wheel|mode)\b", text)
 

@@ -155,13 +155,19 @@ class _Composer:
 
     def _step(self, step: Step) -> str:
         """Heading, rule, equations, what they come to; the sources are the steps before this one."""
-        title = self._texts.get("titles", step.name)
+        title = self._title(step)
         stated = rule(self._context, step, self._sources(step))
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
         said = [conclusion(self._context, c) for c in step.conclusions]
         further = [found for key in (step.name, *step.kinds) if (found := self._texts.find("further", key))]
         return "\n".join((heading, stated, self._shown[step.name].body, *said, *self._while(step), *further))
+
+    def _title(self, step: Step) -> str:
+        """That of a step, or of one about a single control where there is such a form."""
+        alone = len(self._derivation.model.controls) == 1
+        found = self._texts.find("titles", f"{step.name}, one control") if alone else None
+        return found or self._texts.get("titles", step.name)
 
     def _while(self, step: Step) -> list[str]:
         """What is said of a step that leaves path constraints out."""

@@ -134,7 +134,7 @@ def _block(rows: list[Row]) -> str:
     room = LINE - max(width(row.left_tex) for row in rows) - 1.3
     lines = []
     for row in rows:
-        right = broken(row.right, room)
+        right = broken(row.right, room - width(row.end))
         body = f"{row.left_tex} &= {_on_lines(right)}" + (f" {row.end}" if row.end else "")
         if 1 < len(right) <= TALL:
             body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"

@@ -12,8 +12,9 @@ from satsym.report.latex.equations import LINE, Row, array, display
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.symbolic import Derivation, Equation, Step
-from satsym.symbolic.latex.terms import plain
+from satsym.symbolic.latex.terms import Piece, Term, plain
 from satsym.symbolic.latex.typeset import NamedMatrix, Typesetter, matrices
+from satsym.symbolic.notation import letter_of
 
 DEFINED = {
     "A": r"A = \frac{\partial\mathbf{f}}{\partial\mathbf{x}}",
@@ -44,7 +45,7 @@ def with_matrices(
     address = f"{derivation.name}:{step.name}"
     shown, listed = [], []
     for matrix in found:
-        written, named = _written(matrix, typeset)
+        written, named = _written(matrix, _entry_letter(matrix.prefix, derivation), typeset)
         if written is None:
             listed.append(matrix)
         else:
@@ -75,6 +76,14 @@ def with_matrices(
     return "\n".join(p for p in parts if p), [row.address for row in rows]
 
 
+def _entry_letter(matrix: str, derivation: Derivation) -> str:
+    """The letter of entries of a matrix: its own as a small one, unless it has an index for something else."""
+    sides = (side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs))
+    names: set[str] = set().union(*({s.name for s in side.free_symbols} for side in sides))
+    indexed = [latex for name in names if "_" in (latex := derivation.notation.get(name, ""))]
+    return next((letter for letter in (matrix.lower(), matrix) if letter not in map(letter_of, indexed)), matrix)
+
+
 def _defined(controls: Sequence[str]) -> dict[str, str]:
     """What matrices stand for; by a single control H has no matrix of second derivatives."""
     if len(controls) != 1:
@@ -100,6 +109,8 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
     mirrored = bool(named or written is None) and is_mirrored(matrix)
+    if written is None and not mirrored and (parted := in_parts(cells, LINE - width(name) - 2.0)):
+        return [Row(address, plain(name), (parted,))], []
     if written is not None and not mirrored:
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
@@ -110,6 +121,29 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
         if not typeset.is_zero(matrix[i, j]) and not (mirrored and j < i)
     ]
     return [replace(first, address=address), *rest], []
+
+
+def in_parts(cells: Sequence[Sequence[str]], room: float) -> Term | None:
+    """A matrix that is too wide for a line as blocks of columns on a few lines; ``None`` if these are too many."""
+    rows, columns = len(cells), len(cells[0])
+    for count in range(2, TALL // rows + 2):
+        size, rest = divmod(columns, count)
+        blocks = [[row[k : k + size] for row in cells] for k in range(0, columns, size or 1)]
+        if not rest and size > 1 and all(_total(block) + 2 * GAP <= room for block in blocks):
+            first, *others = [array(block) for block in blocks]
+            pieces = [
+                f"{_open(first, right=True)} \\cdots",
+                *(rf"\cdots {_open(block, left=True)}" for block in others),
+            ]
+            pieces[1:-1] = [rf"{_open(piece, right=True)} \cdots" for piece in pieces[1:-1]]
+            return Term(False, " ".join(pieces), tuple(map(Piece, pieces)))
+    return None
+
+
+def _open(matrix: str, *, left: bool = False, right: bool = False) -> str:
+    """A matrix without a parenthesis on one side."""
+    matrix = matrix.replace(r"\left(", r"\left.") if left else matrix
+    return matrix.replace(r"\right)", r"\right.") if right else matrix
 
 
 def is_mirrored(matrix: Any) -> bool:
@@ -144,11 +178,11 @@ def fitted(
     return None, {}
 
 
-def _written(matrix: NamedMatrix, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
+def _written(matrix: NamedMatrix, letter: str, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
     """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so, or too tall."""
     room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
     cells = [["0" if e is None else typeset.tex(e.rhs) for e in row] for row in matrix.entries]
-    short, named = fitted(cells, room, matrix.prefix.lower())
+    short, named = fitted(cells, room, letter)
     if short is None or sum(1 + any(r"\frac" in cell for cell in row) for row in short) > TALL:
         return None, {}
     entries = {name: matrix.entries[i][j] for name, (i, j) in named.items()}

@@ -27,7 +27,8 @@ def rule(context: Context, step: Step, sources: str) -> str:
     part = letter_of_parts(problem) if (problem := context.derivation.problem) else ""
     kinds = texts.listed([texts.get("kinds", kind, angle=angle, part=part) for kind in step.kinds])
     fill = {"sources": sources, "quantities": quantities(context, step), "kinds": kinds}
-    fill |= {"control": context.derivation.model.controls[0].latex} if context.derivation.model.controls else {}
+    for first in context.derivation.model.controls[:1]:
+        fill |= {"control": first.latex, "squared": f"({first.latex})^2" if "^" in first.latex else f"{first.latex}^2"}
     fill |= _by_order(context, sources)
     forms = _forms(context.derivation)
     both = [f"{one}, {other}" for one, other in combinations(forms, 2)]

@@ -262,6 +262,7 @@ def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     ends: dict[str, tuple[str, str]] = {}
     for said in derivation.model.statement():
         fill = {"name": tex.name(said.of.name), "title": tex.escape(texts.phrase(said.of.title))} if said.of else {}
+        fill |= {"letter": tex.vector(said.letter)} if said.letter else {}
         shown: dict[str, list[Row]] = {}
         for line in said.lines:
             new, rows = _rows(line, texts, typeset), shown.setdefault(line.thing, [])

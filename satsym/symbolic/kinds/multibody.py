@@ -16,7 +16,7 @@ from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.equilibria.rest import Rest
 from satsym.symbolic.kinds import kane
 from satsym.symbolic.kinds.bodies import Bodies, axes_of
-from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, variables_of
 from satsym.symbolic.motion import geometry
 
 
@@ -77,7 +77,8 @@ class Multibody(Bodies):
             found |= {f"bias_{i}": f"b_{{{i}}}", f"force_{i}": f"Q_{{{i}}}"}
             found[n.solved(speed).name] = rf"[M^{{-1}} (\mathbf{{Q}} - \mathbf{{b}})]_{{{i}}}"
         found |= {s.name: _indexed(s.name) for s in self.named}
-        return found | {f"part_{k}": f"v_{{{k}}}" for k in range(1, 400)}
+        part = n.free_letter("vsde", variables_of(self))
+        return found | {f"part_{k}": f"{part}_{{{k}}}" for k in range(1, 400)}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
         """Of named functions and solved rates; the rates of the coordinates must be theirs."""
@@ -90,16 +91,19 @@ class Multibody(Bodies):
 
     def statement(self) -> tuple[Paragraph, ...]:
         """Bodies along the axes of their inertias, and loads."""
-        lines = []
+        lines, momentum = [], n.free_letter(("h", r"\ell"), variables_of(self))
         for body in self.bodies:
             label, axes = r"\mathrm{" + body.name.replace(" ", r"\ ") + "}", axes_of(body)
             inertia = body.central_inertia.to_matrix(axes).applyfunc(self.static)
             for k, letter in enumerate("xyz"):
-                index = f"{{{label}, {letter}}}"
-                lines.append(Line("bodies", rf"\omega_{index}", self.spin(body)[k], f"{body.name}.rate.{k + 1}"))
+                along = f"_{letter}^{{{label}}}"
                 moment = sp.Add(*(inertia[k, j] * w for j, w in enumerate(self.spin(body)) if inertia[k, j] != 0))
-                lines.append(Line("bodies", f"h_{index}", moment, f"{body.name}.momentum.{k + 1}"))
-        return (Paragraph("multibody" if len(self.bodies) > 1 else "multibody_one", lines=tuple(lines)),)
+                lines.append(Line("bodies", rf"\omega{along}", self.spin(body)[k], f"{body.name}.rate.{k + 1}"))
+                lines.append(Line("bodies", f"{momentum}{along}", moment, f"{body.name}.momentum.{k + 1}"))
+        sentence = "multibody" if len(self.bodies) > 1 else "multibody_one"
+        if any(line.right == 0 for line in lines):
+            sentence, lines = f"{sentence}_resting", [line for line in lines if line.right != 0]
+        return (Paragraph(sentence, lines=tuple(lines), letter=momentum),)
 
     def rest(self, derived: Derivation) -> Rest | None:
         """What turns it where its rates vanish, in direction cosines."""

@@ -6,16 +6,13 @@ with a minus where it can help it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
-from functools import partial, reduce
 from typing import Any
 
 import sympy as sp
-from sympy.printing.latex import LatexPrinter
 
-from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
+from satsym.symbolic.latex.laws import LawPrinter
 from satsym.symbolic.latex.products import (
     Product,
     base,
@@ -23,14 +20,12 @@ from satsym.symbolic.latex.products import (
     exponent,
     is_negative,
     is_power_of_sum,
-    sides,
     spread,
     take_apart,
+    turned_round,
     with_plus_first,
 )
 from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
-from satsym.symbolic.minimisers import Clip
-from satsym.symbolic.roots import Root
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""
@@ -54,7 +49,7 @@ class Kind(IntEnum):
     DIRECTION = 9
 
 
-class Printer(LatexPrinter):
+class Printer(LawPrinter):
     """sympy's printer, with sums, products, powers and our own functions done anew.
 
     Parameters
@@ -68,10 +63,8 @@ class Printer(LatexPrinter):
     """
 
     def __init__(self, notation: Mapping[str, str], ranks: Mapping[str, tuple[Kind, int]], comma: bool = False) -> None:
-        separator = "comma" if comma else "period"
-        super().__init__({"fold_frac_powers": True, "ln_notation": True, "decimal_separator": separator})
+        super().__init__(notation.values(), comma)
         self._notation, self._ranks = notation, ranks
-        self._small = 0  # how many fractions, roots and exponents we are within
 
     def symbol(self, name: str) -> str:
         """The LaTeX of a name; upright where the notation has none."""
@@ -102,10 +95,29 @@ class Printer(LatexPrinter):
         summands = sorted(parts, key=self._summand_order)
         if plus_first:
             summands = with_plus_first(summands)
-        return [self._term(s) if len(rest) == 0 else self._halves([s, *rest]) for s, *rest in self._alike(summands)]
+        alone = len(summands) == 1
+        return [
+            self._term(s, alone=alone) if len(rest) == 0 else self._halves([s, *rest])
+            for s, *rest in self._alike(summands)
+        ]
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
         return joined(self.terms(expr))
+
+    def _backwards(self, factors: Sequence[sp.Expr]) -> list[int]:
+        """Which are sums such as b - a, that begin so only because a plus stands ahead, and behind them any others."""
+        like: list[int] = []
+        others: list[int] = []
+        for k, factor in enumerate(factors):
+            first, *rest = sorted(factor.args, key=self._summand_order) if factor.is_Add else (factor,)
+            plus = [s for s in rest if not is_negative(s)]
+            if plus and is_negative(first):
+                (like if self._form(plus[0]) == self._form(first) else others).append(k)
+        return [*like, *others] if like else []
+
+    def _form(self, summand: sp.Expr) -> tuple[Any, ...]:
+        """What of its place in a sum does not depend on which symbols of a kind it has."""
+        return self._summand_order(summand)[:-2]
 
     def _alike(self, summands: Sequence[sp.Expr]) -> list[list[sp.Expr]]:
         """Summands over the same whole number together, unless costates tell them apart."""
@@ -148,10 +160,15 @@ class Printer(LatexPrinter):
     # products
 
     def _print_Mul(self, expr: sp.Mul) -> str:
-        return self._term(expr).signed(first=True)
+        return self._term(expr, alone=True).signed(first=True)
 
-    def _term(self, expression: sp.Expr) -> Term:
+    def _term(self, expression: sp.Expr, *, alone: bool = False) -> Term:
+        """A product as a term; ``alone`` if it is all that stands there."""
+        if expression.func.__name__ == "Clip":
+            return self._bounded(expression)
         parts = take_apart(expression)
+        if expression.is_Mul and (alone or not parts.negative):  # within a sum no sign changes
+            parts = turned_round(parts, self._backwards(parts.top))
         if not parts.top and not parts.bottom:
             return whole_term(parts.negative, self._fraction_of_numbers(parts))
         negative, top = parts.negative, sorted(parts.top, key=self._factor_order)
@@ -176,6 +193,13 @@ class Printer(LatexPrinter):
             tex = rf"{self._product(others)} \frac{{{above}}}{{{self._below(parts)}}} {tail}".strip()
             return Term(negative, tex, broken.pieces)
         return broken
+
+    def _bounded(self, expression: sp.Expr) -> Term:
+        """A value between bounds, with a place behind each of them where a line may be broken."""
+        whole = self._print(expression)
+        *bounds, value = whole.split(r",\, ", 2)
+        pieces = [*(Piece(f"{bound},", bool(k)) for k, bound in enumerate(bounds)), Piece(value, 2)]
+        return Term(False, whole, tuple(pieces))
 
     def _with_sum(self, negative: bool, head: str, inner: sp.Expr, tail: str) -> Term:
         """``head (sum) tail``, with the places inside the sum where it may be broken."""
@@ -279,118 +303,11 @@ class Printer(LatexPrinter):
     def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._print_Function(expr, exp)
 
-    def _print_Max(self, expr: sp.Expr, exp: str | None = None) -> str:
-        parts = map(self._print, sorted(expr.args, key=sp.default_sort_key))
-        tex = reduce(partial(extreme, rf"\{expr.func.__name__.lower()}"), parts)
-        return f"{self._enclosed(tex)}^{{{exp}}}" if exp else tex
-
-    _print_Min = _print_Max
-
-    def _print_Clip(self, expr: sp.Expr, exp: str | None = None) -> str:
-        value, lower, upper = map(self._print, expr.args)
-        return extreme(r"\max", lower, extreme(r"\min", upper, value))
-
-    def _print_Switch(self, expr: sp.Expr, exp: str | None = None) -> str:
-        reverse = expr.args[0].could_extract_minus_sign()
-        slope, weight, low, high = expr.args
-        value, *others = map(self._print, (-slope if reverse else slope, weight, low, high))
-        return levels(value, others[0], others[1], others[2], reverse)
-
-    def _print_SignedClip(self, expr: sp.Expr, exp: str | None = None) -> str:
-        slope, weight, *smoothing, low, high = map(self._print, expr.args)
-        v = letter(self._notation.values())
-        bent = "".join(rf"\tfrac{{1}}{{2}} {e} {v}^{{2}} + " for e in smoothing)
-        among = rf"{low} \le {v} \le {high}" if smoothing else rf"{v} \in \{{{low},\, {nearest(low, high)},\, {high}\}}"
-        return self._argmin(rf"{bent}{slope} {v} + {weight} |{v}|", among, exp)
-
-    _print_SignedSwitch = _print_SignedClip
-
-    def _argmin(self, value: str, among: str, exp: str | None) -> str:
-        least = rf"\operatorname*{{arg\,min}}_{{{among}}} {self._enclosed(value)}"
-        return rf"{self._enclosed(least)}^{{{exp}}}" if exp else least
-
-    def _print_sign(self, expr: sp.Expr, exp: str | None = None) -> str:
-        raised = rf"^{{{exp}}}" if exp else ""
-        return rf"\operatorname{{sgn}}{raised}{self._enclosed(self._print(expr.args[0]))}"
-
-    def _print_Shrink(self, expr: sp.Expr, exp: str | None = None) -> str:
-        value, width = map(self._print, expr.args)
-        return rf"\mathcal{{S}}_{{{width}}}({value})"
-
-    def _print_Shorten(self, expr: sp.Expr, exp: str | None = None) -> str:
-        norm_squared, limit = expr.args
-        with self._inside():
-            ratio = rf"\frac{{{self._print(limit)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
-        return extreme(r"\min", "1", ratio)
-
-    def _print_Stretch(self, expr: sp.Expr, exp: str | None = None) -> str:
-        norm_squared, smoothing, length = expr.args
-        with self._inside():
-            ratio = rf"\frac{{{self._print(length)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
-            return extreme(r"\min", rf"\frac{{1}}{{{self._print(smoothing)}}}", ratio)
-
-    def _print_Within(self, expr: sp.Expr, exp: str | None = None) -> str:
-        norm_squared, *limits = expr.args
-        with self._inside():
-            root = rf"\sqrt{{{self._print(norm_squared)}}}"
-            least, largest = (rf"\frac{{{self._print(limit)}}}{{{root}}}" for limit in limits)
-        return extreme(r"\min", largest, extreme(r"\max", "1", least))
-
-    def _print_Convex(self, expr: sp.Expr, exp: str | None = None) -> str:
-        value = self._print(expr.args[0])
-        return rf"{self._enclosed(value)}^{{{exp}}}" if exp else value
-
-    def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
-        one, other = (self._print(value).replace(r"\frac", r"\dfrac") for value in expr.args[1:])
-        left, right = map(self._print, sides(expr.args[0]))
-        return rf"\begin{{cases}} {one}, & {left} \le {right} \\ {other}, & {left} > {right} \end{{cases}}"
-
-    def _print_Vertex(self, expr: sp.Expr, exp: str | None = None) -> str:
-        curvature, slope, lower, upper = expr.args
-        bent, low, high, rise = map(self._print, (curvature, lower, upper, slope + curvature * (lower + upper) / 2))
-        inside = self._print(Clip(-slope / curvature, lower, upper))
-        flat = rf"& {bent} \le 0,\ {rise}"
-        rows = rf"{inside}, & {bent} > 0 \\ {high}, {flat} < 0 \\ {low}, {flat} \ge 0"
-        return rf"\begin{{cases}} {rows} \end{{cases}}"
-
-    def _print_Argmin(self, expr: sp.Expr, exp: str | None = None) -> str:
-        lower, upper, *coefficients = expr.args
-        limits = [] if lower.is_infinite else [self._print(lower), r"\le"]
-        v = sp.Symbol(letter(self._notation.values()), real=True)
-        limits += [v.name, *([] if upper.is_infinite else [r"\le", self._print(upper)])]
-        polynomial = self._print(sp.Add(*(c * v**k for k, c in enumerate(coefficients, 1))))
-        return self._argmin(polynomial, " ".join(limits), exp)
-
-    def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
-        lower, upper = map(self._print, expr.args)
-        return rf"\tfrac{{1}}{{2}} ({lower} + {upper})"
-
-    def _print_Root(self, expr: Root, exp: str | None = None) -> str:
-        slope, unknown = self._print(expr.at()), self._print(expr.unknown)
-        return rf"\operatorname{{root}}_{{{unknown}}} {self._enclosed(slope)}"
-
     def _print_atan2(self, expr: sp.Expr, exp: str | None = None) -> str:
         across, along = map(self._print, expr.args)
         return rf"\operatorname{{atan2}}({across},\, {along})"
 
     _print_Bearing = _print_atan2
-
-    # sizes
-
-    def _parentheses(self, content: str) -> tuple[str, str]:
-        bigger = "" if self._small else size(content)
-        return (f"{bigger}l(", f"{bigger}r)") if bigger else ("(", ")")
-
-    def _enclosed(self, content: str) -> str:
-        opening, closing = self._parentheses(content)
-        return f"{opening}{content}{closing}"
-
-    @contextmanager
-    def _inside(self) -> Iterator[None]:
-        """Within a fraction, root or exponent: the type is small, so fractions are slashed."""
-        self._small += 1
-        yield
-        self._small -= 1
 
 
 def _escaped(name: str) -> str:

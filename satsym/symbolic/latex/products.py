@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import sympy as sp
@@ -63,9 +63,10 @@ def take_apart(expression: sp.Expr) -> Product:
             top.append(factor)
     negative = bool(number.is_negative)
     if negative and expression.is_Mul and sum(bool(f.is_Add) for f in top) > 1:
-        turned = next((k for k, f in enumerate(top) if _turns_well(f)), None)
-        if turned is not None:  # -(1 - a)(b - c) is better read as (1 - a)(c - b)
-            negative, top[turned] = False, -top[turned]
+        turned = [k for k, f in enumerate(top) if _turns_well(f)]
+        turned += [k for k, f in enumerate(top) if f.is_Add and any(map(is_negative, f.args))][::-1]
+        if turned:  # -(1 - a)(b - c) is better read as (1 - a)(c - b)
+            negative, top[turned[0]] = False, -top[turned[0]]
     if not number.is_Float:
         number, below = sp.fraction(number / below)
     if below in HUNDREDTHS and (top or bottom):
@@ -99,6 +100,26 @@ def _is_root(factor: sp.Expr) -> bool:
         and (factor.base.is_Symbol or factor.base.is_Number)
         and factor.base.is_positive
     )
+
+
+def turned_round(parts: Product, backwards: Sequence[int]) -> Product:
+    """With sums above the fraction line turned round if that leaves fewer minuses, or as many but none in front.
+
+    Parameters
+    ----------
+    parts
+        A product.
+    backwards
+        Places of these sums, of which the last stays as it is where else a minus would come before the product.
+    """
+    turned = backwards[: len(backwards) - (len(backwards) + parts.negative) % 2]
+    top = tuple(-f if k in turned else f for k, f in enumerate(parts.top))
+    more = _minuses(top) >= _minuses(parts.top) + (2 if parts.negative else 0)
+    return replace(parts, negative=False, top=top) if turned and not more else parts
+
+
+def _minuses(factors: Iterable[sp.Expr]) -> int:
+    return sum(is_negative(term) for f in factors if f.is_Add for term in f.args)
 
 
 def spread(summand: sp.Expr) -> sp.Expr:

@@ -15,7 +15,8 @@ def readable(expression: sp.Expr) -> sp.Expr:
         expression = expression.replace(lambda e: e.is_Mul and e.has(sp.cos), _doubled)
     if expression.has(sp.exp):
         expression = expression.replace(lambda e: e.is_Mul and e.has(sp.exp), _one_exponential)
-    return expression.replace(lambda e: e.is_Add and len(e.args) > 2, _squared)
+    expression = expression.replace(lambda e: e.is_Add and len(e.args) > 2, _squared)
+    return expression.replace(lambda e: e.is_Add and len(e.args) == 2, _over_one)
 
 
 def _united(total: sp.Expr) -> sp.Expr:
@@ -70,6 +71,16 @@ def _squared(total: sp.Expr) -> sp.Expr:
 def _sum(total: sp.Expr, terms: Sequence[sp.Expr]) -> sp.Expr:
     """The sum as it was if it has these terms, for summing up anew would multiply numbers into sums within it."""
     return total if len(terms) == len(total.args) else sp.Add(*terms, evaluate=len(terms) == 1)
+
+
+def _over_one(total: sp.Expr) -> sp.Expr:
+    """Two fractions over the same as one, if that is shorter and nothing else is common to both."""
+    (one, below), (other, also) = map(sp.fraction, total.args)
+    if below != also or below.is_number or one.free_symbols & other.free_symbols:
+        return total
+    content, primitive = sp.Add(one, other).primitive()
+    united = sp.Mul(content, primitive, 1 / below, evaluate=False)
+    return united if sp.count_ops(united) < sp.count_ops(total) else total
 
 
 def _pairs(term: sp.Expr) -> Iterator[tuple[sp.Expr, sp.Expr]]:

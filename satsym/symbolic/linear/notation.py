@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import combinations_with_replacement
 from typing import Any
 
@@ -20,7 +21,7 @@ from satsym.symbolic.dimension_algebra import (
     product,
     written,
 )
-from satsym.symbolic.model import Model, Requirement, symbols_of
+from satsym.symbolic.model import Model, Requirement, symbols_of, variables_of
 
 CHARACTERISTIC = sp.Symbol("characteristic_polynomial")
 EIGENVALUES = sp.Symbol("eigenvalues")
@@ -91,8 +92,15 @@ def results(model: Model) -> dict[str, str]:
         ("Q", states, states),
         ("R", controls, controls),
     ):
-        notation |= {s.name: rf"{letter.lower()}_{{{s.name[2:]}}}" for s in matrix_symbols(letter, rows, columns)}
+        entry = entry_letter(letter, model)
+        notation |= {s.name: rf"{entry}_{{{s.name[2:]}}}" for s in matrix_symbols(letter, rows, columns)}
     return notation | weights(model) | _of_ports(model)
+
+
+def entry_letter(matrix: str, model: Model) -> str:
+    """The letter of entries of a matrix: its own as a small one, unless the model numbers variables by that."""
+    numbered = (v for v in variables_of(model) if re.search(r"_\{?\d", v.latex))
+    return n.free_letter((matrix.lower(), matrix), numbered)
 
 
 def weights(model: Model) -> dict[str, str]:
@@ -101,8 +109,8 @@ def weights(model: Model) -> dict[str, str]:
     for letter, variables in (("Q", model.states), ("R", model.controls), ("P", model.states), ("S", model.states)):
         for (i, a), (j, b) in combinations_with_replacement(list(enumerate(symbols_of(variables), 1)), 2):
             comma = "," if len(variables) > 9 else ""
-            small = "w" if letter == "S" else letter.lower()
-            notation[weight(letter, a, b).name] = rf"{small}_{{{i}{comma}{j}}}"
+            entry = entry_letter("W" if letter == "S" else letter, model)
+            notation[weight(letter, a, b).name] = rf"{entry}_{{{i}{comma}{j}}}"
     return notation
 
 
@@ -129,7 +137,7 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
     column = rf"\mathbf{{b}}{index}" if port else "B"
     row = rf"\mathbf{{c}}{index}" if port else "C"
     controls = kind == "controllability"
-    mode = (r"\chi" if controls else "v") + f"_{{{f'{port.latex},' if port else ''}"
+    mode = (r"\chi" if controls else r"\mathbf{v}") + f"_{{{f'{port.latex},' if port else ''}"
     pencil = rf"(s I - A,\; {column})" if controls else rf"(s I - A;\; {row})"
     return {
         f"{kind}{suffix}": matrix,

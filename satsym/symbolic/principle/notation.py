@@ -8,7 +8,7 @@ import sympy as sp
 
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
 from satsym.symbolic.model import Model, Problem, variables_of
-from satsym.symbolic.notation import indexed, named
+from satsym.symbolic.notation import free_letter, indexed, named
 from satsym.symbolic.principle import parts
 from satsym.symbolic.principle.parts import Part
 
@@ -56,8 +56,7 @@ def part_of_law(number: int) -> sp.Symbol:
 
 def letter_of_parts(problem: Problem) -> str:
     """The letter of these: one that no variable has."""
-    taken = {v.latex.partition("_")[0] for v in variables_of(problem.model)}
-    return next(letter for letter in "qkdgs" if letter not in taken)
+    return free_letter("qkdgs", variables_of(problem.model))
 
 
 primer_of = named("primer_{}")
