@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from satsym.arrays import Array
+from satsym.grid import Grid
 from satsym.instance import load
 from satsym.solvers import solve
+from satsym.solvers.certificate import accessory
 from satsym.solvers.certificate.neighbours import neighbours
 from satsym.solvers.certificate.reintegration.chain import Chain
 from satsym.solvers.certificate.side_by_side import SideBySide
@@ -31,6 +33,25 @@ def test_they_cost_what_each_costs_by_itself(name: str, monkeypatch: pytest.Monk
     # the one after the other may miss the end by what counts as none
     assert together.competitors.cheapest == pytest.approx(apart.competitors.cheapest, rel=2e-9)
     assert together.margin == pytest.approx(apart.margin, rel=1e-4, abs=1e-12)
+
+
+def test_controls_that_act_apart_need_no_decompositions(monkeypatch: pytest.MonkeyPatch) -> None:
+    solution, own, found = solve(load("return-to-orbit"), examined=False), accessory._diagonal, list[Array | None]()
+
+    def watched(matrices: Array) -> Array | None:
+        found.append(own(matrices))
+        return found[-1]
+
+    grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), 200)
+    monkeypatch.setattr(accessory, "_diagonal", watched)
+    apart = accessory.accessory(solution, grid)
+    monkeypatch.setattr(accessory, "_diagonal", lambda _: None)
+    decomposed = accessory.accessory(solution, grid)
+    assert [one is None for one in found] == [False, False]
+    assert apart is not None
+    assert decomposed is not None
+    np.testing.assert_allclose(apart.form, decomposed.form, rtol=1e-12, atol=1e-12)
+    assert own(np.array([np.eye(2), [[1.0, 0.0], [1e-9, 1.0]]])) is None
 
 
 def test_those_that_do_not_settle_are_simulated_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:

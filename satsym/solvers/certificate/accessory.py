@@ -152,7 +152,7 @@ class _Linear:
         inverse = -law[:, :, n:] @ _pseudoinverses(by_control.transpose(0, 2, 1))
         size = np.sqrt(np.maximum(np.einsum("kii->ki", inverse).max(axis=0), 0.0))[:, None]
         size[size == 0.0] = 1.0
-        values, axes = np.linalg.eigh((inverse + inverse.transpose(0, 2, 1)) / (2.0 * size * size.T))
+        values, axes = _principal((inverse + inverse.transpose(0, 2, 1)) / (2.0 * size * size.T))
         root = (axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1)
         effective = (axes * (values > LEFT)[:, None, :]) @ axes.transpose(0, 2, 1)
         restoring = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
@@ -174,11 +174,29 @@ def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
     return found
 
 
+def _diagonal(matrices: Array) -> Array | None:
+    """Of a stack of matrices of which all are diagonal, shape (M, m): so they are where no control acts on another."""
+    found = np.einsum("kii->ki", matrices)
+    return found if np.count_nonzero(matrices) == np.count_nonzero(found) else None
+
+
+def _principal(symmetric: Array) -> tuple[Array, Array]:
+    """Eigenvalues and axes of a stack of symmetric matrices, those of diagonal ones in their own order."""
+    diagonal = _diagonal(symmetric)
+    if diagonal is not None:
+        return diagonal, np.broadcast_to(np.eye(diagonal.shape[1]), symmetric.shape)
+    values, axes = np.linalg.eigh(symmetric)
+    return values, axes
+
+
 def _pseudoinverses(matrices: Array) -> Array:
     """Of a stack of matrices, shape (M, m, n), to (M, n, m)."""
     size = np.linalg.norm(matrices, axis=2, keepdims=True)
     unit = matrices / np.where(size > 0.0, size, 1.0)
     across = unit @ unit.transpose(0, 2, 1)
+    diagonal = _diagonal(across)
+    if diagonal is not None and diagonal.all():  # controls act at right angles
+        return np.asarray(unit.transpose(0, 2, 1) / (diagonal[:, None] * size.transpose(0, 2, 1)))
     if (np.linalg.det(across) > INDEPENDENT).all():
         return np.asarray(np.linalg.solve(across, unit).transpose(0, 2, 1) / size.transpose(0, 2, 1))
     return np.linalg.pinv(matrices)
