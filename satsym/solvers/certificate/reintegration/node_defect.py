@@ -87,7 +87,9 @@ def node_defect(solution: Solution) -> float:
     instance, n, times = solution.instance, len(solution.x), solution.times
 
     def rates(t: Array, z: Array, p: Parameters) -> Array:
-        return np.asarray(instance.model.canonical_batch(t, z[:n], z[n:], p, instance.control_set.arguments))
+        found = np.empty_like(z)
+        instance.model.canonical_batch(t, z[:n], z[n:], p, instance.control_set.arguments, out=found)
+        return found
 
     found = stretches(solution)
     begins, start = found.begins.copy(), found.start.copy()

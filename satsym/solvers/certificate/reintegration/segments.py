@@ -83,11 +83,11 @@ def segments(solution: Solution) -> Segments | None:
     if not np.isfinite(slopes).all():
         return None
     lasting, unit = float(times[-1] - times[0]), unit_sizes(solution)
-    scale = balanced(unit, np.abs(slopes).max(axis=0), lasting)
+    scale = balanced(unit, np.abs(slopes).max(axis=2), lasting)
     turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
     if not turned[-1] <= MOST * TURN:
         # What is steep for a moment is not what units are for where there is far more time without it.
-        scale = balanced(unit, np.trapezoid(np.abs(slopes), times, axis=0) / lasting, lasting)
+        scale = balanced(unit, np.trapezoid(np.abs(slopes), times, axis=2) / lasting, lasting)
         turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
     if not turned[-1] <= MOST * TURN:
         return None
@@ -112,11 +112,10 @@ def values(solution: Solution) -> Array:
 
 
 def _slopes(solution: Solution, t: Array, z: Array) -> Array:
-    """The canonical rates by states and costates, shape (M, 2n, 2n)."""
-    instance, n = solution.instance, len(z) // 2
+    """The canonical rates by states and costates, shape (2n, 2n, M)."""
+    instance, n, found = solution.instance, len(z) // 2, np.empty((len(z), *z.shape))
     bounds = without_poles(instance, solution.times, solution.x, solution.lam).arguments
-    batch = instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, bounds)
-    found: Array = np.asarray(batch).transpose(2, 0, 1)
+    instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, bounds, out=found)
     return found
 
 
@@ -175,7 +174,7 @@ def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
     It turns at twice the trace of the Hessian of H on an n-dimensional space.
     """
     ratio = (scale / scale[:, None]).reshape(-1, 1)
-    scaled = slopes.transpose(1, 2, 0).reshape(len(ratio), -1) * ratio  # as they lie in memory
+    scaled = slopes.reshape(len(ratio), -1) * ratio
     rate = 2.0 * np.sqrt(len(scale) / 2.0 * np.einsum("ij,ij->j", scaled, scaled))
     found: Array = np.maximum(rate[1:], rate[:-1]) * widths
     return found
@@ -221,7 +220,7 @@ def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tu
         return found
 
     def slopes(t: Array, z: Array) -> Array:
-        return np.ascontiguousarray(_slopes(solution, t, z))
+        return np.ascontiguousarray(_slopes(solution, t, z).transpose(2, 0, 1))
 
     def leapt(chosen: NDArray[np.intp], columns: int) -> tuple[Array, Array, Array]:
         places = len(chosen) * sum(SUBSTEPS[:columns])
