@@ -23,8 +23,9 @@ from satsym.solvers.control.regularised import regularised
 from satsym.solvers.drawn_beside import Beside, about
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.attempt import Exact
+from satsym.solvers.switching.attempt import Exact, Origin
 from satsym.solvers.switching.by_smoothing import smoothed
+from satsym.solvers.switching.cold_start import by_costates
 from satsym.solvers.switching.cold_start.homotopy import Stopped, first_smoothing
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 
@@ -38,7 +39,8 @@ STEPS, SOFTNESS = 300, 0.01
 def meetings(solution: Solution, seed: int, limits: Limits) -> Iterator[Exact | None]:
     """What each pair leads to that nearly meets and may cost less than a solution, the cheapest first.
 
-    Nothing where the time is free, or where what a linear motion costs at least is known.
+    Nothing where what a linear motion costs at least is known. Where the time is free, those from the start that come
+    near to the end at any time lead to one at most.
 
     Parameters
     ----------
@@ -47,8 +49,14 @@ def meetings(solution: Solution, seed: int, limits: Limits) -> Iterator[Exact | 
     """
     instance = solution.instance
     spec, allowed = instance.model.spec, replace(limits, work=limits.meter.spent + WORK)
-    drawable = instance.tf is not None and instance.final and solution.lam.any()
-    if not drawable or spec.multipliers or spec.in_arcs or linear_motion(instance) is not None:
+    if not instance.final or spec.multipliers or spec.in_arcs or linear_motion(instance) is not None:
+        return
+    if instance.tf is None:
+        sooner = tried(partial(by_costates.sooner, solution, seed, limits))
+        if sooner is not None:
+            yield replace(sooner, origin=Origin.COSTATES)
+        return
+    if not solution.lam.any():
         return
     problem = _problem(solution)
     for one in tried(partial(about, solution, problem, seed, closely=True)) or []:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solution import Solution
 from satsym.solvers.iteration import Limits
+from satsym.solvers.spare_time import longest
 from satsym.solvers.switching.attempt import Exact, attempt, given
 from satsym.solvers.switching.cold_start.minimum_effort import first_duration
 from satsym.solvers.switching.cold_start.recognition import Sample, guess
@@ -23,7 +25,7 @@ from satsym.solvers.switching.magnitudes import resting
 from satsym.solvers.switching.throttled import signs
 
 SEED = 11
-"""Of what is drawn."""
+"""Of what is drawn where nothing is known."""
 
 DRAWN, CHILDREN, ROUNDS = 1024, 1024, (0.1, 0.02, 4e-3)
 """Costates that are drawn at first, how many about the nearest later, and relative changes by which these differ."""
@@ -34,12 +36,24 @@ LONGEST, STEPS = 60.0, 1200
 PARENTS, LOOKED, LAYERS, LONGER = 6, 100, 24, 1.25
 """Nearest ones of each layer of durations, of how many, layers, and the ratio of durations of one to the one before."""
 
+WITHIN, FURTHER = 240, 2.4
+"""Steps where an extremal is known, and so many times its duration at most that others may last."""
+
 CLOSE, TRIED = 0.1, 12
 """Largest miss, relative to the sizes of states, of what is made exact, and how many are at most: the soonest first."""
+
+NEAR, MANY = 0.2, 24
+"""The same where an extremal is known: others may be so unstable that none of those that are drawn comes close.
+"""
 
 ROUGHLY, SAME = 50, 0.02
 """Parts of the longest duration within which the closest is first; difference of directions, and relative one of
 arrivals, of extremals that are one."""
+
+CLEARLY, LATE = 0.9, 4
+"""Share of the known duration before which what arrives is another extremal, and how many are tried that arrive later:
+most of these lead to the known one.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +73,7 @@ class _Drawn:
 
     def nearest(self, sizes: Array, apart: float) -> Array:
         """Costates of the nearest of each layer whose directions are that far from each other's, shape (n, P)."""
-        scaled = self.costates * sizes[:, None]
-        scaled = scaled / np.linalg.norm(scaled, axis=0)
+        scaled = _units(self.costates, sizes)
         kept = []
         for layer in self.miss:
             own: list[int] = []
@@ -79,40 +92,88 @@ def soonest(instance: Instance, limits: Limits) -> Exact | None:
     Only where no magnitude of a control costs anything, and something else does from the start: costates are then known
     but for their direction.
     """
-    if instance.tf is not None or instance.model.spec.multipliers or any(resting(instance)):
+    if not _applies(instance):
         return None
-    rng, h = np.random.default_rng(SEED), LONGEST * first_duration(instance) / STEPS
+    h = LONGEST * first_duration(instance) / STEPS
+    return _exact(_Search(_target(instance), h, STEPS, limits), np.random.default_rng(SEED))
+
+
+def sooner(solution: Solution, seed: int, limits: Limits) -> Exact | None:
+    """The cheapest extremal beside a known one whose duration is free; ``None`` where none is found.
+
+    Parameters
+    ----------
+    seed
+        Of what is drawn.
+    """
+    instance = solution.instance
+    if not _applies(instance) or not instance.model.spec.autonomous:
+        return None
+    lasting = float(solution.times[-1]) - instance.t0
+    h = min(longest(solution), FURTHER * lasting) / WITHIN
+    return _exact(_Search(_target(instance), h, WITHIN, limits, NEAR, MANY, lasting / h), np.random.default_rng(seed))
+
+
+def _applies(instance: Instance) -> bool:
+    spec = instance.model.spec
+    return instance.tf is None and bool(instance.final) and not spec.multipliers and not any(resting(instance))
+
+
+def _target(instance: Instance) -> Target:
     sizes = given(instance)
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
-    target = Target(instance, sizes, np.full(1, np.nan))
-    found = _followed(target, rng.standard_normal((len(sizes), DRAWN)) / sizes[:, None], h, limits)
-    for change in ROUNDS:
-        parents = found.nearest(sizes, change / 2.0)
-        if limits.expired or not parents.size:
-            return None
-        own = parents[:, rng.integers(parents.shape[1], size=CHILDREN)]
-        length = np.linalg.norm(own * sizes[:, None], axis=0)
-        found = found.joined(
-            _followed(target, own + change * length * rng.standard_normal(own.shape) / sizes[:, None], h, limits)
-        )
-    return _exact(target, found, h, limits)
+    return Target(instance, sizes, np.full(1, np.nan))
 
 
-def _exact(target: Target, found: _Drawn, h: float, limits: Limits) -> Exact | None:
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """What is followed for how long."""
+
+    target: Target
+    h: float
+    steps: int
+    limits: Limits
+    close: float = CLOSE
+    tries: int = TRIED
+    known: float = float("inf")
+    """Steps that an extremal lasts which is no news."""
+
+    def drawn(self, rng: np.random.Generator) -> _Drawn | None:
+        """Extremals, and further ones about those that come nearest; ``None`` where nothing comes of it."""
+        sizes = self.target.sizes
+        found = _followed(self, rng.standard_normal((len(sizes), DRAWN)) / sizes[:, None])
+        for change in ROUNDS:
+            parents = found.nearest(sizes, change / 2.0)
+            if self.limits.expired or not parents.size:
+                return None
+            own = parents[:, rng.integers(parents.shape[1], size=CHILDREN)]
+            length = np.linalg.norm(own * sizes[:, None], axis=0)
+            more = own + change * length * rng.standard_normal(own.shape) / sizes[:, None]
+            found = found.joined(_followed(self, more))
+        return found
+
+
+def _exact(search: _Search, rng: np.random.Generator) -> Exact | None:
     """The cheapest of what the closest lead to, those that arrive soonest first, roughly."""
-    instance, best, count = target.instance, None, 0
-    layers, columns = np.nonzero(found.miss <= CLOSE)
-    units = found.costates * target.sizes[:, None]
-    units = units / np.linalg.norm(units, axis=0)
+    found = search.drawn(rng)
+    if found is None:
+        return None
+    target, h, limits = search.target, search.h, search.limits
+    instance, best, count, late = target.instance, None, 0, 0
+    layers, columns = np.nonzero(found.miss <= search.close)
+    units = _units(found.costates, target.sizes)
     seen: list[tuple[Array, float]] = []
-    keys = found.miss[layers, columns], found.arrival[layers, columns] // max(1, STEPS // ROUGHLY)
+    keys = found.miss[layers, columns], found.arrival[layers, columns] // max(1, search.steps // ROUGHLY)
     for k in np.lexsort(keys).tolist():
         column, steps = int(columns[k]), int(found.arrival[layers[k], columns[k]])
-        if limits.expired or count == TRIED:
+        if limits.expired or count == search.tries:
             break
         known = any(np.linalg.norm(units[:, column] - u) < SAME and abs(steps - n) < SAME * n for u, n in seen)
         if known or (best is not None and instance.t0 + steps * h > best.refined.at.end):
             continue
+        late += steps > CLEARLY * search.known
+        if late > LATE:
+            break
         seen.append((units[:, column], steps))
         count += 1
         first = guess(instance, _sample(instance, found.costates[:, column], steps, h))
@@ -122,28 +183,35 @@ def _exact(target: Target, found: _Drawn, h: float, limits: Limits) -> Exact | N
     return best
 
 
-def _followed(target: Target, directions: Array, h: float, limits: Limits) -> _Drawn:
+def _units(costates: Array, sizes: Array) -> Array:
+    """Directions of costates, in units of states."""
+    found = costates * sizes[:, None]
+    return np.asarray(found / np.linalg.norm(found, axis=0))
+
+
+def _followed(search: _Search, directions: Array) -> _Drawn:
     """Where costates of these directions lead, in layers of durations; those with which H cannot vanish are no part."""
+    target, h = search.target, search.h
     instance = target.instance
     costates = _vanishing(instance, directions)
     n, many = costates.shape
     z = np.concatenate([np.repeat(np.array(instance.initial)[:, None], many, axis=1), costates])
     miss, arrival = np.full((LAYERS, many), np.inf), np.zeros((LAYERS, many), dtype=np.int64)
-    for step in range(1, STEPS + 1):
+    for step in range(1, search.steps + 1):
         z = _stepped(instance, instance.t0 + (step - 1) * h, z, h)
-        layer = max(0, LAYERS - 1 - int(np.log(STEPS / step) / np.log(LONGER)))
+        layer = max(0, LAYERS - 1 - int(np.log(search.steps / step) / np.log(LONGER)))
         found = np.abs(target.gap(np.full(many, instance.t0 + step * h), z[:n])).max(axis=0)
         nearer = found < miss[layer]
         miss[layer, nearer], arrival[layer, nearer] = found[nearer], step
         if step % 50 == 0:
-            limits.spend(50 * many)
+            search.limits.spend(50 * many)
     return _Drawn(costates, miss, arrival)
 
 
 def _vanishing(instance: Instance, directions: Array) -> Array:
     """Costates of these directions with which H vanishes at the start, shape (n, S)."""
     model, p, n = instance.model, instance.parameters, len(directions)
-    x, t = np.repeat(np.array(instance.initial)[:, None], directions.shape[1], axis=1), np.full(1, instance.t0)
+    x = np.repeat(np.array(instance.initial)[:, None], directions.shape[1], axis=1)
     t = np.full(directions.shape[1], instance.t0)
     rates = _rates(instance, t, np.concatenate([x, directions]))
     u = _control(instance, t, x, directions)
