@@ -50,7 +50,7 @@ ROUGHLY, SAME = 50, 0.02
 """Parts of the longest duration within which the closest is first; difference of directions, and relative one of
 arrivals, of extremals that are one."""
 
-CLEARLY, LATE = 0.9, 4
+CLEARLY, LATE = 0.9, 2
 """Share of the known duration before which what arrives is another extremal, and how many are tried that arrive later:
 most of these lead to the known one.
 """
