@@ -18,7 +18,7 @@ from msgspec import structs
 from rows import Goal, Row, Table
 from timing import Samples, interleaved
 
-COUNT, CERTIFIED, BLOCK = 100, 20, 5
+COUNT, CERTIFIED, BLOCK = 100, 60, 5
 """Instances that are solved, those of them that are certified, and how many at a time."""
 
 
@@ -69,11 +69,11 @@ def _certified(cases: Sequence[Any]) -> Table:
 
     answers = [solve(case, examined=False) for case in cases]
     answers = [one for one in answers if one.status.answered]
-    counts: set[int] = set()
+    counts: dict[int, int] = {}
 
     def compared(answer: Any) -> None:
         comparison = competitors.compared(answer, time.perf_counter() + 60.0)
-        counts.add(sum(kind.summary.tried for kind in comparison.kinds))
+        counts[id(answer)] = sum(kind.summary.tried for kind in comparison.kinds)
 
     def examined(answer: Any) -> None:
         with_kernels_examined(blank, answer)
@@ -94,9 +94,10 @@ def _certified(cases: Sequence[Any]) -> Table:
         },
         answers,
     )
-    found[each] = Samples(tuple(seconds / max(counts) for seconds in found[each].seconds))
+    of_all = sum(counts.values())
+    found[each] = Samples(tuple(seconds * len(answers) / of_all for seconds in found[each].seconds))
     # what Newton's method takes is a number of linear systems, whoever asks for it: from far off there are more
-    of_all, systems = len(answers) * max(counts), "{:.1f} linear systems"
+    systems = "{:.1f} linear systems"
     notes = {
         solving: systems.format(_systems(lambda: [solve(one, examined=False) for one in cases]) / len(cases)),
         each: systems.format(_systems(lambda: [compared(one) for one in answers]) / of_all),
