@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py b9455fccc0aa385baf206355ed20faf7
-Digest: 01e0592bb38799ce31a3e4f64efdf67fdc40e5b8688ea639800287fb05635643
+Source: ../derivations/examples/brachistochrone.py 3fafb385d5a150e2447093a68c078fa6
+Digest: ccbaef3213ff00e0f9f465ce60b4b85fce8cdf41d7651ad17aed65906c505a5e
 """
 
 import math
@@ -22,7 +22,7 @@ MODEL = {
         {'symbol': 'v', 'latex': 'v', 'unit': 'm/s', 'meaning': 'speed'},
     ),
     'controls': (
-        {'symbol': 'theta', 'latex': '\\theta', 'meaning': 'direction of the motion below the horizontal', 'kind': 'angle'},
+        {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'direction of the motion below the horizontal', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'acceleration of gravity', 'default': 9.80665, 'positive': True},

@@ -13,7 +13,7 @@ STATES = (
     Variable("y", "y", "m", meaning="height"),
     Variable("v", "v", "m/s", meaning="speed"),
 )
-CONTROLS = (Variable("theta", r"\theta", meaning="direction of the motion below the horizontal", kind="angle"),)
+CONTROLS = (Variable("theta", r"\theta", "rad", meaning="direction of the motion below the horizontal", kind="angle"),)
 PARAMETERS = (Variable("g", "g", "m/s^2", meaning="acceleration of gravity", default=9.80665, positive=True),)
 x, y, v = symbols_of(STATES)
 (theta,) = symbols_of(CONTROLS)

@@ -55,6 +55,7 @@ def test_numbers_stay_before_sums_in_what_is_not_rewritten() -> None:
         (sp.sqrt(2) * sp.sqrt(p), r"\sqrt{2 p}"),
         (p ** sp.Rational(307, 100) / q ** sp.Rational(307, 100), r"\Bigl(\frac{p}{q}\Bigr)^{3.07}"),
         (sp.Rational(307, 100) * x, "3.07 x"),
+        (sp.Abs(p * x - 1), r"\left|{1 - x p}\right|"),
         (a * sp.Max(0, x) / b, r"\frac{a}{b} \max"),
     ],
 )

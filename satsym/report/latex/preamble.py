@@ -56,8 +56,8 @@ MACROS = r"""\makeatletter
   \protected@edef\@currentHref{\@currentHref}%
   \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup\vskip\skip@}
 % {title}: on lines of like lengths
-\def\satsymtitle#1{{\leftskip=0pt plus 0.3\linewidth \rightskip=\leftskip \parfillskip=0pt \hbadness=10000
-  \LARGE \spaceskip=\fontdimen2\font\relax #1\par}}
+\def\satsymtitle#1{{\leftskip=0.05\linewidth plus 0.3\linewidth \rightskip=\leftskip \parfillskip=0pt \hbadness=10000
+  \exhyphenpenalty=10000 \LARGE \spaceskip=\fontdimen2\font\relax #1\par}}
 % {lines}: a new page unless there is room for as many on this one
 \def\satsymroom#1{\par\penalty-100\begingroup\dimen@\pagegoal\advance\dimen@-\pagetotal
   \ifdim#1\baselineskip>\dimen@\ifdim\dimen@>\z@\vfil\fi\break\fi\endgroup}

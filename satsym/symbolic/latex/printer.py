@@ -303,6 +303,12 @@ class Printer(LawPrinter):
     def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._print_Function(expr, exp)
 
+    def _print_Abs(self, expr: sp.Abs, exp: str | None = None) -> str:
+        (inside,) = expr.args
+        if inside.is_Add and is_negative(min(inside.args, key=self._summand_order)):
+            expr = expr.func(-inside, evaluate=False)
+        return super()._print_Abs(expr, exp)
+
     def _print_atan2(self, expr: sp.Expr, exp: str | None = None) -> str:
         across, along = map(self._print, expr.args)
         return rf"\operatorname{{atan2}}({across},\, {along})"
