@@ -102,6 +102,14 @@ def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(tex
     assert not re.search(r"\\[a-z]+|\$[^<]*\$", text)
 
 
+def test_named_constants_are_defined_before_the_steps_that_refer_to_them(text: str) -> None:
+    text = text.partition('<section id="derivation">')[2]
+    stated, steps = text.split('class="step"', 1)
+    equation = stated.partition('id="polar_orbit:declared.mu"')[2]
+    assert re.sub(r"\s+", "", re.sub("<[^>]*>", "", equation)).lstrip(">").startswith("μ=σ3ω2(1)")
+    assert re.search(r'the named constants\W<a href="#polar_orbit:declared.mu">\(1\)</a>', steps)
+
+
 def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text: str) -> None:
     path = re.search(r'<path d="M([^"]*)" class="path">', text)
     frames = re.search(r"@keyframes path\{.*?100%\{transform:translate\((.*?)px,(.*?)px\)\}\}", text)

@@ -40,6 +40,9 @@ _SIZED = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")
 OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
 """Steps that are shown from the start."""
 
+DEFINED = "declared"
+"""What the addresses of definitions begin with, as in documents."""
+
 
 class Derived:
     """The section of one derivation.
@@ -101,6 +104,17 @@ class Derived:
                 right = rf"({parts})^{{\mathsf{{T}}}}" if line.components else typeset.tex(line.right)
                 yield scrolled(math(f"{left} = {right}", block=True))
         yield self._quantities()
+        yield from self._definitions()
+
+    def _definitions(self) -> Iterator[Markup]:
+        """What the named constants are, numbered: steps say where they are put in."""
+        name, typeset = self._derivation.name, self._context.typeset
+        for k, one in enumerate(self._derivation.model.definitions):
+            if not k:
+                yield tag("p", prose(self._texts.get("statement", "definitions"), {}))
+            symbol, latex = one.variable.symbol, one.variable.latex
+            address = f"{name}:{DEFINED}.{symbol}"
+            yield self._equation(address, in_lines(latex, typeset.terms(one.value)), 0.0)
 
     def _quantities(self) -> Markup:
         model, texts = self._derivation.model, self._texts
@@ -181,6 +195,12 @@ class Derived:
         return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})
 
     def _source(self, name: str) -> str:
+        if name == "definitions":
+            if not self._derivation.model.definitions:
+                return ""
+            first, last = self._ends[tex.label(f"{self._derivation.name}:{DEFINED}")]
+            numbers = rf"\eqref{{{first}}}" + (rf"\mbox{{--}}\eqref{{{last}}}" if first != last else "")
+            return f"{self._texts.get('declared', name)}~{numbers}"
         label = tex.label(f"{self._derivation.name}:{name}")
         if label in self._ends:
             first, last = self._ends[label]
