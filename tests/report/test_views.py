@@ -93,3 +93,14 @@ def test_shipped_orbits_are_shown_as_they_lie(name: str, count: int) -> None:
     extent = np.ptp(shown.views[0].axes @ shown.path, axis=1)
     if name == "molniya":  # 2a along the line of apsides, 2b across
         np.testing.assert_allclose(extent, [2 * 26561.762, 2 * 26561.762 * math.sqrt(1 - 0.74**2)], rtol=1e-4)
+
+
+@pytest.mark.parametrize(("name", "asked"), [("return-to-geo", True), ("its-thesis-return", False)])
+def test_an_end_has_a_ring_seen_from_the_reference_only_where_its_place_is_given(name: str, asked: bool) -> None:
+    """The second one leaves its angle free, and is on the reference in all else."""
+    case = instance.load(name)
+    shown = Orbit.of(Scene.of(simulate(case)))
+    assert shown is not None
+    assert shown.ends_there is asked
+    assert set(case.final.values()) == {"reference"}
+    assert ("theta" in case.final) is asked

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,8 @@ CLOSED = 0.05
 """How near to its start, relative to its size, a curve is taken to close."""
 NEAR = 0.3
 """Up to this distance from the reference, relative to the orbit, the path is also shown from the reference."""
+MOVED = 1e-4
+"""By how much, relative to its size or to one, a state is changed to see whether the place depends on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,7 @@ class Orbit:
     relative: curves.Relative | None
     free_relative: curves.Relative | None
     ends_there: bool
-    """Whether the end is asked for, on the reference."""
+    """Whether the end is asked for, at the place of the reference."""
     central: bool = True
     """Whether the motion is about the origin."""
     by_states: bool = False
@@ -110,10 +113,11 @@ class Orbit:
         position = scene.spec.position
         model, p = scene.instance.model, scene.instance.parameters
 
-        def path(x: Array | None) -> Array | None:
-            return None if x is None else curves.path(model, scene.nodes, x, p)
+        def path(x: Array) -> Array:
+            return curves.path(model, scene.nodes, x, p)
 
-        own, reference, free = curves.path(model, scene.nodes, scene.x, p), path(scene.reference), path(scene.free)
+        own = path(scene.x)
+        reference, free = (None if x is None else path(x) for x in (scene.reference, scene.free))
         unit = position[0].unit if position[0].unit != "1" else length_unit(v.unit for v in scene.spec.states)
         seen = None if reference is None else curves.relative(own, reference)
         return cls(
@@ -125,7 +129,7 @@ class Orbit:
             curves.thrust(model, scene.nodes, scene.x, scene.u, p) if not scene.coasting else None,
             seen if _near(seen, reference) else None,
             curves.relative(free, reference) if free is not None and reference is not None else None,
-            _on_reference(scene),
+            seen is not None and _on_reference(scene) and _placed(scene, path),
         )
 
     @property
@@ -219,6 +223,20 @@ def _on_reference(scene: Scene) -> bool:
         return False
     given = [(v, series.target(scene, i)) for i, v in enumerate(scene.reference[:, -1])]
     return all(value is None or abs(value - v) <= ROUNDING * max(1.0, abs(v)) for v, value in given)
+
+
+def _placed(scene: Scene, path: Callable[[Array], Array]) -> bool:
+    """Whether no state that is free at the end moves the end along the reference or away from its centre."""
+    assert scene.reference is not None
+    place = path(scene.reference)
+    for i in range(len(scene.reference)):
+        if series.target(scene, i) is None:
+            moved = scene.reference.copy()
+            moved[i] += MOVED * np.maximum(1.0, np.abs(moved[i]))
+            seen = curves.relative(path(moved), place)
+            if seen is None or np.hypot(seen.along[-1], seen.radial[-1]) > ROUNDING * np.linalg.norm(place[:, -1]):
+                return False
+    return True
 
 
 def _point(distance: float | None, angle: float | None) -> Array | None:
