@@ -12,13 +12,14 @@ import copyreg
 import importlib
 import math
 import os
+import re
 import shlex
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from importlib.abc import InspectLoader
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -31,6 +32,10 @@ from satsym.wording import printable, shown, suggestion
 
 LARGEST = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
+
+_DECLARING = "satsym.symbolic"
+"""What derivation files import, and no module that is derived."""
+_STATED = re.compile(r"""\bProblem\(\s*(?:name\s*=\s*)?["']([a-z][a-z0-9_]{0,99})["']""")
 
 _ANEW = "write it anew with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
@@ -58,6 +63,8 @@ def load(model: str, folder: Path | None = None) -> Kernels:
         If there is no such model, or if its file is not what ``satsym derive`` writes.
     """
     folder = folder or Path()
+    if model.endswith(".py"):
+        _refuse_ending(model)
     if "/" not in model:
         if source_files.is_model(model):
             found = _load_shipped(model)
@@ -68,6 +75,7 @@ def load(model: str, folder: Path | None = None) -> Kernels:
         model = f"./{model}"
     path, root = _resolve(model, folder)
     text = _read(model, path)
+    _refuse_derivation(model, path, root, text)
     found = _load_file(model, root, path, text)
     _refuse_older(model, text, path.parent)
     return found
@@ -108,6 +116,23 @@ def _unknown(model: str) -> str:
     return f"{shown(model)} is no shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
 
 
+def _refuse_ending(model: str) -> NoReturn:
+    raise BadInput(
+        f"{shown(model)}: leave out the ending .py; a model is a module that `satsym derive` wrote, no derivation file"
+    )
+
+
+def _refuse_derivation(model: str, path: Path, root: Path, text: str) -> None:
+    """Refuse a file that states a problem, with what makes the module of it that is wanted."""
+    if _DECLARING not in source_files.imports(text):
+        return
+    out, stating = (os.path.relpath(place) for place in (root / "generated", path))
+    command = printable(shlex.join(["satsym", "derive", stating, "--out", out]), 150)
+    found = _STATED.search(text)
+    wanted = f"generated/{found[1] if found else path.stem}"
+    raise BadInput(f"{shown(model)}: this is a derivation file; run `{command}` and write {shown(wanted)}")
+
+
 def _lying(name: str) -> tuple[str, Path]:
     """The text of a shipped module, empty where nothing tells it, and the folder in which it lies."""
     module = importlib.import_module(f"{source_files.GENERATED}.{name}")
@@ -145,8 +170,6 @@ def _load_shipped(name: str) -> Kernels:
 
 def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     """The file that a relative path names, and the folder that it cannot leave, symbolic links followed."""
-    if model.endswith(".py"):
-        raise BadInput(f"{shown(model)}: leave out the ending .py")
     if Path(model).is_absolute():
         raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
     if not is_name(model.rpartition("/")[2]):

@@ -336,7 +336,7 @@ def house(tmp_path: Path, legal: str) -> Path:
         ("folder/secret", "leads out"),
         ("/etc/passwd", "absolute"),
         ("./mine.py", "leave out"),
-        ("mine.py", "no shipped model"),
+        ("mine.py", "leave out the ending .py; a model is a module that `satsym derive` wrote"),
         ("./missing", "no such file"),
         ("./circle", "no such file"),
         ("./broken", "no such file"),
@@ -368,6 +368,20 @@ def test_names_and_paths_that_lead_elsewhere_are_refused_in_one_line(house: Path
         load(model, house)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 250
+
+
+def test_a_derivation_file_in_place_of_its_module_is_refused_with_what_derives_it(
+    house: Path, monkeypatch: pytest.MonkeyPatch
+):
+    stated = 'from satsym.symbolic import Problem\nmodel = FirstOrder(name="sir")\nProblem(\n    name="plague")\n'
+    (house / "epidemic.py").write_text(stated, encoding="utf-8")
+    (house / "bare.py").write_text("import satsym.symbolic as s\n", encoding="utf-8")
+    monkeypatch.chdir(house.parent)
+    for model, file, wanted in (("epidemic", "epidemic", "plague"), ("./bare", "bare", "bare")):
+        with pytest.raises(BadInput) as caught:
+            load(model, house)
+        command = f"satsym derive {house.name}/{file}.py --out {house.name}/generated"
+        assert f'this is a derivation file; run `{command}` and write "generated/{wanted}"' in str(caught.value)
 
 
 def test_a_link_within_the_folder_is_followed(house: Path):
