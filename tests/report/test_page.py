@@ -17,7 +17,7 @@ from satsym.report.page.derived import Derived
 from satsym.report.page.motion import SIDE, motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.prose import prose
-from satsym.report.page.run import render
+from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
 from satsym.report.texts import load
 from satsym.solution import Solution
@@ -60,7 +60,7 @@ def solution() -> Solution:
 
 @pytest.fixture(scope="module")
 def text(solution: Solution) -> str:
-    return render(solution, derived(loader.problem("polar_orbit")[0]), "soft-return")
+    return render(solution, derived(loader.problem("polar_orbit")[0]), Given("soft-return"))
 
 
 @pytest.mark.slow
@@ -128,12 +128,12 @@ def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
 ) -> None:
     monkeypatch.setattr("satsym.report.page.run.pictures", lambda _solution, _texts: [])  # have a test of their own
     short = replace(solution, certificate=None)
-    indonesian = render(short, None, "soft-return", "id")
-    assert indonesian == render(short, None, "soft-return", "id")
+    indonesian = render(short, None, Given("soft-return"), "id")
+    assert indonesian == render(short, None, Given("soft-return"), "id")
     assert "6,283185307 s" in indonesian  # as in its pictures and formulas
     assert "1,1" in re.findall("<td>([^<]*)</td>", indonesian)
-    assert "6.283185307 s" in render(short, None, "soft-return", "en")
-    failed = render(replace(solution, certificate=None, message="<b>no & way"), None, "x", "en")
+    assert "6.283185307 s" in render(short, None, Given("soft-return"), "en")
+    failed = render(replace(solution, certificate=None, message="<b>no & way"), None, Given("x"), "en")
     assert "&lt;b&gt;no &amp; way" in failed
 
 
@@ -141,11 +141,35 @@ def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(
     text: str, solution: Solution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
-    own = render(solution, derived(loader.problem("polar_orbit")[0]), "x.toml", stated="my model.py")
+    own = render(solution, derived(loader.problem("polar_orbit")[0]), Given("x.toml", "my model.py"))
     assert "satsym latex polar_orbit" in text
     assert "satsym report x.toml --html report.html --derivation &#x27;my model.py&#x27;" in own
     assert "satsym latex &#x27;my model.py:polar_orbit&#x27;" in own
-    assert "satsym latex" not in render(solution, None, "x.toml")
+    assert "satsym latex" not in render(solution, None, Given("x.toml"))
+
+
+def test_other_values_are_told_beside_the_instance_and_in_the_commands_that_reproduce_it(
+    solution: Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
+    values = ("initial.r=1.05", "parameters.c1=a b")
+    page = render(solution, None, Given("x.toml", values=values))
+    assert "<p>In place of what it says: initial.r=1.05, parameters.c1=a b.</p>" in page
+    given = "x.toml --set initial.r=1.05 --set &#x27;parameters.c1=a b&#x27;"
+    assert f"satsym solve {given} --plot" in page
+    assert f"satsym report {given} --html" in page
+    assert "In place of" not in render(solution, None, Given("x.toml"))
+
+
+@pytest.mark.slow
+def test_a_page_may_be_of_other_values_than_the_file_has(run: Run, tmp_path: Path) -> None:
+    code, _, err = run("report", "double-integrator-energy", "--html", "page.html", "--set", "initial.nothing=1")
+    assert code == 3
+    assert "nothing" in err
+    assert not (tmp_path / "page.html").exists()
+    assert run("report", "double-integrator-energy", "--html", "page.html", "--set", "time.tf=2.5")[0] == 0
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert re.search(r"<dd>2\.5( s)?</dd>", text)
 
 
 def test_sentences_become_html_with_their_formulas_and_numbers() -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import place_option, subject_argument
+from satsym.cli.options import place_option, set_option, subject_argument
 from satsym.cli.output import live, tell
 from satsym.report.said import language, message, say
 from satsym.status import BadInput, ExitCode, Verdict
@@ -28,25 +28,29 @@ Examples:
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
-def report(subject: str, page: Path | None, stated: Path | None) -> ExitCode:
+@set_option
+def report(subject: str, page: Path | None, stated: Path | None, values: tuple[str, ...]) -> ExitCode:
     """Solve an instance, and show all of it on one page.
 
     X is an instance as for `satsym solve`. The page holds the answer, its certificate, the motion, pictures, the
     instance and the derivation, and needs nothing but itself. FILE.py is Python and is executed.
     """
     from satsym import instance, solvers
-    from satsym.report.page.run import render
+    from satsym.instance.numbers import changed
+    from satsym.report.page.run import Given, render
     from satsym.report.results.files import write_text
     from satsym.report.terminal.solution import progress_line, with_files
+    from satsym.studies.reading import settings
 
     if page is None:
         raise click.UsageError("--html FILE says where the page goes.")
     case = instance.load(subject)
+    case = changed(case, settings(case, values))
     with live() as line:
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
         line.show(say("drawing ..."))
-        text = render(solution, derivation, subject, language(), str(stated or ""))
+        text = render(solution, derivation, Given(subject, str(stated or ""), values), language())
     write_text(page, text)
     tell(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
     if not solution.status.answered:

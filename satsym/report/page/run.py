@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -22,9 +24,26 @@ if TYPE_CHECKING:
     from satsym.symbolic import Derivation
 
 
-def render(
-    solution: Solution, derivation: Derivation | None, given: str, language: str = "en", stated: str = ""
-) -> str:
+@dataclass(frozen=True)
+class Given:
+    """What a run was called with on the command line.
+
+    Attributes
+    ----------
+    subject
+        What the instance was called.
+    stated
+        The file that states the model, where it is none that is shipped.
+    values
+        Other values of its numbers, each as ``KEY=VALUE``.
+    """
+
+    subject: str
+    stated: str = ""
+    values: Sequence[str] = ()
+
+
+def render(solution: Solution, derivation: Derivation | None, given: Given, language: str = "en") -> str:
     """A page that needs nothing but itself.
 
     Parameters
@@ -32,11 +51,9 @@ def render(
     derivation
         Of the instance's model; ``None`` where it is not at hand.
     given
-        What the instance was called on the command line.
+        What was asked for.
     language
         Of the page; what authors of models wrote stays as it is.
-    stated
-        The file that states the model, where it is none that is shipped.
 
     Returns
     -------
@@ -44,10 +61,10 @@ def render(
         HTML that depends on nothing but the arguments.
     """
     with spoken(language):
-        return _rendered(solution, derivation, (given, stated), language)
+        return _rendered(solution, derivation, given, language)
 
 
-def _rendered(solution: Solution, derivation: Derivation | None, given: tuple[str, str], language: str) -> str:
+def _rendered(solution: Solution, derivation: Derivation | None, given: Given, language: str) -> str:
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
     title = say(authored)
@@ -80,9 +97,7 @@ def _rendered(solution: Solution, derivation: Derivation | None, given: tuple[st
     return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
 
 
-def _sections(
-    solution: Solution, derivation: Derivation | None, given: tuple[str, str], texts: Texts
-) -> dict[str, Markup]:
+def _sections(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts) -> dict[str, Markup]:
     spec, scene = solution.instance.model.spec, Scene.of(solution)
     parts = [answer.facts(solution, texts)]
     if scene.drawable:
@@ -93,20 +108,21 @@ def _sections(
         "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
         "motion": motion(scene, texts) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),
-        "instance": _instance(solution, texts),
+        "instance": _instance(solution, given, texts),
         "derivation": _derivation(solution, derivation, texts),
-        "reproduce": _commands(solution, derivation, *given, texts),
+        "reproduce": _commands(solution, derivation, given, texts),
     }
 
 
-def _instance(solution: Solution, texts: Texts) -> Markup:
-    """The file as it was read."""
+def _instance(solution: Solution, given: Given, texts: Texts) -> Markup:
+    """The file as it was read, and what stood in place of its numbers."""
     file = file_of(solution.instance)
     if file is None:
         return Markup()
     about = texts.get("page", "file", name=file["name"], digest=file["digest"])
     text = tag("pre", tag("code", text_of(solution.instance.path)), tabindex="0")
-    return joined(tag("p", about), text)
+    instead = texts.get("page", "instead", values=", ".join(given.values))
+    return joined(tag("p", about), text, tag("p", instead) if given.values else Markup())
 
 
 def _derivation(solution: Solution, derivation: Derivation | None, texts: Texts) -> Markup:
@@ -119,8 +135,9 @@ def _derivation(solution: Solution, derivation: Derivation | None, texts: Texts)
     return joined(tag("p", texts.get("page", "derivation_about")), Derived(derivation, texts, known).render())
 
 
-def _commands(solution: Solution, derivation: Derivation | None, given: str, stated: str, texts: Texts) -> Markup:
-    name, model = shlex.quote(given), solution.instance.model.spec.name
+def _commands(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts) -> Markup:
+    stated, model = given.stated, solution.instance.model.spec.name
+    name = shlex.join([given.subject, *(part for value in given.values for part in ("--set", value))])
     again = f" --derivation {shlex.quote(stated)}" if stated else ""
     lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html{again}"]
     if derivation is not None:
