@@ -51,6 +51,8 @@ class Nearest:
     missed: dict[str, float]
     """By how much each given final state is missed, in the model's units, by its name, and each terminal constraint, by
     its multiplier's."""
+    units: dict[str, str]
+    """Of states, by their names."""
     distance: float
     """The largest of them, relative to the size of its state along the way."""
     starts: int
@@ -62,7 +64,7 @@ class Nearest:
 
     @property
     def arrives(self) -> bool:
-        """Whether that is no miss."""
+        """Whether that is no miss, as far as can be told."""
         return self.distance <= ARRIVED
 
     @property
@@ -78,7 +80,10 @@ class Nearest:
     @property
     def message(self) -> str:
         """One line."""
-        misses = ", ".join(f"{name} by {value:.3g}" for name, value in self.missed.items())
+        misses = ", ".join(
+            " ".join(filter(None, [f"{name} by {value:.3g}", self.units.get(name)]))
+            for name, value in self.missed.items()
+        )
         return (
             f"no control within its bounds was found that reaches the given end: "
             f"the nearest of {self.starts} local searches misses {misses}"
@@ -145,7 +150,8 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     missed = {names[i]: float(gap[k] * units[i]) for k, i in enumerate(reach.rows)}
     agreeing = sum(miss <= (1.0 + ALIKE) * min(misses) for miss in misses)
     scaled = states / problem.scale.state[:, None]
-    return Nearest(missed, float(np.abs(gap).max()), len(misses), agreeing, scaled)
+    given = {v.symbol: v.unit for v in spec.states if v.unit != "1"}
+    return Nearest(missed, given, float(np.abs(gap).max()), len(misses), agreeing, scaled)
 
 
 def _starts(problem: TwoPoint, path: Path, tau: Array) -> list[Callable[[], Array]]:

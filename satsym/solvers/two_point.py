@@ -222,7 +222,10 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
         return found
     if near.arrives:
         arrived = _from_arrival(problem, near, limits)
-        known = f"{found.message}, though the end can be reached"
+        known = (
+            f"{found.message}; controls within the bounds miss the end by {near.distance:.1g} of the sizes of states, "
+            f"which bounds a little wider, or more time, may close"
+        )
         return arrived if arrived.status.answered else replace(found, message=known)
     if near.undecided:
         return replace(found, message=f"{found.message}; {near.message}, and others may arrive")

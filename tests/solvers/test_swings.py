@@ -106,7 +106,8 @@ def test_a_force_that_is_too_weak_for_any_pumping_is_infeasible(tmp_path: Path) 
 
 
 def test_where_searches_disagree_others_may_arrive(tmp_path: Path) -> None:
-    few = Nearest({"a": 0.1}, 0.1, starts=9, agreeing=4, states=np.zeros((2, 3)))
+    few = Nearest({"a": 0.1, "b": 0.2}, {"a": "km"}, 0.1, starts=9, agreeing=4, states=np.zeros((2, 3)))
+    assert few.message.endswith("misses a by 0.1 km, b by 0.2")
     assert few.undecided
     assert not replace(few, agreeing=5).undecided
 
