@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import accumulate
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Literal
 
 from satsym.control_part import SWITCHED, ControlPart
@@ -87,12 +87,10 @@ class Variable:
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
             raise ValueError(f"variable {self.symbol!r}: default is {self.default!r}; give a finite number")
         if self.typical is not None:
-            low, high = self.typical
+            low, high = self.typical if len(self.typical) == 2 else (inf, inf)
             if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
                 wanted = "0 < low < high" if self.positive else "low < high"
-                raise ValueError(
-                    f"variable {self.symbol!r}: typical is {low:g} to {high:g}; give two numbers, {wanted}"
-                )
+                raise ValueError(f"variable {self.symbol!r}: typical is {self.typical!r}; give two numbers, {wanted}")
 
 
 def _closed(latex: str) -> bool:

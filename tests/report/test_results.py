@@ -262,6 +262,7 @@ def test_summary_of_a_simulation_tells_what_is_conserved(simulation: Simulation)
 def test_summary_says_where_files_are(solution: Solution) -> None:
     told = with_files("summary", [Path("a/x.png"), Path("a/y.png")])
     assert told == "summary\n\n  written to a: x.png, y.png"
+    assert with_files("summary", [Path("x.png"), Path("y.png")]) == "summary\n\n  written: x.png, y.png"
     assert with_files("summary", []) == "summary"
 
 

@@ -69,6 +69,18 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
             "terminal_cost=place**2 + abs(place)",
             "the terminal cost has Abs(place) in it",
         ),
+        ('"speed", "v"', '"speed up", "v"', "mine.py:5: variable 'speed up': use a letter, then letters"),
+        (
+            "1.0, positive=True",
+            "1.0, typical=(1.0, 0.1)",
+            "mine.py:6: variable 'c': typical is (1.0, 0.1); give two numbers, low < high",
+        ),
+        (
+            "1.0, positive=True",
+            "1.0, typical=(1.0, 2.0, 3.0)",
+            "mine.py:6: variable 'c': typical is (1.0, 2.0, 3.0); give two numbers, low < high",
+        ),
+        ("rates={place: speed}", 'rates={place: int("speed")}', "mine.py:9: ValueError: invalid literal for int()"),
         ("(speed,), (c,) =", "(speed,) (c,) =", "mine.py:7: SyntaxError: cannot assign to function call"),
     ],
 )

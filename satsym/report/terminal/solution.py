@@ -84,6 +84,9 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
         places.setdefault(path.parent, []).append(path.name)
     lines = []
     for folder, names in places.items():
+        if folder == Path():
+            lines.append(wrapped(say("written: <names>", names=", ".join(names))))
+            continue
         summary = wrapped(say("written to <folder>: <names>", folder=folder, names=", ".join(names)))
         # a folder that leaves no room for a name stands alone
         first = say("written to <folder>:", folder=folder)

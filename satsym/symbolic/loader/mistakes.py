@@ -15,6 +15,9 @@ from satsym.wording import suggestion
 DECLARING = "satsym.symbolic"
 """Where the classes and functions come from that a derivation file declares with."""
 
+_OURS = Path(__file__).parents[2]
+"""The folder of the package that they belong to."""
+
 _UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'")
 _MISSING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")
 _MANY = re.compile(r"(\w+)\.__init__\(\) takes (?:from \d+ to )?(\d+) positional arguments?")
@@ -53,6 +56,8 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
         return line, f"{error.name!r} is not defined; {_instead(error.name, names)}"
     if isinstance(error, ImportError) and (found := _IMPORTED.match(text)) and found[2] == DECLARING:
         return line, f"{DECLARING} has no {found[1]!r}; {suggestion(found[1], _offered())}"
+    if isinstance(error, ValueError) and _refused(error):
+        return line, text
     return line, f"{type(error).__name__}: {text}"
 
 
@@ -87,6 +92,14 @@ def _keywords(path: Path, line: int | None, keyword: str) -> Iterator[int]:
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and line and call.lineno <= line <= (call.end_lineno or line):
             yield from (k.lineno for k in call.keywords if k.arg == keyword)
+
+
+def _refused(error: Exception) -> bool:
+    """Whether it is what is declared with that refused a value, in a sentence, and not Python."""
+    traceback = error.__traceback__
+    while traceback and traceback.tb_next:
+        traceback = traceback.tb_next
+    return traceback is not None and Path(traceback.tb_frame.f_code.co_filename).is_relative_to(_OURS)
 
 
 def _line(path: Path, error: Exception) -> int | None:
