@@ -7,7 +7,7 @@ every machine; only time that is up can end it before, and that is said.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
@@ -55,6 +55,9 @@ BENT, ALSO_BENT = (0.3, 1.0), (0.03, 0.1, 1.0)
 
 Where ends are close together, or motions unstable, the smallest lead to the most minima.
 """
+
+BETWEEN = (0.25, 0.5, 0.75)
+"""Shares of the way from lower to upper bounds at which constant controls are that are swept, besides the corners."""
 
 SOFT = (0.1, 0.01)
 """Softness of bounds with which saturated structures are looked for."""
@@ -200,7 +203,7 @@ def _attempts(solution: Solution, answer: Answer, seed: int) -> Iterator[tuple[K
     if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
         soft = [from_path(problem, path, softness, cost) for path, softness in starts]
-        yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
+        yield Kind.SATURATION, [*soft, *_from_constants(problem, cost)]
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
     around: list[Search] = [_cold(one, cost) for one in turned]
@@ -257,8 +260,12 @@ def _from_more(solution: Solution, answer: Answer, seed: tuple[int, int]) -> lis
 
 
 def _from_controls(solution: Solution, seed: int) -> list[Search]:
-    """The minimum to which the cheapest of controls that are drawn leads, if one costs less; else that control."""
+    """The minimum to which the cheapest of controls that are drawn leads, if one costs less; else that control.
+
+    Its path of states is descended from, and where that leads elsewhere the control itself is swept.
+    """
     from satsym.solvers.cold_start import paths
+    from satsym.solvers.cold_start.swept import loose
     from satsym.solvers.collocation.scaling import two_point
 
     drawn = drawn_below(solution, seed)
@@ -268,8 +275,12 @@ def _from_controls(solution: Solution, seed: int) -> list[Search]:
     problem = two_point(replace(solution.instance, tf=drawn.grid.tf, tf_guess=None, guess=Guess()), lasting)
     descend = from_path(problem, paths.through(problem, drawn.states), SOFT[-1], solution.objective)
 
+    control = dict(zip(solution.instance.model.spec.control_names, drawn.control.tolist(), strict=True))
+
     def attempt(limits: Limits) -> Competitor | None:
         found = tried(partial(descend, limits))
+        if loose(problem) and not (found and found.cost <= drawn.cost):
+            found = _swept(problem, control, solution.objective, limits)
         return found if found and found.cost <= drawn.cost else Competitor(problem, None, drawn.cost)
 
     return [attempt]
@@ -282,18 +293,19 @@ def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Search:
     return lambda limits: bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 
 
-def _from_corners(problem: TwoPoint, cost: float) -> list[Search]:
-    """The cheapest extremal to which controls at the corners of their box lead, where nothing is asked of the end."""
-    from satsym.solvers.cold_start.swept import swept
+def _from_constants(problem: TwoPoint, cost: float) -> list[Search]:
+    """The extremals to which sweeps lead from constant controls, where nothing is asked of the end."""
+    from satsym.solvers.cold_start.swept import constants
 
-    if problem.fixed.any():
-        return []
+    return [partial(_swept, problem, control, cost) for control in constants(problem, BETWEEN)]
 
-    def attempt(limits: Limits) -> Competitor | None:
-        found = (accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
-        return min(filter(None, found), key=lambda one: one.cost, default=None)
 
-    return [attempt]
+def _swept(problem: TwoPoint, control: Mapping[str, Sequence[float]], cost: float, limits: Limits) -> Competitor | None:
+    """The extremal to which sweeps lead from a control."""
+    from satsym.solvers.cold_start.swept import from_control
+
+    curve = tried(partial(from_control, problem, control, limits))
+    return None if curve is None else accurate(problem, curve, cost)
 
 
 def _lasting(instance: Instance, duration: float, cost: float) -> Search:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice, product
+from itertools import chain, islice, product
 
 import msgspec
 import numpy as np
@@ -41,15 +41,24 @@ def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
     problem
         With its bounds, a given duration, and an end of which nothing is asked.
     """
-    instance = problem.instance
-    finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
-    if not loose(problem) or instance.model.spec.control_set != "box" or not finite:
-        return
-    names = instance.model.spec.control_names
-    for corner in islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST):
+    for control in constants(problem):
         if limits.expired:
             return
-        yield from_control(problem, {name: (value,) for name, value in zip(names, corner, strict=True)}, limits)
+        yield from_control(problem, control, limits)
+
+
+def constants(problem: TwoPoint, between: Sequence[float] = ()) -> Iterator[dict[str, tuple[float]]]:
+    """Constant controls by name at corners of their box, and all of them at the same share of the way between bounds.
+
+    None where sweeps cannot begin with them: the end or the time asks for something, or the controls have no box.
+    """
+    instance = problem.instance
+    low, high = np.array(instance.lower), np.array(instance.upper)
+    if not loose(problem) or instance.model.spec.control_set != "box" or not np.isfinite([low, high]).all():
+        return
+    corners = islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST)
+    for values in chain(corners, ((low + share * (high - low)).tolist() for share in between)):
+        yield {name: (value,) for name, value in zip(instance.model.spec.control_names, values, strict=True)}
 
 
 def loose(problem: TwoPoint) -> bool:

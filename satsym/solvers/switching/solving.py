@@ -219,16 +219,21 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     found = attempt(instance, resting, limits) if resting else None
     rest = [replace(found, origin=Origin.REST)] if found else []
     if held.applies(instance):
-        if known := rest + _at_corners(instance, limits):
-            return min(_compared(instance, known, limits), key=lambda one: one.trajectory.cost(instance))
-        return smoothed(instance, limits)
+        if not (known := rest + _at_corners(instance, limits)):
+            return smoothed(instance, limits)
+        best = min(_compared(instance, known, limits), key=lambda one: one.trajectory.cost(instance))
+        return _adopting(instance, best, limits)
     if rest:
         return rest[0]
     if exact := by_reach.optimum(instance, limits):
         return replace(exact, origin=Origin.REACH)
     if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
-    best = _by_effort(instance, limits)
+    return _adopting(instance, _by_effort(instance, limits), limits)
+
+
+def _adopting(instance: Instance, best: Exact | homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
+    """What was found, or what costs less as long as there is such a thing."""
     for _ in range(ADOPTED):
         if limits.expired or (isinstance(best, homotopy.Stopped) and best.chattering):
             break

@@ -96,6 +96,8 @@ def _cheapest(instance: Instance, known: Exact | None, plans: Plans, ends: Array
     """The cheapest extremal to which plans lead that end at these times, where these are given."""
     cost = float("inf") if known is None else known.trajectory.cost(instance)
     sizes = given(instance)
+    if known is not None and not sizes.any():
+        sizes = known.refined.sizes[: len(sizes)]
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
     target = Target(instance, sizes, ends if instance.tf is not None else np.full(PLANS, np.nan))
     seen: list[float] = []
