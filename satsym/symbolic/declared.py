@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any, get_args
 
@@ -193,6 +194,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     """
     variables, notation = _variables(model, problem), _notation(model, problem)
     _refuse_clashes(variables, {*notation, *_entries(model)})
+    _refuse_letters(variables, _letters(problem, notation))
     results = {} if problem else linear_notation.results(model)
     return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
 
@@ -243,6 +245,27 @@ def _entries(model: Model) -> Iterable[str]:
     dynamic = (("A", states, states), ("B", states, controls), ("H", controls, controls))
     for letter, rows, columns in (*dynamic, ("C", outputs, states), ("D", outputs, controls)):
         yield from (f"{letter}_{row}_{column}" for row in rows for column in columns)
+
+
+def _letters(problem: Problem | None, notation: Mapping[str, str]) -> set[str]:
+    """How every problem has what it derives typeset, and its costs."""
+    if problem is None:
+        return set()
+    costates = map(n.costate_of, symbols_of(problem.model.states))
+    derived = (n.HAMILTONIAN, n.RUNNING_COST, n.TERMINAL_COST, n.FINAL_TIME, n.TIME, *costates, *n.multipliers(problem))
+    return {_bare(notation[symbol.name]) for symbol in derived}
+
+
+def _bare(latex: str) -> str:
+    """LaTeX as far as it is seen."""
+    return re.sub(r"[{}\s]", "", latex)
+
+
+def _refuse_letters(variables: Iterable[Variable], derived: Collection[str]) -> None:
+    for v in variables:
+        if _bare(v.latex) in derived:
+            message = f"the LaTeX of {v.symbol!r}, {v.latex}, is that of something that is derived; choose another"
+            raise DerivationError(message, (v.symbol,))
 
 
 def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> None:

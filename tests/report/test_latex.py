@@ -397,3 +397,11 @@ def test_a_rule_claim_or_step_without_a_text_is_named() -> None:
 def test_a_language_without_texts_is_bad_input() -> None:
     with pytest.raises(BadInput, match='no texts in the language "xx"; there are en, id'):
         render(derived("double_integrator"), language="xx")
+
+
+def test_beside_a_variable_j_the_cost_functional_has_another_letter() -> None:
+    other, plain = render(derived("long_equations"), "en"), render(derived("double_integrator"), "en")
+    assert r"\mathcal{C} = \int" in re.sub(r"[ &]+", " ", other)
+    assert not re.search(r"(?<![A-Za-z])J =", re.sub(r"[ &]+", " ", other))
+    assert r"J = \int" in re.sub(r"[ &]+", " ", plain)
+    assert r"\mathcal{C}" not in plain

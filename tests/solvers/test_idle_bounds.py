@@ -34,7 +34,7 @@ def certified(found: Solution, cost: float, events: list[tuple[str, float]]) -> 
 @pytest.mark.slow
 def test_an_epidemic_whose_contacts_need_no_limit_any_more_once_the_beds_suffice(tmp_path: Path) -> None:
     """On the boundary contacts are cut by 1 - gamma/(beta S), until there is nothing left to be cut."""
-    states = (Variable("sus", "S", positive=True), Variable("inf", "I", positive=True))
+    states = (Variable("sus", "s", positive=True), Variable("inf", "I", positive=True))
     sus, infected = symbols_of(states)
     caught = CONTACTS * (1 - u) * sus * infected
     rates = {sus: -caught, infected: caught - RECOVERY * infected}

@@ -80,6 +80,13 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
             "1.0, typical=(1.0, 2.0, 3.0)",
             "mine.py:6: variable 'c': typical is (1.0, 2.0, 3.0); give two numbers, low < high",
         ),
+        (
+            '"place", "s"',
+            '"place", "S"',
+            "mine.py:12: stroll: the LaTeX of 'place', S, is that of something that is derived; choose another",
+        ),
+        ('"c", "c"', '"c", "{H}"', "stroll: the LaTeX of 'c', {H}, is that of"),
+        ('"speed", "v"', '"speed", r"\\lambda_s"', "the LaTeX of 'speed', \\lambda_s, is that of"),
         ("rates={place: speed}", 'rates={place: int("speed")}', "mine.py:9: ValueError: invalid literal for int()"),
         ("(speed,), (c,) =", "(speed,) (c,) =", "mine.py:7: SyntaxError: cannot assign to function call"),
     ],

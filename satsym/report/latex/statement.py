@@ -18,6 +18,7 @@ from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line, Problem, variables_of, with_origins
+from satsym.symbolic.principle.notation import cost_letter
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path.interior import condition, named
@@ -66,16 +67,17 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     functional = (f"{lead}{end} {lead or '+'} " if terminal else lead) + rf"\int_{{{time}_0}}^{{{final}}} L \,d{time}"
     costs = {n.RUNNING_COST: problem.running_cost} | ({n.TERMINAL_COST: problem.terminal_cost} if terminal else {})
     rows = [
-        Row(_address(derivation, symbol.name), typeset.terms(symbol), typeset.terms(cost))
-        for symbol, cost in costs.items()
+        Row(_address(derivation, symbol.name), typeset.terms(symbol), typeset.terms(stated))
+        for symbol, stated in costs.items()
     ]
-    whole = Row(_address(derivation, "J"), plain("J"), plain(functional))
+    cost = cost_letter(problem.model)
+    whole = Row(_address(derivation, "J"), plain(cost), plain(functional))
     wanted = ("maximise" if problem.maximise else "minimise") + ("" if len(controls) > 1 else "_one")
     task = texts.get("statement", wanted, controls=r",\, ".join(controls))
     at_end = "where_terminal" if n.TIME in getattr(problem.terminal_cost, "free_symbols", ()) else "where_end"
     where = texts.get("statement", at_end if terminal else "where")
     paragraphs = [f"{task}\n{display([whole])}\n{where}\n{display(rows)}"]
-    paragraphs += [texts.get("statement", worded("negative", problem))] if problem.maximise else []
+    paragraphs += [texts.get("statement", worded("negative", problem), cost=cost)] if problem.maximise else []
     if "first_order" in derivation:
         equations = derivation.step("first_order").equations
         first, last = (tex.label(f"{derivation.name}:first_order.{e.name}") for e in (equations[0], equations[-1]))

@@ -24,6 +24,7 @@ from satsym.report.texts import PHRASES, Texts
 from satsym.spec import Variable
 from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.latex.typeset import Typesetter, matrices
+from satsym.symbolic.principle.notation import cost_letter
 
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step
@@ -83,7 +84,7 @@ class Derived:
             yield tag("p", prose(texts.get("statement", task, controls=controls), {}))
             lead = "-" if problem.maximise else ""
             final = rf"{lead}S(\mathbf{{x}}(t_f), t_f) {lead or '+'} " if terminal else lead
-            yield scrolled(math(rf"J = {final}\int_{{t_0}}^{{t_f}} L \, dt", block=True))
+            yield scrolled(math(rf"{cost_letter(problem.model)} = {final}\int_{{t_0}}^{{t_f}} L \, dt", block=True))
             yield tag("p", prose(texts.get("statement", "where_terminal" if terminal else "where"), {}))
             yield scrolled(math(f"L = {typeset.tex(problem.running_cost)}", block=True))
             if terminal:

@@ -25,13 +25,18 @@ peak_of = named("{}_peak")
 """The symbol for the largest magnitude of a control."""
 
 
+def cost_letter(model: Model) -> str:
+    """The letter of the cost functional: J, unless a variable has it, as moments of inertia do."""
+    return free_letter(("J", r"\mathcal{C}"), variables_of(model))
+
+
 def names(model: Model, time: str) -> dict[str, str]:
     """Name -> LaTeX of all of them, with the letter for time."""
     found = {
         POTENTIAL.name: r"\mathcal{V}",
         REDUCED_COST.name: "L_0",
-        MINIMUM_COST.name: "J_0",
-        COST_FROM_REST.name: r"J_{\mathrm{rest}}",
+        MINIMUM_COST.name: f"{cost_letter(model)}_0",
+        COST_FROM_REST.name: rf"{cost_letter(model)}_{{\mathrm{{rest}}}}",
     }
     found |= {f"reduced_lambda_{v.symbol}": rf"\mu_{{{v.latex}}}" for v in model.states}
     for v in model.controls:
