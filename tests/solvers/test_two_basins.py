@@ -20,7 +20,7 @@ from satsym.status import Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
 
-STATES = (Variable("sus", "S", positive=True), Variable("inf", "I", positive=True))
+STATES = (Variable("sus", "s", positive=True), Variable("inf", "I", positive=True))
 CONTROLS, WEIGHT = (Variable("u", "u"),), (Variable("c", "c", positive=True),)
 (sus, infected), (u,), (c,) = map(symbols_of, (STATES, CONTROLS, WEIGHT))
 CONTACTS, RECOVERY, MOST, DAYS = 0.4, 0.1, 0.8, 100.0
