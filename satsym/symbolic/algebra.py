@@ -10,6 +10,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import Model, symbols_of, t
 
 LARGEST = 400
@@ -204,7 +205,7 @@ def _shortest(expression: sp.Expr) -> sp.Expr:
     expanded = _expand(expression)
     # A sum with decimals is hardly ever a product of others, and to look for them takes sympy up to a minute.
     plain = expression.has(sp.Float) or len(sp.Add.make_args(expanded)) > FACTORED
-    products = sp.gcd_terms(expanded) if plain else sp.factor(expression)
+    products = sp.gcd_terms(expanded) if plain else factored(expression)
     return min((expanded, products, sp.together(expression)), key=sp.count_ops)
 
 

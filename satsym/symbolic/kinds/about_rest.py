@@ -15,6 +15,7 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric, numeric_along, slopes
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import SpecialCase
 from satsym.symbolic.kinds.multibody import Multibody
@@ -119,12 +120,12 @@ def first_order(so_far: Derivation) -> Step:
     mass, load = sp.linear_eq_to_matrix(law, moving)
     if mass.rows != mass.cols or mass.det() == 0:
         raise DerivationError(f"{model.name}: the equations do not determine {', '.join(s.name for s in moving)}")
-    solved = dict(zip(moving, mass.applyfunc(sp.factor).LUsolve(load), strict=True))
+    solved = dict(zip(moving, mass.applyfunc(factored).LUsolve(load), strict=True))
     variables = symbols_of((*model.states, *model.controls))
     rates = {n.rate_of(q): v for q, v in model.velocities.items()}
     for symbol, value in solved.items():
         whole = sp.expand(value)
-        rates[symbol] = sp.Add(*(sp.factor(whole.coeff(v)) * v for v in variables))
+        rates[symbol] = sp.Add(*(factored(whole.coeff(v)) * v for v in variables))
     states = symbols_of(model.states)
     equations = tuple(Equation(s.name, n.rate_of(s), rates[n.rate_of(s)]) for s in states)
     proof = identity("satisfies the linear equations", [sp.together(e.xreplace(rates)) for e in law])

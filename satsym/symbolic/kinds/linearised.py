@@ -19,6 +19,7 @@ from satsym.symbolic.algebra import constants_of, definitions_of, simplified, ti
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import Derived, original_equations, there_and_back
 from satsym.symbolic.linear.notation import results
@@ -300,4 +301,4 @@ def _transformed(so_far: Derivation, entries: list[sp.Expr]) -> Check:
 
 def _shorter(expression: sp.Expr) -> sp.Expr:
     """The shortest of some ways to write a rate."""
-    return min((expression, tidy(expression), sp.factor(expression)), key=sp.count_ops)
+    return min((expression, tidy(expression), factored(expression)), key=sp.count_ops)

@@ -12,6 +12,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step, resolved
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import SpecialCase, original_equations
 from satsym.symbolic.model import MaybeStep, symbols_of
@@ -82,7 +83,7 @@ def quantities(so_far: Derivation) -> Step:
     special = model.special()
     where, along = ({s: special[s] for s in part} for part in (model.where, model.along))
     stated = original.step("quantities").equations if "quantities" in original else ()
-    known = {state: sp.factor(value) for state, value in along.items()}
+    known = {state: factored(value) for state, value in along.items()}
     known |= {e.lhs: tidy(e.rhs.xreplace(where)) for e in stated}
     equations = tuple(Equation(symbol.name, symbol, value) for symbol, value in known.items())
     exact = [*resolved(stated).values()]

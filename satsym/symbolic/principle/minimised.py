@@ -14,6 +14,7 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of
@@ -42,7 +43,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
             continue
         length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
         shortest = one.part.bounds[0] if one.part.kind == "annulus" else 0
-        slope = sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
+        slope = sp.sqrt(factored(sum((s**2 for s in one.vector), sp.Integer(0))))
         if one.weight != 0:
             least[norm_of(one.part)] = sp.Integer(0)
             margin = slope - sign(problem) * one.weight

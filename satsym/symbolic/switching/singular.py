@@ -19,6 +19,7 @@ from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import Check, Point, compare, numeric, partial
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.functions import along_extremals, directional, flow
@@ -107,7 +108,7 @@ def chattering(so_far: Derivation) -> tuple[str, ...]:
 
 def _kelley(search: Search) -> sp.Expr:
     """What the generalised Legendre-Clebsch condition is about, of an even order."""
-    return sp.factor((-1) ** (search.order // 2) * search.slope)
+    return factored((-1) ** (search.order // 2) * search.slope)
 
 
 def _kept(search: Search) -> tuple[sp.Expr, ...]:

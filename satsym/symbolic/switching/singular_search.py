@@ -17,6 +17,7 @@ from satsym.symbolic.algebra import depends, shortened, tidy, total_derivative
 from satsym.symbolic.convention import sign
 from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.switching.functions import flow, parts
 
@@ -196,4 +197,4 @@ def _simplest(expression: sp.Expr) -> sp.Expr:
     plain = expression.xreplace(names)
     if not plain.is_rational_function():
         return shortened(expression)
-    return sp.factor(plain).xreplace({dummy: magnitude for magnitude, dummy in names.items()})
+    return factored(plain).xreplace({dummy: magnitude for magnitude, dummy in names.items()})

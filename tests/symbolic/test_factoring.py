@@ -1,0 +1,48 @@
+"""Factors by FLINT are those of sympy, written alike."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from satsym.symbolic.factoring import factored
+
+x, y, z = sp.symbols("x y z", real=True)
+k = sp.Symbol("k", positive=True)
+NUMBERS = st.fractions(-9, 9, max_denominator=6).map(lambda q: sp.Rational(q.numerator, q.denominator))
+ATOMS = st.sampled_from([x, y, z, k, sp.sqrt(k), sp.sin(x), sp.exp(-y), 1 / k])
+TERMS = st.builds(lambda c, atoms: c * sp.Mul(*atoms), NUMBERS, st.lists(ATOMS, max_size=3))
+SUMS = st.lists(TERMS, min_size=1, max_size=4).map(lambda terms: sp.Add(*terms))
+
+
+@given(st.lists(SUMS, min_size=1, max_size=3), SUMS)
+def test_a_product_that_was_multiplied_out_is_found_again_as_sympy_writes_it(factors: list[sp.Expr], beside: sp.Expr):
+    for expression in (sp.expand(sp.Mul(*factors)), sp.Mul(*factors) + beside):
+        assert str(factored(expression)) == str(sp.factor(expression))
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        -x * y**2 + z,
+        x**2 / 2 + y**2 / 2,
+        -x * y / 2 - z / 2,
+        (2 * x * (x + 3 * y) + y * (y - 2 * x)) * sp.exp(-k * (z - 1)) / k**3,
+        (x**2 - y**2) ** 2 / (x**2 + 2 * x * y + y**2),
+        sp.sqrt(x**2 + 2 * x * y + y**2 + 1) * (x**2 - 1),
+        1.5 * x**2 - 3 * x,
+        sp.Integer(0),
+        sp.Rational(2, 3),
+        (x**2 + 1) / (x + sp.I),
+    ],
+)
+def test_forms_are_those_of_sympy(expression: sp.Expr):
+    assert str(factored(expression)) == str(sp.factor(expression))
+    assert factored(expression) == sp.factor(expression)
+
+
+def test_the_factors_of_a_long_product_are_found():
+    product = (x + 2 * y - z) * (x * y - k) ** 2 * (x**2 + y * z + 1) / (x - k)
+    assert factored(sp.together(sp.expand(product))) == product
