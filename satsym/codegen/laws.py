@@ -1,4 +1,4 @@
-"""Laws of controls on which H depends neither linearly nor quadratically, as a chain of named parts with derivatives.
+"""Long control laws as a chain of named parts with derivatives.
 
 In one piece, what depends on such a law holds it many times over, and its derivatives more often still.
 """
@@ -17,6 +17,11 @@ from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle import product, set_laws
 
 
+LONG = 250
+"""Operations of the laws of a problem above which they are named: thrust on equinoctial elements has 600, and the
+Jacobian of its canonical equations in one piece a million."""
+
+
 @dataclass(frozen=True)
 class LawParts:
     """The chain, the symbols in it for the controls, and the derivatives of all its parts."""
@@ -31,15 +36,9 @@ class LawParts:
 
 
 def law_parts(derivation: Derivation) -> LawParts:
-    """Those of a derivation; nothing where all its laws are written in closed form."""
-    if product.STEP not in derivation:
+    """The chain of a derivation's control laws; an empty one where all laws are short enough to be substituted."""
+    if product.STEP not in derivation or not (laws := _long_laws(derivation)):
         return LawParts()
-    laws = {
-        u: law
-        for one in set_laws.found(derivation)
-        if one.branch == "stationary"
-        for u, law in zip(one.part.symbols, one.laws, strict=True)
-    }
     names = sp.utilities.numbered_symbols("law_part_", start=1, real=True)
     parts, reduced = sp.cse(list(laws.values()), symbols=names, order="canonical")
     chain = Chain(parts)
@@ -52,3 +51,16 @@ def law_parts(derivation: Derivation) -> LawParts:
         slopes[by] = own.derivatives(by)
         plain.parts += own.parts[len(chain.parts) :]
     return LawParts(tuple(plain.parts), values, slopes)
+
+
+def _long_laws(derivation: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    """Laws without a closed form, and those of the other sets where these are long together."""
+    without = {
+        u: law
+        for one in set_laws.found(derivation)
+        if one.branch == "stationary"
+        for u, law in zip(one.part.symbols, one.laws, strict=True)
+    }
+    every = set_laws.regularised_law(derivation)
+    closed = {u: law for u, law in every.items() if u not in without}
+    return without | closed if sum(map(sp.count_ops, closed.values())) > LONG else without
