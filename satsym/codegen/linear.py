@@ -8,7 +8,7 @@ from functools import lru_cache
 import sympy as sp
 
 from satsym.codegen.functions import Function, symbols
-from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.algebra import definitions_of, vanishes
 from satsym.symbolic.analysis import matrix_exponential, routh, spectrum
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.linear.matrices import analysable, coefficients_of, system_of
@@ -82,15 +82,12 @@ def _feedback(derivation: Derivation) -> list[Function]:
     system, s = system_of(derivation), symbols(derivation)
     n, m = system.b.shape
     coefficients = _coefficients(system.a - system.b * matrix_symbols("K", m, n))
-    found = [
-        _polynomial("closed_loop_polynomial", "det(s I - A + B K), highest power first.", "gain p", coefficients),
-        _polynomial(
-            "closed_loop_routh",
-            "First column of the Routh array of the closed loop; not finite where an element but the last vanishes.",
-            "gain p",
-            _regular_column(coefficients),
-        ),
-    ]
+    found = [_polynomial("closed_loop_polynomial", "det(s I - A + B K), highest power first.", "gain p", coefficients)]
+    if column := _regular_column(coefficients):
+        summary = (
+            "First column of the Routh array of the closed loop; not finite where an element but the last vanishes."
+        )
+        found.append(_polynomial("closed_loop_routh", summary, "gain p", column))
     if m <= MOST_INPUTS:
         p, q, r = (sp.Matrix(n, n, s.riccati), sp.Matrix(n, n, s.state_weight), sp.Matrix(m, m, s.control_weight))
         found.append(
@@ -112,11 +109,13 @@ def _coefficients(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, ...]:
 
 
 def _regular_column(coefficients: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """The first column of a Routh array without special cases."""
+    """The first column of a Routh array without special cases; empty where an element but the last vanishes always."""
     above, line = list(coefficients[0::2]), list(coefficients[1::2])
     column = [above[0]]
     while line:
         column.append(line[0])
+        if len(column) < len(coefficients) and vanishes(line[0]):
+            return []
         padded = [*line, *[sp.Integer(0)] * (len(above) - len(line))]
         below = [above[k] - above[0] * padded[k] / line[0] for k in range(1, len(above))]
         above, line = line, below[: max(len(above) - 1, 0)]

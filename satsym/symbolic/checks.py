@@ -1,4 +1,4 @@
-"""Numeric confirmation of symbolic results, at random points and with 30 digits."""
+"""Numeric confirmation of symbolic results at random points, where equal is what :mod:`satsym.agreement` calls so."""
 
 from __future__ import annotations
 
@@ -14,22 +14,19 @@ from typing import Any, TypeAlias
 import mpmath as mp
 import sympy as sp
 
+from satsym.agreement import DIGITS, LIMIT, Sides, disagreement, finite
 from satsym.spec import Variable
 from satsym.symbolic.algebra import LARGEST, PROVABLE, terms_of, vanishes
 from satsym.symbolic.derivation import Check, DerivationError
 from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
 from satsym.symbolic.roots import Root
 
-DIGITS = 30
-LIMIT = 1e-15
-"""Allowed relative deviation: far above what 30 digits and numeric differentiation leave, far below a mistake."""
-FAINT = 1e-10
-"""What is smaller is compared as if it were that large: it may be what numbers of size one leave when they cancel."""
 POINTS = 5
 TRIES = 60
-"""Random points at most, of which those are looked at where functions have numbers of a moderate size."""
-HUGE = 1e12
-"""Where numbers are larger, what is lost by cancellation may exceed :data:`LIMIT`."""
+"""Random points at most, of which those are looked at where functions have numbers."""
+
+LARGEST_SIZE = 3000
+"""Digits before the point of numbers that are differentiated."""
 
 _TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 
@@ -102,25 +99,14 @@ def numeric_along(
     return lambda point: function(*(point[s] for s in symbols)), symbols
 
 
-def deviation(found: Iterable[Any], expected: Iterable[Any]) -> float:
-    """Largest difference, relative to the size of what was expected and of the largest of it, but one at most.
-
-    NaN if any of them is.
-    """
-    pairs = list(zip(found, expected, strict=True))
-    unit = max(FAINT, min(1.0, _largest(abs(b) for _, b in pairs)))
-    return _largest(abs(a - b) / (unit + abs(b)) for a, b in pairs)
-
-
 def compare(
     claim: str,
     symbols: Iterable[sp.Symbol],
     sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]],
-    limit: float = LIMIT,
 ) -> Check:
-    """Check two routes to the same numbers at random points.
+    """Check two routes to the same numbers at random points; without symbols there is one point.
 
-    Points where the other route has no moderate numbers are passed over; the error is NaN where too few have them.
+    Points where the other route has no numbers are passed over; the error is NaN where too few are left.
 
     Parameters
     ----------
@@ -129,23 +115,35 @@ def compare(
     symbols
         What the points give values to.
     sides
-        Point -> (numbers by the derived expressions, the same numbers by the other route).
+        Point -> (numbers by the derived expressions, the same numbers by the other route), in the working precision of
+        mpmath. It must be a function of the point alone: what it draws at random it draws anew from the same seed.
     """
-    errors: list[float] = []
-    with mp.workdps(DIGITS):
-        for point in points(symbols, claim, TRIES):
-            found, expected = map(list, sides(point))
-            if not moderate(expected):
-                continue  # outside the domain, or where rounding hides what is to be compared
-            errors.append(deviation(found, expected))
-            if len(errors) == POINTS:
-                break
-    return Check(claim, _largest(errors) if len(errors) == POINTS else math.nan, limit)
+    chosen = list(symbols)
+    wanted, errors = POINTS if chosen else 1, list[float]()
+    for point in points(chosen, claim, TRIES if chosen else 1):
+        error = _where_finite(with_digits(sides, point))
+        if error is not None:
+            errors.append(error)
+        if len(errors) == wanted:
+            return Check(claim, _largest(errors), LIMIT)
+    return Check(claim, math.nan, LIMIT)
 
 
-def moderate(values: Iterable[Any]) -> bool:
-    """Whether all of these are numbers of which 30 digits tell something."""
-    return all(abs(value) <= HUGE for value in values)
+def _where_finite(at: Callable[[int], Sides]) -> float | None:
+    """The disagreement of two sides; ``None`` where the other one has no numbers."""
+    first = at(DIGITS)
+    return disagreement(lambda digits: first if digits == DIGITS else at(digits)) if finite(first[1]) else None
+
+
+def with_digits(sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]], point: Point) -> Callable[[int], Sides]:
+    """Both sides at a point as a function of the digits."""
+
+    def at(digits: int) -> Sides:
+        with mp.workdps(digits):
+            found, expected = sides(point)
+            return list(found), list(expected)
+
+    return at
 
 
 def first_order_at_zero(
@@ -173,16 +171,20 @@ def never_below(
     DerivationError
         If a margin is not a real number, as where the root of a negative state is taken.
     """
-    rng = random.Random(claim)
+
+    def below(point: Point) -> tuple[list[Any], list[Any]]:
+        rng = random.Random(f"{claim} {sorted((s.name, float(v)) for s, v in point.items())}")
+        found = [m if not m >= 0 else mp.mpf(0) for m in margins(point, rng)]
+        return found, [0] * len(found)
+
     try:
-        with mp.workdps(DIGITS):
-            deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
+        errors = [disagreement(with_digits(below, point)) for point in points(symbols, claim)]
     except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
             f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so, "
             "or say where the variables lie: Variable(..., typical=(low, high))"
         ) from error
-    return Check(claim, _largest(deficits), LIMIT)
+    return Check(claim, _largest(errors), LIMIT)
 
 
 def positive(claim: str, symbols: Iterable[sp.Symbol], expressions: Sequence[sp.Expr]) -> Check:
@@ -200,38 +202,20 @@ def _largest(values: Iterable[Any]) -> float:
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
     """Check that expressions are identically zero, by simplification where multiplying out does not show it.
 
-    Decimals are rounded when they are multiplied out: what has some is held against the size of its terms at random
-    points, and so is what has too many terms.
+    What has decimals, which are rounded when they are multiplied out, or too many terms is looked at in numbers.
     """
 
     def zero(e: sp.Expr) -> bool:
         terms = terms_of(e)
         if terms <= PROVABLE and sp.expand(e) == 0:
             return True
-        return _rounds_to_zero(claim, e) if terms > LARGEST or e.has(sp.Float) else vanishes(e)
+        if terms <= LARGEST and not e.has(sp.Float):
+            return vanishes(e)
+        value = numeric([e])
+        return compare(claim, e.free_symbols, lambda point: (value(point), [0])).passed
 
     remainders = [e for e in expressions if not zero(e)]
     return Check(claim, float(len(remainders)), 0.0)
-
-
-def _rounds_to_zero(claim: str, expression: sp.Expr) -> bool:
-    """Whether an expression with decimals is no larger at random points than the rounding of its terms."""
-    value = numeric([expression, _in_all(expression)])
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        found, size = value(point)
-        return [1 + found / size if size else 1], [1]
-
-    return compare(claim, expression.free_symbols, sides).passed
-
-
-def _in_all(expression: sp.Expr) -> sp.Expr:
-    """What the terms of an expression add up to by magnitude, multiplied out, before any cancel."""
-    if expression.is_Add or expression.is_Mul:
-        return expression.func(*map(_in_all, expression.args))
-    if expression.is_Pow and expression.exp.is_Integer and expression.exp.is_positive:
-        return _in_all(expression.base) ** expression.exp
-    return sp.Abs(expression)
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:
@@ -242,11 +226,16 @@ def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Poi
 def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
     """Numeric derivatives at zero of a vector function of one number, by central differences in high precision.
 
-    NaN where the function is so large that rounding hides how it changes.
+    Where the function is large, with as many digits more. NaN where it is so large that rounding hides how it changes.
     """
     digits = mp.mp.dps
     with mp.workdps(3 * digits):
         h = mp.mpf(10) ** (-digits)
-        above, below = function(h), function(-h)
-        readable = h * mp.mpf(10) ** (2 * digits + digits // 3)
-        return [(a - b) / (2 * h) if abs(a) < readable else mp.nan for a, b in zip(above, below, strict=True)]
+        sides = [function(h), function(-h)]
+        extra = max((mp.mag(v) for side in sides for v in side if mp.isfinite(v) and v), default=0) * 3 // 10
+    if digits < extra < LARGEST_SIZE:
+        with mp.workdps(3 * digits + extra):
+            sides = [function(h), function(-h)]
+    most = mp.mpf(10) ** (digits + digits // 3 + (extra if extra < LARGEST_SIZE else 0))
+    with mp.workdps(3 * digits):
+        return [(a - b) / (2 * h) if abs(a) < most else mp.nan for a, b in zip(*sides, strict=True)]

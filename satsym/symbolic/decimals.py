@@ -11,13 +11,14 @@ from typing import Any, TypeVar
 
 import sympy as sp
 
+from satsym.agreement import MOST
 from satsym.spec import Variable
 from satsym.symbolic.model import Model
 
 T = TypeVar("T")
 
-DIGITS = 60
-"""Twice as many as numbers have in checks."""
+DIGITS = 2 * MOST
+"""Twice as many as numbers have in checks at most."""
 
 CERTAIN = 50
 """Of these, how many are right after a few multiplications."""

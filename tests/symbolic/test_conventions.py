@@ -14,10 +14,11 @@ from satsym.codegen import module
 from satsym.report import artefacts
 from satsym.report.latex import document as latex
 from satsym.symbolic import Derivation, DerivationError, Problem, derive, loader
-from satsym.symbolic.checks import deviation, numeric, points
+from satsym.symbolic.checks import numeric, points
 from satsym.symbolic.model import Convention
 from satsym.symbolic.switching import functions as steps
 from tests.support import derived as shared
+from tests.support.distance import deviation
 from tests.support.switching_models import (
     CATALYST,
     FULLER,

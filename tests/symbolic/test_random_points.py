@@ -9,10 +9,11 @@ import mpmath as mp
 import pytest
 import sympy as sp
 
+from satsym.agreement import DIGITS
 from satsym.report.artefacts import generated
 from satsym.spec import Variable
 from satsym.symbolic import DerivationError, FirstOrder, Problem, derive, symbols_of
-from satsym.symbolic.checks import DIGITS, compare, drawn_from, numeric, partial, random_point
+from satsym.symbolic.checks import compare, drawn_from, numeric, partial, random_point
 
 STATES = (Variable("h", "h", "1", "height", positive=True), Variable("v", "v", "1", "speed"))
 CONTROLS = (Variable("u", "u", "1", "thrust"),)
@@ -97,7 +98,16 @@ def test_a_wrong_derivative_is_noticed_whatever_the_size_of_the_numbers(size: fl
     assert error(-2 * x * y) > 0.5
 
 
-def test_slopes_that_rounding_hides_are_no_numbers() -> None:
+@pytest.mark.parametrize(("term", "right"), [(u, True), (u * (1 + sp.Rational(1, 10**12)), False)])
+def test_slopes_beside_terms_of_any_size_are_told_right_from_wrong(term: sp.Expr, right: bool) -> None:
+    function, slope = numeric([sp.exp(40 * h) + u**2 / 2]), numeric([term])
+    found = compare("steep", {h, u}, lambda point: (slope(point), partial(function, point, u)))
+    assert found.passed == right
+
+
+def test_slopes_beside_numbers_of_any_size_are_numbers() -> None:
     with mp.workdps(DIGITS):
-        assert mp.isnan(partial(numeric([sp.exp(1000 * h) + u]), {h: mp.mpf(1), u: mp.mpf(1)}, u)[0])
-        assert partial(numeric([sp.exp(10 * h) + u]), {h: mp.mpf(1), u: mp.mpf(1)}, u)[0] == pytest.approx(1.0)
+        for size in (10, 1000, 5000):
+            slope = partial(numeric([sp.exp(size * h) + u]), {h: mp.mpf(1), u: mp.mpf(1)}, u)[0]
+            assert slope == pytest.approx(1.0, abs=1e-20)
+        assert mp.isnan(partial(numeric([sp.exp(10**5 * h) + u]), {h: mp.mpf(1), u: mp.mpf(1)}, u)[0])

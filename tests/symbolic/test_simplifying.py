@@ -8,9 +8,10 @@ import sympy as sp
 from sympy import cos, sin, sqrt
 
 from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, terms_of, tidy, vanishes
-from satsym.symbolic.checks import deviation, identity, numeric, points
+from satsym.symbolic.checks import identity, numeric, points
 from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.linear.matrices import right_half_plane
+from tests.support.distance import deviation
 
 x, y = sp.symbols("x y", positive=True)
 q = sp.Symbol("q", real=True)

@@ -24,11 +24,12 @@ from satsym.symbolic import (
     pipeline,
     symbols_of,
 )
-from satsym.symbolic.checks import deviation, numeric, points
+from satsym.symbolic.checks import numeric, points
 from satsym.symbolic.lookup.formulas import plain, to_tree
 from satsym.symbolic.minimisers import Shrink, Side, Switch
 from satsym.symbolic.switching import functions as steps
 from satsym.symbolic.switching import singular, singular_search
+from tests.support.distance import deviation
 from tests.support.switching_models import (
     CATALYST,
     FULLER,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from satsym.agreement import DIGITS, LIMIT
 from satsym.report.latex import tex
 from satsym.report.texts import Texts
 from satsym.symbolic import Check, Derivation
-from satsym.symbolic.checks import DIGITS, LIMIT, POINTS
+from satsym.symbolic.checks import POINTS
 
 BY_INSPECTION = frozenset({"declared", "dimensions agree"})
 """Claims that are checked term by term, not by calculation."""

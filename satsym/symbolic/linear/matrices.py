@@ -94,9 +94,6 @@ def too_many_letters(system: LinearSystem) -> bool:
     return system.a.rows * len(system.a.free_symbols) > MOST_LETTERS
 
 
-RANK_TOLERANCE = 1e-20
-"""Singular values below this part of the largest count as zero: rounding leaves 1e-30, a mistake none so small."""
-
 MOST_ITERATIONS = 100
 """Of Newton's method, which doubles the digits once it is near."""
 
@@ -120,13 +117,14 @@ def entries(matrices: Iterable[Any]) -> list[Any]:
 
 
 def numeric_rank(matrix: Any) -> int:
-    """The rank of a numeric matrix, by its singular values."""
+    """The rank of a numeric matrix: singular values count that two thirds of the digits tell from zero."""
     if not any(entries([matrix])):
         return 0
     wide = matrix if matrix.rows >= matrix.cols else matrix.T
     decomposed = mp.svd_c if any(mp.im(entry) for entry in entries([wide])) else mp.svd_r
     values = list(decomposed(mp.matrix(wide), compute_uv=False))
-    return sum(value > RANK_TOLERANCE * max(values) for value in values)
+    smallest = mp.mpf(10) ** (-2 * mp.mp.dps // 3) * max(values)
+    return sum(value > smallest for value in values)
 
 
 def sign_function(matrix: Any) -> Any:

@@ -19,7 +19,7 @@ from satsym.symbolic.analysis.field import sign_of
 from satsym.symbolic.analysis.spectrum import spectrum
 from satsym.symbolic.analysis.structure import controllability
 from satsym.symbolic.analysis.system import LinearSystem
-from satsym.symbolic.checks import DIGITS, LIMIT, Point, compare, numeric, points
+from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.matrices import analysable, entries, numeric_matrix, sign_function, system_of
@@ -227,21 +227,21 @@ def _invariant_subspace(so_far: Derivation, equation: sp.ImmutableMatrix, gain: 
     coupling, named, size = _values_of(so_far), ln.symmetric("P", states), len(states)
     matrix = so_far.equation("lqr_hamiltonian_matrix.matrix").rhs
     residual, whole, stated = (numeric_matrix(m.xreplace(coupling)) for m in (equation, matrix, gain))
-    a, b, rng, errors = numeric_matrix(system.a), numeric_matrix(system.b), random.Random("weights"), []
-    with mp.workdps(DIGITS):
-        for point in points(system.a.free_symbols | system.b.free_symbols, "invariant subspace"):
-            for letter, symbols in (("Q", states), ("R", controls)):
-                point |= _positive_definite(letter, symbols, rng)
-            # (sign M + 1) vanishes on the stable subspace, which the columns of (1; P) span
-            beyond = sign_function(whole(point)) + mp.eye(2 * size)
-            left, right = beyond[:, size:], beyond[:, :size]
-            p = -mp.inverse(left.T * left) * left.T * right
-            point |= {named[i, j]: p[i, j] for i in range(size) for j in range(i, size)}
-            closed = sign_function(a(point) - b(point) * stated(point))
-            scale = 1 + mp.mnorm(p, "f")
-            found = (residual(point) / scale, (p - p.T) / scale, closed + mp.eye(size))
-            errors += [mp.mnorm(m, "f") for m in found]
-    return Check("invariant subspace", float(max(errors)), LIMIT)
+    a, b, seed = numeric_matrix(system.a), numeric_matrix(system.b), sp.Dummy("weights", real=True)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        rng = random.Random(float(point[seed]))
+        for letter, symbols in (("Q", states), ("R", controls)):
+            point = point | _positive_definite(letter, symbols, rng)
+        # (sign M + 1) vanishes on the stable subspace, which the columns of (1; P) span
+        beyond = sign_function(whole(point)) + mp.eye(2 * size)
+        left, right = beyond[:, size:], beyond[:, :size]
+        p = -mp.inverse(left.T * left) * left.T * right
+        point |= {named[i, j]: p[i, j] for i in range(size) for j in range(i, size)}
+        closed = sign_function(a(point) - b(point) * stated(point))
+        return entries([residual(point), p, closed]), entries([mp.zeros(size), p.T, -mp.eye(size)])
+
+    return compare("invariant subspace", system.a.free_symbols | system.b.free_symbols | {seed}, sides)
 
 
 def _stationary_gain(so_far: Derivation, gain: sp.ImmutableMatrix) -> Check:

@@ -8,6 +8,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
+from satsym.agreement import DIGITS
 from satsym.symbolic.analysis.exponential import matrix_exponential as exponential_of
 from satsym.symbolic.analysis.jordan import jordan_form as jordan_of
 from satsym.symbolic.analysis.routh import RouthArray
@@ -15,7 +16,7 @@ from satsym.symbolic.analysis.routh import routh as routh_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.analysis.stability import Cause, Stability
 from satsym.symbolic.analysis.stability import stability as stability_of
-from satsym.symbolic.checks import DIGITS, Point, compare, numeric, points
+from satsym.symbolic.checks import Point, compare, numeric, points
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.matrices import (

@@ -6,13 +6,12 @@ import random
 from collections.abc import Iterable
 from typing import Any
 
-import mpmath as mp
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, shortest, simplified, tidy
-from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial, positive
+from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, positive
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
@@ -236,9 +235,8 @@ def _numeric_gradient_of(functions: list[sp.Expr], symbols: Iterable[sp.Symbol],
     """Compare derived partial derivatives (symbol by symbol, then function by function) with numeric ones."""
     values, slopes, by = numeric(functions), numeric(derived), list(symbols)
     everything = set(by).union(*(f.free_symbols for f in functions))
-    with mp.workdps(DIGITS):
-        return compare(
-            "numeric derivative",
-            everything,
-            lambda point: (slopes(point), [d for symbol in by for d in partial(values, point, symbol)]),
-        )
+    return compare(
+        "numeric derivative",
+        everything,
+        lambda point: (slopes(point), [d for symbol in by for d in partial(values, point, symbol)]),
+    )

@@ -128,11 +128,11 @@ def ordered(one: Minimum, point: Point) -> Point:
 
 
 def _slacks(one: Minimum, point: Point, law: dict[sp.Symbol, Any]) -> list[Any]:
-    """How far the law stays within the set; rounding may bring it to the limit."""
+    """How far the law stays within the set."""
     values = [law[u] for u in one.part.symbols]
     kind = bare(one.part.kind)
     limits = one.part.bounds[-1:] if kind == "ball" else one.part.bounds
-    return [s + mp.mpf(10) ** -20 for s in control_sets.slacks(kind, point, limits, values)]
+    return control_sets.slacks(kind, point, limits, values)
 
 
 def drawn(one: Minimum, point: Point, rng: random.Random) -> dict[sp.Symbol, Any]:

@@ -9,11 +9,14 @@ polynomial that is not convex, all places at which its slope vanishes are compar
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath as mp
 import sympy as sp
 
+from satsym.agreement import DIGITS, equal, finite
 from satsym.symbolic.algebra import tidy
-from satsym.symbolic.checks import DIGITS, moderate, numeric, points
+from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.principle.circle import by_circle
@@ -24,9 +27,6 @@ SAMPLES, CONTROLS = 10, 12
 
 INVERTED = 8
 """Operations of a function that sympy is asked to invert, at most."""
-
-ALIKE = 1e-15
-"""Controls that differ by less are the same."""
 
 PRINTED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
 
@@ -109,7 +109,7 @@ def indefinite(name: str, curvature: sp.Expr) -> bool:
     value = numeric([curvature])
     with mp.workdps(DIGITS):
         found = [value(point)[0] for point in points(curvature.free_symbols, f"{name} curvature", SAMPLES)]
-    return len({v > 0 for v in found if moderate([v]) and not mp.im(v)}) > 1
+    return len({v > 0 for v in found if finite([v]) and not mp.im(v)}) > 1
 
 
 def _of_polynomial(name: str, h: sp.Poly, u: sp.Symbol, ends: Ends) -> sp.Expr | None:
@@ -157,10 +157,11 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
         if solution.has(sp.I) or not all(isinstance(f, PRINTED) for f in solution.atoms(sp.Function)):
             continue
         back = numeric([solution])
-        with mp.workdps(DIGITS):
-            tried = list(points([u], f"inverse of {function}", CONTROLS))
-            missed = [back({value: there(point)[0]})[0] - point[u] for point in tried]
-        if all(abs(m) < ALIKE for m in missed):
+
+        def sides(point: Point, back: Any = back) -> tuple[list[Any], list[Any]]:
+            return back({value: there(point)[0]}), [point[u]]
+
+        if all(equal(with_digits(sides, p)) for p in points([u], f"inverse of {function}", CONTROLS)):
             return sp.Lambda(value, solution)
     return None
 
@@ -198,7 +199,7 @@ def _bends_down(name: str, u: sp.Symbol, bent: sp.Expr) -> bool:
             for control in controls
             for side in (1, -1)
         ]
-    return any(v < 0 for v in found if moderate([v]) and not mp.im(v))
+    return any(v < 0 for v in found if finite([v]) and not mp.im(v))
 
 
 def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
@@ -209,7 +210,7 @@ def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
         controls = [point[u] * 2 ** (k % 5 - 2) for k, point in enumerate(points([u], f"{name} {u}", CONTROLS))]
         for point in points(others, f"{name} {u}", SAMPLES):
             found = [curvature({**point, u: control})[0] for control in controls]
-            real = [v for v in found if moderate([v]) and not mp.im(v)]
+            real = [v for v in found if finite([v]) and not mp.im(v)]
             if len({v > 0 for v in real if v}) > 1:
                 raise DerivationError(
                     f"{name}: H is convex in {u} in some places and not in others, so that it may have several local "

@@ -10,18 +10,15 @@ through S + nu' psi.
 
 from __future__ import annotations
 
-import itertools
-import random
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, tidy
-from satsym.symbolic.checks import DIGITS, Point, compare, numeric
+from satsym.symbolic.checks import Point, compare, numeric, slopes
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.model import Model, symbols_of, t
@@ -93,34 +90,33 @@ def _first_variation(
 ) -> Check:
     """Hold the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
     residuals, cost, path = numeric([e.rhs for e in equations]), numeric([weighted]), numeric(list(curve))
-    rng, turns = random.Random("ends"), itertools.count()
+    dt, *moves = chosen = [sp.Dummy(f"delta {symbol.name}", real=True) for symbol in (t, *states)]
     stated = (weighted, *curve, *(e.rhs for e in equations))
-    everything = {*states, *lam, n.HAMILTONIAN, t}.union(*(sp.sympify(e).free_symbols for e in stated))
+    everything = {*states, *lam, *chosen, n.HAMILTONIAN, t}.union(*(sp.sympify(e).free_symbols for e in stated))
 
     def value(point: Point) -> Any:
         costates = sum(point[costate] * point[x] for x, costate in zip(states, lam, strict=True))
         return cost(point)[0] + point[n.HAMILTONIAN] * point[t] - costates
 
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        turn = next(turns)  # so every state is of each kind at some point
+    def variation(point: Point, turn: int) -> tuple[Any, Any]:
         kinds = [KINDS[(turn + i) % len(KINDS)] for i in range(len(states))]
-        dt, moves = rng.uniform(-1, 1), [rng.uniform(-1, 1) for _ in states]
-        chosen = {n.given(x): int(kind == "given") for x, kind in zip(states, kinds, strict=True)}
-        chosen |= {n.on_reference(x): int(kind == "reference") for x, kind in zip(states, kinds, strict=True)}
-        here = {**point, **chosen}
+        here = {**point, **{n.given(x): int(kind == "given") for x, kind in zip(states, kinds, strict=True)}}
+        here |= {n.on_reference(x): int(kind == "reference") for x, kind in zip(states, kinds, strict=True)}
         found = residuals(here)
         # The residual of a free state is lambda - S_x: what its variation multiplies, with the sign changed.
-        free = sum(f * dx for f, dx in zip(found[len(states) :], moves, strict=False))
-        with mp.workdps(3 * DIGITS):
-            step = mp.mpf(10) ** -DIGITS
-            values = []
-            for h in (step, -step):
-                end = {**here, t: here[t] + h * dt}
-                on_curve = zip(path(end), path(here), strict=True)
-                for x, kind, dx, (later, now) in zip(states, kinds, moves, on_curve, strict=True):
-                    end[x] = here[x] + {"given": 0, "reference": later - now, "free": h * dx}[kind]
-                values.append(value(end))
-            change = (values[0] - values[1]) / (2 * step)
-        return [found[-1] * dt - free], [change]
+        free = sum(f * point[dx] for f, dx in zip(found[len(states) :], moves, strict=False))
+
+        def moved(h: Any) -> list[Any]:
+            end = {**here, t: here[t] + h * point[dt]}
+            on_curve = zip(path(end), path(here), strict=True)
+            for x, kind, dx, (later, now) in zip(states, kinds, moves, on_curve, strict=True):
+                end[x] = here[x] + {"given": 0, "reference": later - now, "free": h * point[dx]}[kind]
+            return [value(end)]
+
+        return found[-1] * point[dt] - free, slopes(moved)[0]
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        both = [variation(point, turn) for turn in range(len(KINDS))]  # every state is of each kind once
+        return [found for found, _ in both], [change for _, change in both]
 
     return compare("change along admissible ends", everything, sides)

@@ -18,9 +18,6 @@ from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.functions import parts, written_out
 
-HALVINGS = 110
-"""Of the interval in which the curve is met: to more digits than are compared."""
-
 
 @dataclass(frozen=True)
 class Chain:
@@ -151,7 +148,7 @@ def _until(crossed: Callable[[Any], bool]) -> Any:
     early, late = mp.mpf(0), mp.mpf(1)
     while not crossed(late) and late < mp.mpf(2) ** 60:
         late *= 2
-    for _ in range(HALVINGS):
+    for _ in range(mp.mp.prec + 10):
         middle = (early + late) / 2
         early, late = (early, middle) if crossed(middle) else (middle, late)
     return late

@@ -19,7 +19,7 @@ import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
-from satsym.symbolic.checks import DIGITS, Point, compare, never_below, numeric
+from satsym.symbolic.checks import Point, compare, never_below, numeric, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.minimisers import Clip, Shrink, Switch
@@ -215,21 +215,18 @@ def along_extremals(
 ) -> Any:
     """Compare derived total time derivatives of functions with differences along the canonical equations."""
     rates = {z: rate.xreplace(dict(replaced or {})) for z, rate in flow(so_far).items()}
-    values, slopes, motion = numeric(list(functions)), numeric(list(derived)), numeric(list(rates.values()))
+    values, rate, motion = numeric(list(functions)), numeric(list(derived)), numeric(list(rates.values()))
     everything = {t, *rates, *symbols_of(so_far.model.controls)}
     everything |= set().union(*(sp.sympify(e).free_symbols for e in (*functions, *derived, *rates.values())))
-    return compare(claim, everything, lambda point: (slopes(point), directional(values, motion, list(rates), point)))
+    return compare(claim, everything, lambda point: (rate(point), directional(values, motion, list(rates), point)))
 
 
 def directional(values: Any, motion: Any, moving: Sequence[sp.Symbol], point: Point) -> list[Any]:
     """Central differences of functions along a motion, time included."""
-    with mp.workdps(3 * DIGITS):
-        h, speed = mp.mpf(10) ** (-DIGITS), motion(point)
-        ahead, behind = (
-            values({**point, t: point[t] + k, **{z: point[z] + k * v for z, v in zip(moving, speed, strict=True)}})
-            for k in (h, -h)
-        )
-        return [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
+    with mp.workdps(3 * mp.mp.dps):
+        speed = motion(point)
+    along = [(t, 1), *zip(moving, speed, strict=True)]
+    return slopes(lambda h: values({**point, **{z: point[z] + h * v for z, v in along}}))
 
 
 def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:

@@ -7,15 +7,13 @@ Applied Optimal Control, 3.5).
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
-import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
-from satsym.symbolic.checks import DIGITS, Point, compare, numeric
+from satsym.symbolic.checks import Point, compare, numeric, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension, over
@@ -79,22 +77,14 @@ def interior_conditions(so_far: Derivation) -> Step | None:
 def _first_variation(states: tuple[sp.Symbol, ...], adjoined: sp.Expr, jumps: list[Equation]) -> Check:
     """Hold the jumps against the change of what is adjoined along any dx and dt, by differences."""
     found, value = numeric([one.rhs for one in jumps]), numeric([adjoined])
-    rng = random.Random("points")
+    along = {x: sp.Dummy(f"delta {x.name}", real=True) for x in (t, *states)}
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         *of_costates, of_h = found(point)
-        moves, dt = [rng.uniform(-1, 1) for _ in states], rng.uniform(-1, 1)
-        left = sum(jump * dx for jump, dx in zip(of_costates, moves, strict=True)) - of_h * dt
-        with mp.workdps(3 * DIGITS):
-            step = mp.mpf(10) ** -DIGITS
-            ends = [
-                {**point, t: point[t] + h * dt, **{x: point[x] + h * dx for x, dx in zip(states, moves, strict=True)}}
-                for h in (step, -step)
-            ]
-            change = (value(ends[0])[0] - value(ends[1])[0]) / (2 * step)
-        return [left], [change]
+        left = sum(jump * point[along[x]] for jump, x in zip(of_costates, states, strict=True)) - of_h * point[along[t]]
+        return [left], slopes(lambda h: value({**point, **{x: point[x] + h * point[d] for x, d in along.items()}}))
 
-    return compare("change where a point is passed", {*states, t} | adjoined.free_symbols, sides)
+    return compare("change where a point is passed", {*along, *along.values()} | adjoined.free_symbols, sides)
 
 
 def names(problem: Problem) -> dict[str, str]:

@@ -1,0 +1,94 @@
+"""What "equal" means: two routes lead to the same number, however many digits it is computed with.
+
+Rounding leaves two numbers that are equal a small distance apart. How small depends on the terms that cancel on the
+way, so that no fixed limit tells it from a mistake. It does shrink with the digits of the computation, and a mistake
+does not. Numbers that agree to 20 of 30 digits are equal. Any others are computed again with twice the digits:
+
+- they differ if their distance stays;
+- they are equal as soon as they agree to 20 digits, or both vanish as the digits grow;
+- as long as the distance shrinks and neither is the case, the digits are doubled, up to :data:`MOST`.
+
+A mistake is seen if it changes the terms that are added by more than 1e-25 of them or so. Symbolic steps, generated
+text and loaded kernels are all held to this rule.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeAlias
+
+DIGITS = 30
+"""With which numbers are computed first."""
+
+MOST = 8 * DIGITS
+"""With which they are computed at most."""
+
+LIMIT = 1e-20
+"""Largest distance of equal numbers, relative to the larger one: two thirds of the digits."""
+
+FAINT, LEAST = 1e-60, 1e-240
+"""What is smaller than the first, times the largest number beside it, or than the second counts as zero.
+
+Differences do not resolve the one, and decimals that cancel leave the other.
+"""
+
+NEARLY, SURELY = 0.4, 1.0 / 6.0
+"""By which powers of ten, as shares of the digits, rounding shrinks at least when these have been doubled.
+
+That is half of them in arithmetic, and a third of that in routes that lose digits as they gain some.
+"""
+
+Sides: TypeAlias = tuple[Sequence[Any], Sequence[Any]]
+
+
+def disagreement(sides: Callable[[int], Sides]) -> float:
+    """How far apart the numbers of two routes are, relative to their size; at most :data:`LIMIT` where all are equal.
+
+    Parameters
+    ----------
+    sides
+        Digits -> the numbers of both routes, computed with these digits from the same exact arguments.
+
+    Returns
+    -------
+    The largest relative distance; NaN where a number is none.
+    """
+    digits, worst = DIGITS, 0.0
+    before: dict[int, tuple[Any, Any]] | None = None
+    while True:
+        pairs = list(zip(*sides(digits), strict=True))
+        faint = max(FAINT * max((_size(*pair) for pair in pairs), default=0), LEAST)
+        still: dict[int, tuple[Any, Any]] = {}
+        for k in range(len(pairs)) if before is None else before:
+            gap, size = abs(pairs[k][0] - pairs[k][1]), _size(*pairs[k])
+            if not gap < math.inf:
+                return math.nan
+            if gap <= faint:
+                continue
+            if gap <= LIMIT * size:
+                worst = max(worst, float(gap / size))
+            elif before is None:
+                still[k] = gap, size
+            elif gap > before[k][0] * 10.0 ** (-SURELY * digits):
+                return float(gap / size)
+            elif size > before[k][1] * 10.0 ** (-NEARLY * digits):
+                still[k] = gap, size
+        if not still or digits >= MOST:
+            return worst
+        before, digits = still, 2 * digits
+
+
+def equal(sides: Callable[[int], Sides]) -> bool:
+    """Whether the numbers of two routes are the same."""
+    return disagreement(sides) <= LIMIT
+
+
+def finite(values: Iterable[Any]) -> bool:
+    """Whether all of these are numbers."""
+    return all(abs(value) < math.inf for value in values)
+
+
+def _size(one: Any, other: Any) -> Any:
+    """Of the larger one of two numbers."""
+    return max(abs(one), abs(other))
