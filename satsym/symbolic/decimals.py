@@ -20,7 +20,7 @@ T = TypeVar("T")
 DIGITS = 2 * MOST
 """Twice as many as numbers have in checks at most."""
 
-CERTAIN = 50
+CERTAIN = 400
 """Of these, how many are right after a few multiplications."""
 
 
