@@ -91,18 +91,25 @@ def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
     """Rates of what vanishes along the extremal on the boundary of one constraint, and sizes of their terms."""
     law = _law(of)
     eta, push = of("path_multiplier", u=law)[which], of("path_gradient")[which]
-    moving, forced = of("dynamics", u=law), of("costate_rate", u=law) - eta * push
+    moving, falling = of("dynamics", u=law), of("costate_rate", u=law)
+    forced = falling - eta * push, np.abs(falling) + np.abs(eta * push)
     found, terms = _along_extremal(of, "path_vanishing", law, moving, forced)
     if of.has("boundary_control"):
         return found, terms
-    drift = _along_extremal(of, "stationarity", law, moving, forced)[0]
-    turning = -np.linalg.solve(np.moveaxis(of("control_hessian", u=law), -1, 0), drift.T[..., None])[..., 0].T
-    parts = of.slope("path_vanishing", "u", u=law) * turning
-    return found + parts.sum(axis=-2), terms + np.abs(parts).sum(axis=-2)
+    drift, sizes = _along_extremal(of, "stationarity", law, moving, forced)
+    flat = np.linalg.inv(np.moveaxis(of("control_hessian", u=law), -1, 0))
+    turning, most = (np.einsum("kij,jk->ik", m, d) for m, d in ((-flat, drift), (np.abs(flat), sizes)))
+    slope = of.slope("path_vanishing", "u", u=law)
+    return found + (slope * turning).sum(axis=-2), terms + (np.abs(slope) * most).sum(axis=-2)
 
 
-def _along_extremal(of: Evaluation, name: str, u: Array, moving: Array, forced: Array) -> tuple[Array, Array]:
-    """The rate of change of a function with states and costates, controls being held, and sizes of its terms."""
+def _along_extremal(
+    of: Evaluation, name: str, u: Array, moving: Array, forced: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    """The rate of change of a function with states and costates, controls being held, and sizes of its terms.
+
+    ``forced`` are the rates of the costates, and the sizes of the terms of these.
+    """
     by_state, terms = along(of, name, moving, u=u)
-    parts = of.slope(name, "lam", u=u) * forced
-    return by_state + parts.sum(axis=-2), terms + np.abs(parts).sum(axis=-2)
+    slope, (rates, sizes) = of.slope(name, "lam", u=u), forced
+    return by_state + (slope * rates).sum(axis=-2), terms + (np.abs(slope) * sizes).sum(axis=-2)
