@@ -16,7 +16,6 @@ from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle import product, set_laws
 
-
 LONG = 250
 """Operations of the laws of a problem above which they are named: thrust on equinoctial elements has 600, and the
 Jacobian of its canonical equations in one piece a million."""
