@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from satsym.analysis.linear.exactly import exact_matrices
 from satsym.analysis.linear.scaling import Scaled, scaled
 from satsym.analysis.linear.system import LinearSystem, system
 from satsym.arrays import Array
@@ -114,6 +115,7 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
             inputs=spec.control_names,
             outputs=names(spec.outputs),
             name=spec.name,
+            exact=exact_matrices(model, p, t0, point),
         ),
         constant=True,
         nonlinear=False,

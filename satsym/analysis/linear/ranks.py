@@ -1,9 +1,10 @@
 """Controllability and observability: ranks, what is out of reach, and Kalman's decomposition.
 
-Ranks are decided on the system in units that suit it (:mod:`satsym.analysis.linear.scaling`), by the staircase of
-singular value decompositions, which never forms A^k B: what the inputs move directly, what that moves, and so on. A
-singular value below ``TOLERANCE`` times the size of the system is zero. So the ranks are exactly those of a system
-that differs from the given one by less than that.
+Rational systems are decided exactly (:mod:`satsym.analysis.linear.rational`). Else ranks are decided on the system in
+units that suit it (:mod:`satsym.analysis.linear.scaling`), by the staircase of singular value decompositions, which
+never forms A^k B: what the inputs move directly, what that moves, and so on. A singular value below ``TOLERANCE`` times
+the size of the system is zero. So the ranks are exactly those of a system that differs from the given one by less than
+that.
 
 Sources: R. E. Kalman, Mathematical description of linear dynamical systems, SIAM J. Control 1 (1963);
 P. M. Van Dooren, The generalized eigenstructure problem in linear system theory, IEEE TAC 26 (1981);
@@ -17,8 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satsym.analysis.linear import rational
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.spectrum import Eigenvalue, of_roots, spectrum
 from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 
@@ -56,11 +58,14 @@ def controllability(given: LinearSystem) -> Reach:
         blocks.append(power)
 
     def reach(inputs: list[int], alone: Mapping[str, Reach]) -> Reach:
+        matrix = np.hstack([block[:, inputs] for block in blocks])
+        if given.exact is not None:
+            rank, roots = rational.reached(given.exact.A, given.exact.with_inputs(inputs).B)
+            return Reach(matrix, rank, of_roots(roots), alone)
         rank, _, form = staircase(fitted.A, fitted.B[:, inputs])
-        rest = form[rank:, rank:]
-        rest = np.where(np.abs(rest) > ROUNDING * len(form) * np.linalg.norm(fitted.A, 2), rest, 0.0)
-        lost = spectrum(rest * fitted.rate) if rank < len(form) else ()
-        return Reach(np.hstack([block[:, inputs] for block in blocks]), rank, lost, alone)
+        noise = ROUNDING * len(form) * float(np.linalg.norm(fitted.A, 2))
+        lost = spectrum(form[rank:, rank:] * fitted.rate, noise * fitted.rate) if rank < len(form) else ()
+        return Reach(matrix, rank, lost, alone)
 
     alone = {name: reach([j], {}) for j, name in enumerate(given.inputs)}
     return reach(list(range(len(given.inputs))), alone)
@@ -79,8 +84,9 @@ def _dual(found: Reach, n: int) -> Reach:
 
 def transposed(given: LinearSystem) -> LinearSystem:
     """The dual system: A', with outputs for inputs."""
+    exact = given.exact and given.exact.transposed()
     return LinearSystem(
-        given.A.T, given.C.T, given.B.T, given.D.T, given.states, given.outputs, given.inputs, given.name
+        given.A.T, given.C.T, given.B.T, given.D.T, given.states, given.outputs, given.inputs, given.name, exact
     )
 
 

@@ -48,6 +48,11 @@ class Routh:
         return tuple(row[0] for row in self.rows)
 
     @property
+    def rounded(self) -> Routh:
+        """The array in floats."""
+        return replace(self, rows=tuple(tuple(map(float, row)) for row in self.rows))
+
+    @property
     def special_case(self) -> str | None:
         """The special cases in words, each once; ``None`` where there is none."""
         return " and ".join(dict.fromkeys(self.special_cases)) or None
@@ -82,8 +87,7 @@ def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -
     found = _array(given, CANCELLED)
     if (found.sign_changes, found.on_axis) == (right, on_axis):
         return found
-    nearby = _array(_with_roots(given[0], roots), 0.0)
-    return replace(nearby, rows=tuple(tuple(map(float, row)) for row in nearby.rows))
+    return _array(_with_roots(given[0], roots), 0.0).rounded
 
 
 def _roots(coefficients: Sequence[float]) -> list[complex]:

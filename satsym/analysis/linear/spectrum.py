@@ -1,43 +1,38 @@
-"""Eigenvalues with their multiplicities and Jordan blocks, decided numerically with stated tolerances.
+"""Eigenvalues with their multiplicities and Jordan blocks: decided exactly, or by how far a matrix is from others.
 
-An eigenvalue of algebraic multiplicity m comes out of any algorithm as m numbers, up to the m-th root of the rounding
-error apart; their mean is accurate. Neighbours are therefore tried as one eigenvalue s, and kept together only if the
-null spaces of A - s, (A - s)^2, ... together have m dimensions. These dimensions also tell the Jordan blocks (Weyr's
-characteristic); they are found by deflation, never by forming powers (Golub and Wilkinson, SIAM Review 18, 1976).
-
-Not tried are numbers that stand alone: those which relative errors of the entries of A, and the rounding errors of the
-algorithm, move by much less than what parts them from all others. A slow motion beside a fast one, as that of a
-satellite beside its wheel's in sprung gimbals, has eigenvalues that are next to zero for the matrix, and well known.
+Rational matrices are decided exactly (:mod:`satsym.analysis.linear.rational`). So are floats, as the fractions that
+they are; but each of their entries may have been rounded, and a multiple eigenvalue of what was meant is then several
+that are next to one another. Neighbours are therefore tried as one, and so are real parts as zero, and it counts how
+large relative changes of the entries must be for that (:mod:`satsym.analysis.linear.nearby`): up to ``ROUNDING`` it is
+so, from ``KNOWN`` on it is not, and in between nobody can tell.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.analysis.linear import rational
+from satsym.analysis.linear.nearby import BITS, Group, group
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.system import system
+from satsym.analysis.linear.system import LinearSystem, system
 from satsym.arrays import Array
 
-NULL = 1e-9
-"""A singular value below this, relative to the size of the matrix, is zero: so eigenvalues that are nearer to one
-another are taken for one."""
+ROUNDING, KNOWN = 2e-15, 1e-12
+"""Relative changes of all entries together: below the first they come from rounding, above the second they do not."""
 
-SPREAD = 1e-12
-"""The m numbers that stand for an eigenvalue of multiplicity m are at most the m-th root of this apart."""
+FAINT = 1e-15
+"""An entry that is smaller than this, relative to the largest in suitable units, may be what rounding has left of
+zero."""
 
-AXIS = 1e-11
-"""A real or imaginary part below this, relative to the size of the matrix, is zero."""
+DISTANT = 1e-4
+"""The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
 
-
-ENTRIES, ROUNDING = 1e-12, 1e-15
-"""Errors of the entries, relative to each, and of the algorithm, relative to the matrix."""
-
-ALONE = 30.0
-"""An eigenvalue that is so many times farther from all others than these errors move it stands alone."""
+Values = NDArray[np.complexfloating]
 
 
 @dataclass(frozen=True)
@@ -45,7 +40,7 @@ class Eigenvalue:
     """An eigenvalue of a matrix."""
 
     value: complex
-    """Exactly real, or exactly on the imaginary axis, where it is so within the tolerance."""
+    """Exactly real, or exactly on the imaginary axis, where it is so."""
     blocks: tuple[int, ...]
     """Sizes of its Jordan blocks, the largest first."""
 
@@ -60,90 +55,124 @@ class Eigenvalue:
         return len(self.blocks)
 
 
-def spectrum(A: Array) -> tuple[Eigenvalue, ...]:
+def spectrum(A: Array, noise: float = 0.0) -> tuple[Eigenvalue, ...]:
     """Eigenvalues of a real square matrix, the largest real part first.
 
     Parameters
     ----------
     A
         Shape (n, n), in any units.
+    noise
+        Errors of all entries alike, beside rounding.
     """
-    fitted = scaled(system(A))
-    size = float(np.exp2(np.rint(np.log2(np.linalg.norm(fitted.A, 2) or 1.0))))  # a power of two adds no error
-    numbers, alone = _alone(fitted.A / size)
-    rest = numbers[~alone]
-    groups = [(complex(value), [1]) for value in numbers[alone]]
-    groups += _told_apart(_without(fitted.A / size, numbers, alone), rest, _tree(rest)) if len(rest) else []
-    found = [
-        Eigenvalue(_clean(value) * size * fitted.rate, tuple(sum(added > i for added in weyr) for i in range(weyr[0])))
-        for value, weyr in groups
-    ]
+    return spectra(system(A), noise)[0]
+
+
+def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, ...], ...]:
+    """What the eigenvalues of a system may be: one possibility, or more where its entries are not known well enough.
+
+    The first takes for equal, or zero, whatever may be.
+    """
+    if given.exact is not None:
+        return (of_roots(rational.roots(given.exact.A)),)
+    from flint import ctx
+
+    fitted = scaled(given)
+    A, size = fitted.A, np.abs(fitted.A)
+    errors = noise * fitted.states / fitted.states[:, None] / fitted.rate
+    with ctx.workprec(BITS):
+        known = _Tried(A, np.maximum(size, errors / ROUNDING))
+        possible = [known.within(change, fitted.rate) for change in (KNOWN, ROUNDING)]
+        faint = (size <= FAINT * size.max()) & (size > 0.0)
+        if faint.any():
+            doubtful = _Tried(A, np.where(faint, size / (ROUNDING / 2), known.entries), known)
+            possible = [*(doubtful.within(change, fitted.rate) for change in (KNOWN, ROUNDING)), *possible]
+    told = [[(each.blocks, np.sign(each.value.real)) for each in one] for one in possible]
+    return tuple(one for k, one in enumerate(possible) if told[k] not in told[:k])
+
+
+def of_roots(found: Sequence[rational.Root]) -> tuple[Eigenvalue, ...]:
+    """Exact eigenvalues, rounded."""
+    return _sorted([Eigenvalue(root.rounded, root.blocks) for root in found])
+
+
+def _sorted(found: list[Eigenvalue]) -> tuple[Eigenvalue, ...]:
     return tuple(sorted(found, key=lambda each: (-each.value.real, abs(each.value.imag), -each.value.imag)))
 
 
-def _alone(A: Array) -> tuple[NDArray[np.complexfloating], NDArray[np.bool_]]:
-    """Eigenvalues of a matrix of size 1, and which of them are simple beyond doubt."""
-    from scipy.linalg import eig
+class _Tried:
+    """A matrix of floats, its exact eigenvalues, and what has been tried as one."""
 
-    numbers, left, right = eig(A, left=True, right=True)
-    apart = np.abs(numbers[:, None] - numbers) + np.diag(np.full(len(A), np.inf))
-    entries = ENTRIES * np.einsum("ij,ik,kj->j", np.abs(left), np.abs(A), np.abs(right))
-    overlap = np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    by_entries = np.divide(entries, overlap, out=np.where(entries > 0.0, np.inf, 0.0), where=overlap > 0.0)
-    # what is zero because of where A has no entries is so for the algorithm, too
-    by_both = by_entries + np.divide(ROUNDING, overlap, out=np.full(len(A), np.inf), where=overlap > ROUNDING)
-    far = apart > np.maximum(NULL, ALONE * np.maximum(by_both[:, None], by_entries))
-    return numbers, far.all(axis=1)
+    def __init__(self, A: Array, entries: Array, other: _Tried | None = None) -> None:
+        self.A, self.entries = A, entries
+        self.roots: list[rational.Root] = other.roots if other else rational.roots(rational.matrix(A))
+        self.exact = [root.value for root in self.roots for _ in range(sum(root.blocks))]
+        self.which = [k for k, root in enumerate(self.roots) for _ in range(sum(root.blocks))]
+        self.numbers: Values = np.array([rational.nearest(value) for value in self.exact])
+        self.size = float(np.linalg.norm(A, 2)) or 1.0
+        self.groups: dict[tuple[int, ...], tuple[Group, float, float]] = {}
+
+    def within(self, change: float, rate: float) -> tuple[Eigenvalue, ...]:
+        """The eigenvalues if relative changes of this size are none."""
+        found = []
+        for members in self._told_apart(_tree(self.numbers), change):
+            value, blocks = self._one(members, change)
+            found.append(Eigenvalue(value * rate, blocks))
+            if not self._closed(members):
+                found.append(Eigenvalue(value.conjugate() * rate, blocks))
+        return _sorted(found)
+
+    def _one(self, members: tuple[int, ...], change: float) -> tuple[complex, tuple[int, ...]]:
+        same = len({self.which[k] for k in members}) == 1
+        exact = self.roots[self.which[members[0]]]
+        if same and (exact.value.real == 0 or abs(exact.rounded.real) > DISTANT * self.size) and len(members) == 1:
+            return exact.rounded, exact.blocks
+        tried, _, off_axis = self._tried(members)
+        value = rational.nearest(tried.mean)
+        value = complex(0.0 if off_axis <= change else value.real, 0.0 if self._closed(members) else value.imag)
+        return value, tried.blocks(change) if len(members) > 1 else (1,)
+
+    def _told_apart(self, tree: Any, change: float) -> Iterator[tuple[int, ...]]:
+        """Members of each eigenvalue; of two conjugate ones that above the real axis alone."""
+        members = tuple(sorted(tree.pre_order()))
+        if self._one_sided(members) < 0:
+            return
+        exact = len({self.which[k] for k in members}) == 1
+        if exact or (self._plausible(members) and self._tried(members)[1] <= change):
+            yield members
+            return
+        for branch in (tree.left, tree.right):
+            yield from self._told_apart(branch, change)
+
+    def _plausible(self, members: tuple[int, ...]) -> bool:
+        together = self.numbers[list(members)]
+        near = np.abs(together - together.mean()).max() <= DISTANT ** (1.0 / len(members)) * self.size
+        return bool(near) and (self._closed(members) or self._one_sided(members) > 0)
+
+    def _one_sided(self, members: Sequence[int]) -> int:
+        signs = np.sign(self.numbers[list(members)].imag)
+        return int(signs[0]) if (signs == signs[0]).all() else 0
+
+    def _closed(self, members: Sequence[int]) -> bool:
+        """Whether each of these is real, or has its conjugate among them."""
+        return abs(sum(np.sign(self.numbers[list(members)].imag))) == 0
+
+    def _tried(self, members: tuple[int, ...]) -> tuple[Group, float, float]:
+        """The group, how far its members are apart and how far their mean is off the axis."""
+        if members not in self.groups:
+            inside = [self.exact[k] for k in members]
+            outside = [self.exact[k] for k in range(len(self.exact)) if k not in members]
+            found = group(self.A, self.entries, inside, outside)
+            apart = 0.0 if len({self.which[k] for k in members}) == 1 else found.apart()
+            self.groups[members] = found, apart, found.off_axis()
+        return self.groups[members]
 
 
-def _without(A: Array, numbers: NDArray[np.complexfloating], alone: NDArray[np.bool_]) -> Array:
-    """The matrix on the invariant subspace of the eigenvalues that do not stand alone."""
-    if not alone.any():
-        return A
-    from scipy.linalg import schur
-
-    form, _, count = schur(A, sort=lambda re, im: not alone[np.abs(numbers - complex(re, im)).argmin()])
-    return np.asarray(form[:count, :count])
-
-
-def _tree(numbers: NDArray[np.complexfloating]) -> Any:
+def _tree(numbers: Values) -> Any:
     """The numbers joined nearest first, as a binary tree."""
-    if len(numbers) == 1:
-        return None
-    from scipy.cluster.hierarchy import linkage, to_tree
+    from scipy.cluster.hierarchy import ClusterNode, linkage, to_tree
 
+    if len(numbers) == 1:
+        return ClusterNode(0)
     pairs = np.triu_indices(len(numbers), 1)
     return to_tree(linkage(np.abs(numbers[:, None] - numbers)[pairs], "single"))
-
-
-def _told_apart(A: Array, numbers: NDArray[np.complexfloating], tree: Any) -> list[tuple[complex, list[int]]]:
-    """Eigenvalues among these numbers, each with the dimensions that each power of A - s adds to its null space."""
-    if tree is None or tree.is_leaf():
-        return [(complex(numbers[0 if tree is None else tree.id]), [1])]
-    together = numbers[tree.pre_order()]
-    mean, count = complex(together.mean()), len(together)
-    if np.abs(together - mean).max() <= SPREAD ** (1.0 / count):
-        weyr = _weyr(A, _clean(mean))
-        if sum(weyr) == count:
-            return [(mean, weyr)]
-    return [found for branch in (tree.left, tree.right) for found in _told_apart(A, numbers, branch)]
-
-
-def _weyr(A: Array, value: complex) -> list[int]:
-    """By how much each power of A - s enlarges the null space."""
-    rest = A - value * np.eye(len(A)) if value.imag else A - value.real * np.eye(len(A))
-    found: list[int] = []
-    while len(rest):
-        _, singular, right = np.linalg.svd(rest)
-        rank = int((singular > NULL).sum())
-        if rank == len(rest):
-            break
-        found.append(len(rest) - rank)
-        kept = right[:rank]
-        rest = kept @ rest @ kept.conj().T
-    return found
-
-
-def _clean(value: complex) -> complex:
-    real = value.real if abs(value.real) > AXIS else 0.0
-    return complex(real, value.imag if abs(value.imag) > AXIS else 0.0)

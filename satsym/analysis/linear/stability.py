@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from satsym.analysis.linear.spectrum import Eigenvalue
 
 ASYMPTOTIC, MARGINAL, UNSTABLE = "asymptotically stable", "marginally stable", "unstable"
+UNDECIDED = "undecided"
 
 
 @dataclass(frozen=True)
@@ -15,7 +16,8 @@ class Stability:
     """A verdict on x' = A x."""
 
     verdict: str | None
-    """``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``None`` where nothing decides."""
+    """``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``"undecided"`` where the entries of the
+    matrix are not known well enough, and ``None`` where eigenvalues decide nothing."""
     reason: str
     """In a sentence: the eigenvalue that decides, and why."""
     decides: bool
@@ -23,14 +25,23 @@ class Stability:
     linearisation of (Lyapunov's indirect method): not where eigenvalues on the imaginary axis had to decide."""
 
 
-def stability(eigenvalues: Sequence[Eigenvalue]) -> Stability:
+def stability(eigenvalues: Sequence[Eigenvalue], *others: Sequence[Eigenvalue]) -> Stability:
     """The verdict that eigenvalues and Jordan blocks give.
 
     Parameters
     ----------
-    eigenvalues
-        As :func:`satsym.analysis.linear.spectrum.spectrum` gives them.
+    eigenvalues, *others
+        What they may be, as :func:`satsym.analysis.linear.spectrum.spectra` gives it; if two of these possibilities
+        have different verdicts, none is given.
     """
+    found = [_one(each) for each in (eigenvalues, *others)]
+    if len({each.verdict for each in found}) == 1:
+        return found[0]
+    listed = "; or ".join(f"{each.verdict}: {each.reason}" for each in found)
+    return Stability(UNDECIDED, f"the entries are not known well enough to decide. Either {listed}", False)
+
+
+def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
     rightmost = max(eigenvalues, key=lambda each: each.value.real)
     if rightmost.value.real > 0.0:
         return Stability(UNSTABLE, f"the eigenvalue {shown(rightmost.value)} has a positive real part", True)

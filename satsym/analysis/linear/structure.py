@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from satsym.analysis.linear import rational
 from satsym.analysis.linear.equilibrium import Linearisation, linearise
 from satsym.analysis.linear.modes import Mode, modes
 from satsym.analysis.linear.polynomials import characteristic
 from satsym.analysis.linear.ranks import Reach, controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
-from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.spectrum import Eigenvalue, spectra
 from satsym.analysis.linear.stability import Stability, stability
+from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
@@ -43,25 +48,38 @@ def analyse(subject: Kernels | Instance) -> Analysis:
     """
     about = linearise(subject)
     system = about.system
-    eigenvalues, polynomial = spectrum(system.A), characteristic(system.A)
+    possible = spectra(system)
+    eigenvalues = possible[0]
+    polynomial, array = _polynomial(system, eigenvalues)
     return Analysis(
         about=about,
         eigenvalues=eigenvalues,
         modes=modes(about, eigenvalues),
         polynomial=polynomial,
-        routh=routh(polynomial.tolist(), [each.value for each in eigenvalues for _ in range(each.algebraic)]),
-        stability=_verdict(about, eigenvalues),
+        routh=array,
+        stability=_verdict(about, possible),
         controllability=controllability(system) if system.inputs else None,
         observability=observability(system) if system.outputs else None,
     )
 
 
-def _verdict(about: Linearisation, eigenvalues: tuple[Eigenvalue, ...]) -> Stability:
+def _polynomial(given: LinearSystem, eigenvalues: Sequence[Eigenvalue]) -> tuple[Array, Routh]:
+    """Characteristic polynomial and Routh array, both exact and then rounded where the system is known exactly."""
+    if given.exact is None:
+        polynomial = characteristic(given.A)
+        return polynomial, routh(
+            polynomial.tolist(), [each.value for each in eigenvalues for _ in range(each.algebraic)]
+        )
+    coefficients = rational.characteristic(given.exact.A)
+    return np.array(coefficients, dtype=float), routh(coefficients).rounded
+
+
+def _verdict(about: Linearisation, possible: Sequence[Sequence[Eigenvalue]]) -> Stability:
     """The verdict of the eigenvalues, unless they decide nothing."""
     if not about.constant:
         reason = "the coefficients depend on time, and eigenvalues at one time decide nothing"
         return Stability(None, reason, False)
-    found = stability(eigenvalues)
+    found = stability(*possible)
     if found.decides or not about.nonlinear:
         return found
     reason = f"{found.reason}; of the nonlinear motion the linearisation alone decides nothing"

@@ -15,6 +15,8 @@ from satsym.wording import shown, suggestion
 if TYPE_CHECKING:
     import control
 
+    from satsym.analysis.linear.rational import Rational
+
 from satsym.arrays import Array
 
 
@@ -33,6 +35,8 @@ class LinearSystem:
     """Their names, n, m and k of them."""
     name: str = ""
     """What it is the linearisation of."""
+    exact: Rational | None = None
+    """A, B and C exactly, where they are known so."""
 
     def with_inputs(self, names: Sequence[str]) -> LinearSystem:
         """The system with these inputs alone, in this order.
@@ -48,11 +52,12 @@ class LinearSystem:
                     f"input {shown(name)}: the system has none of this name; {suggestion(name, self.inputs)}"
                 )
         columns = [self.inputs.index(name) for name in names]
-        return replace(self, B=self.B[:, columns], D=self.D[:, columns], inputs=tuple(names))
+        exact = self.exact and self.exact.with_inputs(columns)
+        return replace(self, B=self.B[:, columns], D=self.D[:, columns], inputs=tuple(names), exact=exact)
 
     def with_feedback(self, K: Array) -> LinearSystem:
         """The closed loop under u = v - K x, with v for u: A becomes A - B K, and C becomes C - D K."""
-        return replace(self, A=self.A - self.B @ K, C=self.C - self.D @ K)
+        return replace(self, A=self.A - self.B @ K, C=self.C - self.D @ K, exact=None)
 
     def transition(self, t: float) -> Array:
         """e^(At): the state after a time t without control, from each unit state; shape (n, n)."""
@@ -94,6 +99,7 @@ def system(
     inputs: Sequence[str] = (),
     outputs: Sequence[str] = (),
     name: str = "",
+    exact: Rational | None = None,
 ) -> LinearSystem:
     """A linear system from matrices.
 
@@ -111,6 +117,8 @@ def system(
         Names; by default x1, x2, ...; u1, ...; y1, ...
     name
         Of the system.
+    exact
+        The same exactly, where that is known.
 
     Raises
     ------
@@ -138,6 +146,7 @@ def system(
         tuple(inputs) or _numbered("u", m),
         tuple(outputs) or _numbered("y", k),
         name,
+        exact,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +17,7 @@ from satsym.symbolic.analysis.routh import routh as routh_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.analysis.stability import Cause, Stability
 from satsym.symbolic.analysis.stability import stability as stability_of
-from satsym.symbolic.checks import Point, compare, numeric, points
+from satsym.symbolic.checks import POINTS, Point, compare, numeric, points
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.matrices import (
@@ -29,8 +30,8 @@ from satsym.symbolic.linear.matrices import (
 )
 from satsym.symbolic.model import t
 
-EARLY, LATE = 100, 10_000
-"""Times between which growth is measured."""
+EARLY, LATE, LATE_DIGITS = 30, 60, 720
+"""Decimal powers of the times between which growth is measured, and digits that do for matrices of eight states."""
 DECISIVE = 50.0
 """A power of time that only exponential growth exceeds."""
 TOLERANCE = 0.4
@@ -149,11 +150,15 @@ def _multiplicities(of: Spectrum) -> list[Check]:
 
 
 def _growth(of: Spectrum, verdict: Stability) -> Check:
-    """How the norm of e^(At) grows between two times, against what the verdict says."""
-    a, errors = numeric_matrix(of.field.matrix(of.matrix)), []
-    for point in points(_symbols(of), "growth"):
-        early, late = (mp.log(mp.mnorm(mp.expm(a(point) * time), "f")) for time in (EARLY, LATE))
-        power = float((late - early) / mp.log(mp.mpf(LATE) / EARLY))
+    """How the norm of e^(At) grows between two times, against what the verdict says.
+
+    The times are late for any eigenvalue that is not zero, so that nothing but the power of time is left where it is
+    that which grows; numbers have as many digits as this takes.
+    """
+    a, symbols, errors = numeric_matrix(of.field.matrix(of.matrix)), _symbols(of), []
+    for point in points(symbols, "growth", POINTS if symbols else 1):
+        with mp.workdps(LATE_DIGITS):
+            power = _power(a(point))
         if verdict.cause is Cause.RIGHT:
             errors.append(0.0 if power > DECISIVE else 1.0)
         elif verdict.cause is Cause.LEFT:
@@ -161,6 +166,18 @@ def _growth(of: Spectrum, verdict: Stability) -> Check:
         else:
             errors.append(abs(power - (verdict.block - 1)))
     return Check("growth", max(errors), TOLERANCE)
+
+
+def _power(matrix: Any) -> float:
+    """The power of time by which the norm of e^(At) grows late."""
+    from flint import arb, arb_mat, ctx
+
+    with ctx.workprec(int(LATE_DIGITS * math.log2(10.0))):
+        exact, norms = arb_mat(matrix.rows, matrix.cols, [arb(mp.mpf(e)) for e in entries([matrix])]), []
+        for digits in (EARLY, LATE):
+            found = (exact * arb(10) ** digits).exp().entries()
+            norms.append(sum((entry * entry for entry in found), arb(0)).log() / 2)
+        return float((norms[1] - norms[0]) / (arb(10) ** (LATE - EARLY)).log())
 
 
 def _count(of: Spectrum, found: RouthArray) -> Check:
