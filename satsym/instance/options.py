@@ -32,7 +32,7 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
 
 
 def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
-    """Weights as full matrices, checked for shape, symmetry and sign."""
+    """Weights as full matrices, checked for shape and symmetry, and the sign of R."""
     if table is None:
         return None
     inputs = spec.control_names if table.inputs is None else table.inputs
@@ -47,14 +47,14 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
     if horizon is not None and horizon <= 0:
         raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; write a length of time, or remove it")
     Q, R = _weights(table, spec, [spec.controls[spec.control_names.index(name)] for name in inputs])
-    q, r = weights.checked(Q, R, len(spec.states), len(inputs))
-    return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon, relative=bool(table.allowed))
+    q, r, n = weights.checked(Q, R, table.N, len(spec.states), len(inputs))
+    return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon, relative=bool(table.allowed), N=n)
 
 
 def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> tuple[Weights, Weights]:
     """Q and R as they were written, or from the deviations that are allowed."""
     if table.allowed:
-        for name, given in (("Q", table.Q), ("R", table.R)):
+        for name, given in (("Q", table.Q), ("R", table.R), ("N", table.N)):
             if given is not None:
                 raise BadInput(f"[lqr] {name}: [lqr.allowed] gives the weights already; remove one of the two")
         return weights.from_allowed(table.allowed, spec.states, inputs)

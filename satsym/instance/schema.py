@@ -38,6 +38,7 @@ Ends = Annotated[
 Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
+Rows = Annotated[list[list[float]], Meta(description="a list of rows of numbers")]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
 Spread = Annotated[str | dict[str, str], Meta(description='text such as "0.9:1.1:50"')]
 Variations = dict[str, Spread]
@@ -104,8 +105,9 @@ class TimeTable(_Table, frozen=True):
 
 
 class LqrTable(_Table, frozen=True):
-    Q: Annotated[Matrix | None, Key("weights of the states, in x'Qx + u'Ru", REGULATING, "1")] = None
+    Q: Annotated[Matrix | None, Key("weights of the states, in x'Qx + 2x'Nu + u'Ru", REGULATING, "1")] = None
     R: Annotated[Matrix | None, Key("weights of the inputs", REGULATING, "1")] = None
+    N: Annotated[Rows | None, Key("cross weights, a row for each state; without it zero", REGULATING, "1")] = None
     allowed: Annotated[
         dict[str, Quantity],
         Key("a deviation that counts as one, in place of Q and R", REGULATING, "the model's", "STATE or CONTROL"),

@@ -40,12 +40,12 @@ class BoundedNorm:
 
 @dataclass(frozen=True)
 class LqrOptions:
-    """What a linear-quadratic regulator minimises: the integral of x'Qx + u'Ru, without a factor 1/2.
+    """What a linear-quadratic regulator minimises: the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
 
     Parameters
     ----------
     Q
-        State weights, n rows of n; symmetric, positive semidefinite.
+        State weights, n rows of n; symmetric.
     R
         Weights of the active inputs, one row each; symmetric, positive definite.
     inputs
@@ -54,6 +54,8 @@ class LqrOptions:
         Length of time, ``None`` for an infinite one.
     relative
         Whether what is weighed counts relative to allowed deviations, as a plain number.
+    N
+        Cross weights, n rows with a number for each active input; ``None`` where they are zero.
     """
 
     Q: tuple[Row, ...]
@@ -61,6 +63,7 @@ class LqrOptions:
     inputs: tuple[str, ...]
     horizon: float | None = None
     relative: bool = False
+    N: tuple[Row, ...] | None = None
 
 
 @dataclass(frozen=True)

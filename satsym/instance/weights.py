@@ -17,28 +17,48 @@ ROUNDING = 1e-12
 
 
 def checked(
-    Q: Sequence[float | Sequence[float]], R: Sequence[float | Sequence[float]], states: int, inputs: int
-) -> tuple[Matrix, Matrix]:
-    """Both weights as full matrices.
+    Q: Sequence[float | Sequence[float]],
+    R: Sequence[float | Sequence[float]],
+    N: Sequence[float | Sequence[float]] | None,
+    states: int,
+    inputs: int,
+) -> tuple[Matrix, Matrix, Matrix | None]:
+    """All weights as full matrices.
 
     Parameters
     ----------
     Q, R
         Rows, or the diagonal.
+    N
+        Rows, or ``None`` for zero.
     states, inputs
         How many there are.
 
     Raises
     ------
     BadInput
-        If a shape does not fit, a matrix is not symmetric, Q is indefinite or R is not positive definite.
+        If a shape does not fit, Q or R is not symmetric or R is not positive definite.
     """
     q, r = _matrix(Q, states, "Q"), _matrix(R, inputs, "R")
-    if _smallest_eigenvalue(q) < -ROUNDING:
-        raise BadInput("[lqr] Q: not positive semidefinite, so cost has no lower bound; write weights of at least 0")
-    if _smallest_eigenvalue(r) <= ROUNDING:
+    if smallest_eigenvalue(r) <= ROUNDING:
         raise BadInput("[lqr] R: not positive definite, so some input costs nothing; write weights above 0")
-    return q, r
+    return q, r, None if N is None else _cross(N, states, inputs)
+
+
+def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) -> Matrix:
+    """The cross weights, a row for each state."""
+    found = tuple(tuple(row) if isinstance(row, Sequence) else () for row in rows)
+    if len(found) != states or any(len(row) != inputs for row in found):
+        raise BadInput(
+            f"[lqr] N: its shape does not fit; write a row for each state ({states}) with a number for each active "
+            f"input ({inputs})"
+        )
+    return found
+
+
+def semidefinite(matrix: Sequence[Sequence[float]]) -> bool:
+    """Whether a symmetric matrix is positive semidefinite, but for rounding."""
+    return smallest_eigenvalue(matrix) >= -ROUNDING
 
 
 def from_allowed(
@@ -96,7 +116,7 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
     return matrix
 
 
-def _smallest_eigenvalue(matrix: Matrix) -> float:
+def smallest_eigenvalue(matrix: Sequence[Sequence[float]]) -> float:
     """Of the matrix with its diagonal scaled to 1, which keeps the sign and does not depend on units."""
     import numpy as np
 
@@ -106,6 +126,6 @@ def _smallest_eigenvalue(matrix: Matrix) -> float:
         # such a matrix is at best semidefinite, and then a zero on the diagonal has nothing but zeros in its row
         at_best = (diagonal >= 0.0).all() and not values[diagonal == 0.0].any()
         kept = values[diagonal > 0.0][:, diagonal > 0.0].tolist()
-        return min(0.0, _smallest_eigenvalue(kept) if kept else 0.0) if at_best else -1.0
+        return min(0.0, smallest_eigenvalue(kept) if kept else 0.0) if at_best else -1.0
     unit = 1.0 / np.sqrt(diagonal)
     return float(np.linalg.eigvalsh(values * np.outer(unit, unit))[0])

@@ -47,6 +47,9 @@ inputs = ["u2"]
 """
 
 
+LAG = system([[-1.0]], [[1.0]])
+
+
 def case(folder: Path, r: float = 1.01, tf: float = 20.0, more: str = "") -> instance.Instance:
     path = folder / "case.toml"
     path.write_text(CASE.format(r=r, tf=tf) + more, encoding="utf-8")
@@ -128,6 +131,80 @@ def test_regulators_agree_with_scipy_and_are_stable(n, m, seed):
     assert (np.linalg.eigvalsh(found.P) > 0.0).all()
 
 
+def test_a_negative_weight_has_a_regulator_where_the_riccati_equation_has_a_stabilising_solution():
+    found = lqr(LAG, [-0.5], [1.0])
+    assert found.P[0, 0] == pytest.approx(np.sqrt(0.5) - 1.0, rel=1e-15)
+    assert found.eigenvalues == pytest.approx(-np.sqrt(0.5), rel=1e-15)
+    assert found.residual < 1e-15
+    K, P, _ = batch.solve(LAG.A, LAG.B, [[-0.5]], [[1.0]])
+    np.testing.assert_allclose([K, P], [found.K, found.P], rtol=1e-9)
+    for Q in ([1.0, 1.0, 1.0, -1.0], [[1, 2, 0, 0], [2, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]):
+        weight = np.diag(Q) if np.ndim(Q) == 1 else np.array(Q)
+        P = scipy.linalg.solve_continuous_are(satellite().A, satellite().B, weight, np.eye(2))
+        np.testing.assert_allclose(lqr(satellite(), Q, [1, 1]).P, P, rtol=1e-9, atol=1e-9)
+
+
+@settings(max_examples=60)
+@given(st.integers(1, 6), st.integers(1, 3), SEEDS)
+def test_cross_weights_agree_with_scipy_and_python_control(n, m, seed):
+    rng = np.random.default_rng(seed)
+    A, B = rng.normal(size=(n, n)), rng.normal(size=(n, m))
+    joint = spd(rng, n + m)
+    Q, R, N = joint[:n, :n], joint[n:, n:], joint[:n, n:]
+    found = lqr(system(A, B), Q, R, None, N)
+    P = scipy.linalg.solve_continuous_are(A, B, Q, R, s=N)
+    assert np.linalg.norm(found.P - P) <= 1e-6 * np.linalg.norm(P)
+    assert np.linalg.norm(found.K - control.lqr(A, B, Q, R, N)[0]) <= 1e-6 * np.linalg.norm(found.K)
+    assert np.sort(found.eigenvalues.real) == pytest.approx(np.sort(np.linalg.eigvals(A - B @ found.K).real), rel=1e-6)
+    K, again, _ = batch.solve(A, B, Q, R, N)
+    assert np.linalg.norm(K - found.K) <= 1e-6 * np.linalg.norm(found.K)
+    assert np.linalg.norm(again - found.P) <= 1e-6 * np.linalg.norm(P)
+
+
+@settings(max_examples=60)
+@given(st.integers(1, 4), st.integers(1, 2), SEEDS)
+def test_indefinite_weights_are_refused_where_the_hamiltonian_matrix_has_imaginary_eigenvalues(n, m, seed):
+    rng = np.random.default_rng(seed)
+    A, B, root, N = (rng.normal(size=shape) for shape in ((n, n), (n, m), (n, n), (n, m)))
+    Q, R = root + root.T + rng.uniform(0.0, 2.0) * np.eye(n), spd(rng, m) + np.eye(m)
+    free, weight, _ = riccati.without_cross(A, B, Q, R, 0.5 * N)
+    values = np.linalg.eigvals(riccati.hamiltonian(free, riccati.cost_of_control(B, R), weight))
+    clear = np.abs(values.real).min() / np.abs(values).max()
+    if clear < 1e-8:
+        with pytest.raises(BadInput, match="Q: the cost has no"):
+            lqr(system(A, B), Q, R, None, 0.5 * N)
+        return
+    found = lqr(system(A, B), Q, R, None, 0.5 * N)
+    P = scipy.linalg.solve_continuous_are(A, B, Q, R, s=0.5 * N)
+    assert np.linalg.norm(found.P - P) <= 1e-6 * np.linalg.norm(P)
+
+
+def test_a_finite_horizon_with_a_negative_weight_ends_before_the_cost_escapes():
+    """x' = u, -x^2 + u^2: P = -tan(T)."""
+    chain = system([[0.0]], [[1.0]])
+    assert lqr(chain, [-1.0], [1.0], 1.5).P[0, 0] == pytest.approx(-np.tan(1.5), rel=1e-12)
+    for horizon in (1.6, 3.0, 4.0, 5.0, 100.0):
+        with pytest.raises(BadInput, match=r"\[lqr\] horizon: the cost has no lower bound over so long a time"):
+            lqr(chain, [-1.0], [1.0], horizon)
+
+
+def test_a_finite_horizon_with_a_cross_weight_agrees_with_integration():
+    rng = np.random.default_rng(5)
+    A, B, joint = rng.normal(size=(3, 3)), rng.normal(size=(3, 2)), spd(rng, 5)
+    Q, R, N = joint[:3, :3], joint[3:, 3:], joint[:3, 3:]
+
+    def rate(_, flat):
+        P = flat.reshape(3, 3)
+        gain = np.linalg.solve(R, B.T @ P + N.T)
+        return (A.T @ P + P @ A - gain.T @ R @ gain + Q).ravel()
+
+    P = solve_ivp(rate, (0.0, 2.0), np.zeros(9), method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1].reshape(3, 3)
+    found = lqr(system(A, B), Q, R, 2.0, N)
+    np.testing.assert_allclose(found.P, P, rtol=1e-9)
+    np.testing.assert_allclose(found.K, np.linalg.solve(R, B.T @ P + N.T), rtol=1e-9)
+    np.testing.assert_allclose(found.gains(4)[[0, -1]], [found.K, np.linalg.solve(R, N.T)], rtol=1e-9)
+
+
 @given(SEEDS)
 @settings(max_examples=20)
 def test_no_other_gain_costs_less(seed):
@@ -147,10 +224,10 @@ STUCK = system([[1.0, 0.0], [0.0, -1.0]], [[0.0], [1.0]])
 @pytest.mark.parametrize(
     ("given_system", "Q", "R", "complaint"),
     [
-        (satellite(), [1, 1, 1, -1], [1, 1], r"\[lqr\] Q: not positive semidefinite"),
-        (satellite(), [[1, 2, 0, 0], [2, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], [1, 1], "Q: not positive semidefinite"),
+        (satellite(), [1, 1, -0.1, 1], [1, 1], r"\[lqr\] Q: the cost has no lower bound, for at the frequency 0 the"),
+        (LAG, [-1.5], [1], r"\[lqr\] Q: the cost has no lower bound, for at the frequency 0 .* more than its inputs"),
+        (LAG, [-1.0], [1], r"\[lqr\] Q: the cost has no minimum, for at the frequency 0 .* all that its inputs"),
         (satellite(), [[1, 2, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], [1, 1], "Q: not symmetric at row 2"),
-        (satellite(), [[0, 1, 0, 0], [1, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], [1, 1], "Q: not positive semidefinite"),
         (satellite(), [1, 1, 1, 1], [1, 0], r"\[lqr\] R: not positive definite"),
         (satellite(), [1, 1, 1, 1], [[1, 1], [1, 1]], r"\[lqr\] R: not positive definite"),
         (satellite(), [1, 1, 1], [1, 1], r"\[lqr\] Q: .* 4 numbers"),

@@ -4,7 +4,8 @@ Distances are relative changes of entries, all of them together (the root of the
 zero, and a matrix keeps its small eigenvalues however large others are. To first order a change E of A changes the
 matrix M of A in its invariant subspace to some eigenvalues by L E X, where the columns of X span it, the rows of L the
 one on the left, and L X = 1. M has a single eigenvalue where the coefficients of the characteristic polynomial of
-M - tr(M)/m vanish, except the leading one: the least change that does this to first order is what counts. Everything
+M - tr(M)/m vanish, except the leading one, and the least change that does this to first order is what counts; or
+where M - tr(M)/m is nilpotent but for what such a change does to its entries. Everything
 that cancels is reckoned with many digits; A itself counts as exact.
 
 Source: T. Kato, Perturbation Theory for Linear Operators, chapter II (invariant subspaces and the mean of a group of
@@ -58,35 +59,46 @@ class Group:
         size = float(np.linalg.norm(slope.real * self.entries)) * unit / len(self.values)
         return abs(float(self.mean.real)) / size if size else np.inf
 
-    def apart(self) -> float:
-        """The relative change that makes the eigenvalues a single one."""
-        m = len(self.values)
-        if m == 1:
-            return 0.0
-        rows, wanted = self._equations()
-        if not wanted.any():
-            return 0.0
-        change, *_ = np.linalg.lstsq(rows, wanted, rcond=1e-13)
-        fits = np.abs(rows @ change - wanted).max() <= 1e-3 * np.abs(wanted).max()
-        rest, unit = self._in_units
-        alike = np.abs(rest).max(initial=0.0) / unit  # every entry of the rest vanishes
-        return float(min(np.linalg.norm(change) if fits else np.inf, alike))
+    def single(self, change: float) -> bool:
+        """Whether a relative change of this size can make the eigenvalues a single one."""
+        return self.apart <= change or sum(self._weyr(change)) == len(self.values)
 
     def blocks(self, change: float) -> tuple[int, ...]:
         """Sizes of the Jordan blocks that these eigenvalues have as one, where relative changes of this size are none.
 
-        By how much each power of M - s enlarges the null space tells them (Weyr's characteristic); this is found by
-        deflation, never by forming powers (G. H. Golub and J. H. Wilkinson, SIAM Review 18, 1976).
+        By how much each power of M - s enlarges the null space tells them (Weyr's characteristic).
+        """
+        added = self._weyr(change, known=True)
+        return tuple(sum(count > i for count in added) for i in range(added[0]))
+
+    def _weyr(self, change: float, known: bool = False) -> list[int]:
+        """These numbers, as far as the null space grows, or where there is `known` to be a single eigenvalue.
+
+        They are found by deflation, never by forming powers (G. H. Golub and J. H. Wilkinson, SIAM Review 18, 1976).
         """
         rest, unit = self._in_units
         added: list[int] = []
         while len(rest):
             _, singular, right = np.linalg.svd(rest)
-            rank = min(int((singular > change * unit).sum()), len(rest) - 1)
+            rank = int((singular > change * unit).sum())
+            if rank == len(rest):
+                if not known:
+                    break
+                rank -= 1
             added.append(len(rest) - rank)
             kept = right[:rank]
             rest = kept @ rest @ kept.conj().T
-        return tuple(sum(count > i for count in added) for i in range(added[0]))
+        return added
+
+    @cached_property
+    def apart(self) -> float:
+        """The least relative change that makes the eigenvalues a single one, to first order."""
+        rows, wanted = self._equations()
+        if not wanted.any():
+            return 0.0
+        change, *_ = np.linalg.lstsq(rows, wanted, rcond=1e-13)
+        fits = np.abs(rows @ change - wanted).max() <= 1e-3 * np.abs(wanted).max()
+        return float(np.linalg.norm(change)) if fits else np.inf
 
     @cached_property
     def _deviation(self) -> acb_mat:
@@ -94,13 +106,14 @@ class Group:
 
     @cached_property
     def _in_units(self) -> tuple[Array, float]:
-        """M - tr(M)/m in coordinates in which relative changes of 1 change all entries alike, and by how much."""
+        """M - tr(M)/m, and how much a relative change of 1 changes its entries, in coordinates that make this alike."""
         from scipy.linalg import matrix_balance
 
         rest, left, right = (_floats(part) for part in (self._deviation, self.L, self.X))
         reached = np.abs(left[0]) @ np.abs(self.entries) @ np.abs(right[0]) * (left[1] * right[1])
         balanced, (scale, _) = matrix_balance(reached, permute=False, separate=True)
-        return rest[0] * rest[1] * (scale / scale[:, None]), float(np.abs(balanced).max())
+        each = float(np.abs(balanced).max()) / np.sqrt(max(1, np.count_nonzero(self.entries)))
+        return rest[0] * rest[1] * (scale / scale[:, None]), each
 
     def _equations(self) -> tuple[Array, Array]:
         """Linear equations for relative changes of the entries: rows of size 1, and what they shall give."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,9 @@ zero."""
 
 DISTANT = 1e-4
 """The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
+
+NEARLY, MOST_MIXED = 1e-5, 7
+"""Up to this relative change, and so many at most, numbers nearly are one, so that parts of them are tried, too."""
 
 Values = NDArray[np.complexfloating]
 
@@ -82,11 +86,12 @@ def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, 
     errors = noise * fitted.states / fitted.states[:, None] / fitted.rate
     with ctx.workprec(BITS):
         known = _Tried(A, np.maximum(size, errors / ROUNDING))
-        possible = [known.within(change, fitted.rate) for change in (KNOWN, ROUNDING)]
+        possible = [one for change in (KNOWN, ROUNDING) for one in known.within(change, fitted.rate)]
         faint = (size <= FAINT * size.max()) & (size > 0.0)
         if faint.any():
             doubtful = _Tried(A, np.where(faint, size / (ROUNDING / 2), known.entries), known)
-            possible = [*(doubtful.within(change, fitted.rate) for change in (KNOWN, ROUNDING)), *possible]
+            more = [one for change in (KNOWN, ROUNDING) for one in doubtful.within(change, fitted.rate)]
+            possible = more + possible
     told = [[(each.blocks, np.sign(each.value.real)) for each in one] for one in possible]
     return tuple(one for k, one in enumerate(possible) if told[k] not in told[:k])
 
@@ -110,12 +115,24 @@ class _Tried:
         self.which = [k for k, root in enumerate(self.roots) for _ in range(sum(root.blocks))]
         self.numbers: Values = np.array([rational.nearest(value) for value in self.exact])
         self.size = float(np.linalg.norm(A, 2)) or 1.0
-        self.groups: dict[tuple[int, ...], tuple[Group, float, float]] = {}
+        self.groups: dict[tuple[int, ...], tuple[Group, float]] = {}
 
-    def within(self, change: float, rate: float) -> tuple[Eigenvalue, ...]:
-        """The eigenvalues if relative changes of this size are none."""
+    def within(self, change: float, rate: float) -> list[tuple[Eigenvalue, ...]]:
+        """The eigenvalues if relative changes of this size are none.
+
+        Two groups may both be zero, and yet not a single eigenvalue: then what they are as one comes second.
+        """
+        parts = list(self._told_apart(tuple(range(len(self.exact))), change))
+        resting = [members for members in parts if self._one(members, change)[0] == 0.0]
+        possible = [parts]
+        if len(resting) > 1:
+            together = tuple(sorted(k for members in resting for k in members))
+            possible.append([*(members for members in parts if members not in resting), together])
+        return [self._shown(each, change, rate) for each in possible]
+
+    def _shown(self, parts: list[tuple[int, ...]], change: float, rate: float) -> tuple[Eigenvalue, ...]:
         found = []
-        for members in self._told_apart(_tree(self.numbers), change):
+        for members in parts:
             value, blocks = self._one(members, change)
             found.append(Eigenvalue(value * rate, blocks))
             if not self._closed(members):
@@ -127,22 +144,44 @@ class _Tried:
         exact = self.roots[self.which[members[0]]]
         if same and (exact.value.real == 0 or abs(exact.rounded.real) > DISTANT * self.size) and len(members) == 1:
             return exact.rounded, exact.blocks
-        tried, _, off_axis = self._tried(members)
+        tried, off_axis = self._tried(members)
         value = rational.nearest(tried.mean)
         value = complex(0.0 if off_axis <= change else value.real, 0.0 if self._closed(members) else value.imag)
         return value, tried.blocks(change) if len(members) > 1 else (1,)
 
-    def _told_apart(self, tree: Any, change: float) -> Iterator[tuple[int, ...]]:
+    def _told_apart(self, members: tuple[int, ...], change: float) -> Iterator[tuple[int, ...]]:
         """Members of each eigenvalue; of two conjugate ones that above the real axis alone."""
-        members = tuple(sorted(tree.pre_order()))
         if self._one_sided(members) < 0:
             return
-        exact = len({self.which[k] for k in members}) == 1
-        if exact or (self._plausible(members) and self._tried(members)[1] <= change):
+        if self._single(members, change):
             yield members
-            return
-        for branch in (tree.left, tree.right):
-            yield from self._told_apart(branch, change)
+        elif part := self._largest_part(members, change):
+            yield part
+            yield from self._told_apart(tuple(k for k in members if k not in part), change)
+        else:
+            for half in _halves(self.numbers, members):
+                yield from self._told_apart(half, change)
+
+    def _single(self, members: tuple[int, ...], change: float) -> bool:
+        if len({self.which[k] for k in members}) == 1:
+            return True
+        return self._plausible(members) and self._tried(members)[0].single(change)
+
+    def _largest_part(self, members: tuple[int, ...], change: float) -> tuple[int, ...]:
+        """The most of some eigenvalues that may be a single one, where all of them nearly are; else none.
+
+        Where a multiple eigenvalue is spread as far as the next one is away, nearest neighbours need not belong
+        together.
+        """
+        if not 2 < len(members) <= MOST_MIXED or not self._plausible(members):
+            return ()
+        if self._tried(members)[0].apart > NEARLY:
+            return ()
+        for count in range(len(members) - 1, 1, -1):
+            parts = [part for part in combinations(members, count) if self._single(part, change)]
+            if parts:
+                return min(parts, key=lambda part: self._tried(part)[0].apart)
+        return ()
 
     def _plausible(self, members: tuple[int, ...]) -> bool:
         together = self.numbers[list(members)]
@@ -157,22 +196,20 @@ class _Tried:
         """Whether each of these is real, or has its conjugate among them."""
         return abs(sum(np.sign(self.numbers[list(members)].imag))) == 0
 
-    def _tried(self, members: tuple[int, ...]) -> tuple[Group, float, float]:
-        """The group, how far its members are apart and how far their mean is off the axis."""
+    def _tried(self, members: tuple[int, ...]) -> tuple[Group, float]:
+        """The group, and how far its mean is off the axis."""
         if members not in self.groups:
             inside = [self.exact[k] for k in members]
             outside = [self.exact[k] for k in range(len(self.exact)) if k not in members]
             found = group(self.A, self.entries, inside, outside)
-            apart = 0.0 if len({self.which[k] for k in members}) == 1 else found.apart()
-            self.groups[members] = found, apart, found.off_axis()
+            self.groups[members] = found, found.off_axis()
         return self.groups[members]
 
 
-def _tree(numbers: Values) -> Any:
-    """The numbers joined nearest first, as a binary tree."""
-    from scipy.cluster.hierarchy import ClusterNode, linkage, to_tree
+def _halves(numbers: Values, members: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Numbers in two parts that are as far from one another as can be."""
+    from scipy.cluster.hierarchy import linkage, to_tree
 
-    if len(numbers) == 1:
-        return ClusterNode(0)
-    pairs = np.triu_indices(len(numbers), 1)
-    return to_tree(linkage(np.abs(numbers[:, None] - numbers)[pairs], "single"))
+    pairs, chosen = np.triu_indices(len(members), 1), numbers[list(members)]
+    tree: Any = to_tree(linkage(np.abs(chosen[:, None] - chosen)[pairs], "single"))
+    return [tuple(sorted(members[k] for k in part.pre_order())) for part in (tree.left, tree.right)]

@@ -23,14 +23,18 @@ WANTED = 5e-13
 """Residual above which a problem is solved anew."""
 
 
-def solve(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> tuple[Array, Array, Array]:
-    """Stabilising solutions and gains of many problems with J = integral of x'Qx + u'Ru.
+def solve(
+    A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, N: ArrayLike | None = None
+) -> tuple[Array, Array, Array]:
+    """Stabilising solutions and gains of many problems with J = integral of x'Qx + 2x'Nu + u'Ru.
 
     Parameters
     ----------
     A, B, Q, R
         Shapes (..., n, n), (..., n, m), (..., n, n) and (..., m, m), whose leading axes are broadcast. Q and R are
-        taken to be symmetric, Q positive semidefinite and R positive definite.
+        taken to be symmetric, and R positive definite.
+    N
+        Shape (..., n, m); zero by default.
 
     Returns
     -------
@@ -41,6 +45,7 @@ def solve(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> tuple[Array
     """
     a, b, q, r = (np.asarray(matrix, dtype=np.float64) for matrix in (A, B, Q, R))
     n = a.shape[-1]
+    a, q, ahead = riccati.without_cross(a, b, q, r, None if N is None else np.asarray(N, dtype=np.float64))
     lead = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in (a, b, q, r)))
     per_costate = np.linalg.solve(r, np.swapaxes(b, -1, -2))  # R^-1 B'
     a, g, q = (np.broadcast_to(each, (*lead, n, n)).reshape(-1, n, n) for each in (a, b @ per_costate, q))
@@ -56,7 +61,7 @@ def solve(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> tuple[Array
         except riccati.NoSolution:
             P[i], left[i] = np.nan, np.nan
     P = P.reshape(*lead, n, n)
-    return per_costate @ P, P, left.reshape(lead)
+    return per_costate @ P + ahead, P, left.reshape(lead)
 
 
 def _block(a: Array, g: Array, q: Array) -> tuple[Array, Array]:
@@ -88,7 +93,7 @@ def _doubled(A: Array, G: Array, Q: Array, shift: Array) -> Array:
         onward = _product(W, E)
         gained = _symmetric(_product(_turned(E), _product(T, onward)))
         T = T + gained
-        if not (_diagonal(gained) > SETTLED * _diagonal(T)).any():
+        if not (np.abs(_diagonal(gained)) > SETTLED * np.abs(_diagonal(T))).any():
             break
         S = S + _symmetric(_product(_product(E, _product(W, S)), _turned(E)))
         E = _product(E, onward)
@@ -98,7 +103,7 @@ def _doubled(A: Array, G: Array, Q: Array, shift: Array) -> Array:
 def _residual(A: Array, G: Array, Q: Array, P: Array) -> Array:
     """As :func:`satsym.analysis.regulator.riccati.residual`, of each problem; shape (M,)."""
     diagonal = _diagonal(P)
-    unit = 1.0 / np.sqrt(np.where(diagonal == 0.0, 1.0, diagonal))
+    unit = 1.0 / np.sqrt(np.where(diagonal == 0.0, 1.0, np.abs(diagonal)))
     weight = unit[:, None] * unit
     once, twice, q = _product(_turned(A), P) * weight, _product(P, _product(G, P)) * weight, Q * weight
     size = 2.0 * _norm(once) + _norm(twice) + _norm(q)

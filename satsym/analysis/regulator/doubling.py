@@ -23,6 +23,10 @@ SHORT = 0.5
 """The first step times the size of the Hamiltonian matrix."""
 
 
+class NoLowerBound(ArithmeticError):
+    """The cost has no lower bound over this length of time."""
+
+
 class Flow(NamedTuple):
     """E, S and T of some length of time, shape (n, n) each."""
 
@@ -31,7 +35,15 @@ class Flow(NamedTuple):
     T: Array
 
     def then(self, later: Flow) -> Flow:
-        """This length of time followed by another."""
+        """This length of time followed by another.
+
+        Raises
+        ------
+        NoLowerBound
+            If some state between the two makes the cost as small as one likes: S^-1 + T is not positive definite.
+        """
+        if np.linalg.eigvals(np.eye(len(self.E)) + self.S @ later.T).real.min() <= 0.0:
+            raise NoLowerBound
         both = np.linalg.solve(np.eye(len(self.E)) + self.S @ later.T, np.hstack([self.E, self.S @ later.E.T]))
         onward, across = np.hsplit(both, 2)
         return Flow(
@@ -50,7 +62,13 @@ class Flow(NamedTuple):
 
 
 def flow(A: Array, G: Array, Q: Array, length: float) -> Flow:
-    """The flow over a length of time."""
+    """The flow over a length of time.
+
+    Raises
+    ------
+    NoLowerBound
+        If the cost has none, which takes weights that are not positive semidefinite.
+    """
     from scipy.linalg import expm
 
     n, units = len(A), balancing(hamiltonian(A, G, Q))

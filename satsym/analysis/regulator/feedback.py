@@ -87,7 +87,7 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
     Returns
     -------
     Simulation
-        With ``"lqr"`` its metrics have ``lqr_cost``, the integral of x'Qx + u'Ru for the deviation x along the
+        With ``"lqr"`` its metrics have ``lqr_cost``, the integral of x'Qx + 2x'Nu + u'Ru for the deviation x along the
         simulation, and ``lqr_cost_linear``, what the linear system would pay from the same start.
 
     Raises
@@ -161,8 +161,9 @@ def gain(about: Linearisation, found: Regulator) -> Callable[[float], list[list[
 
 
 def running_cost(found: Regulator, x: Array, u: Array) -> Array:
-    """x'Qx + u'Ru of deviations (n, M) and active inputs (m, M), shape (M,)."""
-    return np.einsum("im,ij,jm->m", x, found.Q, x) + np.einsum("im,ij,jm->m", u, found.R, u)
+    """x'Qx + 2x'Nu + u'Ru of deviations (n, M) and active inputs (m, M), shape (M,)."""
+    terms = ((x, found.Q, x), (2.0 * x, found.N, u), (u, found.R, u))
+    return np.asarray(sum(np.einsum("im,ij,jm->m", *term) for term in terms))
 
 
 def _integral(times: Array, values: Array) -> float:

@@ -1,4 +1,4 @@
-"""Linear-quadratic regulators: the gain K that minimises the integral of x'Qx + u'Ru (no 1/2) with u = -K x."""
+"""Linear-quadratic regulators: the gain K that minimises the integral of x'Qx + 2x'Nu + u'Ru (no 1/2) with u = -K x."""
 
 from __future__ import annotations
 
@@ -12,18 +12,23 @@ from satsym.analysis.linear.equilibrium import Linearisation
 from satsym.analysis.linear.polynomials import characteristic
 from satsym.analysis.linear.ranks import controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
+from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import Eigenvalue
 from satsym.analysis.linear.stability import shown
 from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.regulator import riccati
-from satsym.analysis.regulator.doubling import flow
+from satsym.analysis.regulator.doubling import NoLowerBound, flow
 from satsym.analysis.regulator.refinement import Refined
 from satsym.arrays import Array
 from satsym.instance import Instance, LqrOptions, weights
 from satsym.status import BadInput
 
+NOTHING = 1e-9
+"""What a motion costs at some frequency, relative to what its inputs do, that may be zero."""
+
 DOUBTFUL = 1e-6
-"""A closed loop that decays more slowly than this, relative to its fastest eigenvalue, may be a rounding error."""
+"""A closed loop that decays more slowly than this, relative to the fastest eigenvalue, also of the open one, may be a
+rounding error."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +39,8 @@ class Regulator:
     """What it is for, with the active inputs alone."""
     Q: Array
     R: Array
-    """Weights, shapes (n, n) and (m, m)."""
+    N: Array
+    """Weights, shapes (n, n), (m, m) and (n, m)."""
     horizon: float | None
     """Length of time over which the cost is counted; ``None`` where it is infinite. If it is finite, K and P are those
     at its beginning."""
@@ -48,6 +54,11 @@ class Regulator:
     error: float | None = None
     """Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
     change, with residuals in twice the precision. ``None`` where the horizon is finite."""
+
+    @cached_property
+    def positive(self) -> bool:
+        """Whether the cost to go from every deviation is positive."""
+        return weights.smallest_eigenvalue(self.P.tolist()) > 0.0
 
     @cached_property
     def closed_loop(self) -> LinearSystem:
@@ -73,14 +84,17 @@ class Regulator:
         """K at evenly spaced times from the beginning of a finite horizon to its end, shape (steps + 1, m, n)."""
         if self.horizon is None:
             return np.broadcast_to(self.K, (steps + 1, *self.K.shape))
-        step = flow(self.system.A, riccati.cost_of_control(self.system.B, self.R), self.Q, self.horizon / steps)
+        A, Q, ahead = riccati.without_cross(self.system.A, self.system.B, self.Q, self.R, self.N)
+        step = flow(A, riccati.cost_of_control(self.system.B, self.R), Q, self.horizon / steps)
         P = [np.zeros_like(self.P)]
         for _ in range(steps):
             P.append(step.before(P[-1]))
-        return np.linalg.solve(self.R, self.system.B.T @ np.array(P[::-1]))
+        return np.linalg.solve(self.R, self.system.B.T @ np.array(P[::-1])) + ahead
 
 
-def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None = None) -> Regulator:
+def lqr(
+    given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None = None, N: ArrayLike | None = None
+) -> Regulator:
     """The regulator of a linear system, all of whose inputs are active.
 
     Parameters
@@ -88,40 +102,51 @@ def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None =
     given
         See :meth:`LinearSystem.with_inputs` for choosing inputs.
     Q, R
-        Weights, shapes (n, n) and (m, m), or the diagonals; symmetric, Q positive semidefinite, R positive definite.
+        Weights, shapes (n, n) and (m, m), or the diagonals; symmetric, R positive definite.
     horizon
         Length of time, infinite by default; nothing is paid at its end but what was paid until then.
+    N
+        Cross weights, shape (n, m); zero by default.
 
     Raises
     ------
     BadInput
-        If the weights are not such, or, for an infinite horizon, the inputs cannot steady a mode that does not decay,
-        or the weights do not see one on the imaginary axis.
+        If the weights are not such, or the cost has no lower bound; or, for an infinite horizon, if the inputs cannot
+        steady a mode that does not decay, or the weights do not see one on the imaginary axis.
     """
-    q_rows, r_rows = weights.checked(
-        np.asarray(Q, dtype=float).tolist(), np.asarray(R, dtype=float).tolist(), len(given.states), len(given.inputs)
-    )
-    q, r = np.array(q_rows), np.array(r_rows)
-    A, B, G = given.A, given.B, riccati.cost_of_control(given.B, r)
+    n, m = len(given.states), len(given.inputs)
+    rows = (np.asarray(part, dtype=float).tolist() for part in (Q, R))
+    found = weights.checked(*rows, None if N is None else np.asarray(N, dtype=float).tolist(), n, m)
+    q, r, cross = np.array(found[0]), np.array(found[1]), np.zeros((n, m)) if found[2] is None else np.array(found[2])
+    # from here on for v = u + R^-1 N'x, so that there is no cross weight any more
+    A, weight, ahead = riccati.without_cross(given.A, given.B, q, r, cross)
+    G = riccati.cost_of_control(given.B, r)
     rate: Array | float = 0.0
     error: float | None = None
     if horizon is None:
-        found = _stabilising(given, q, r)
-        P, eigenvalues, error = found.P, found.eigenvalues, found.error
+        solved = _stabilising(given, A, weight, r)
+        P, eigenvalues, error = solved.P, solved.eigenvalues, solved.error
     else:
-        run = flow(A, G, q, horizon)
-        P, rate = run.T, run.E.T @ q @ run.E
+        try:
+            run = flow(A, G, weight, horizon)
+        except NoLowerBound:
+            raise BadInput(
+                "[lqr] horizon: the cost has no lower bound over so long a time, for what the weights Q and N reward "
+                "grows faster than the inputs cost; shorten it, or write larger weights"
+            ) from None
+        P, rate = run.T, run.E.T @ weight @ run.E
         eigenvalues = np.linalg.eigvals(A - G @ P).astype(complex)
     order = np.lexsort((-eigenvalues.imag, np.abs(eigenvalues.imag), -eigenvalues.real))
     return Regulator(
         system=given,
         Q=q,
         R=r,
+        N=cross,
         horizon=horizon,
-        K=np.linalg.solve(r, B.T @ P),
+        K=np.linalg.solve(r, given.B.T @ P) + ahead,
         P=P,
         eigenvalues=eigenvalues[order],
-        residual=riccati.residual(A, G, q, P, rate),
+        residual=riccati.residual(A, G, weight, P, rate),
         error=error,
     )
 
@@ -151,7 +176,7 @@ def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regula
         )
     if options is None:
         return lqr(given, np.ones(len(given.states)), np.ones(len(given.inputs)))
-    return lqr(given.with_inputs(options.inputs), options.Q, options.R, options.horizon)
+    return lqr(given.with_inputs(options.inputs), options.Q, options.R, options.horizon, options.N)
 
 
 def required(case: Instance) -> LqrOptions:
@@ -167,20 +192,20 @@ def required(case: Instance) -> LqrOptions:
     return case.lqr
 
 
-def _stabilising(given: LinearSystem, Q: Array, R: Array) -> Refined:
+def _stabilising(given: LinearSystem, A: Array, Q: Array, R: Array) -> Refined:
     """The solution; why there is none is looked for where there seems to be none."""
     try:
-        found = riccati.stabilising(given.A, given.B, Q, R)
+        found = riccati.stabilising(A, given.B, Q, R)
     except riccati.NoSolution:
-        why = _obstacle(given, Q) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
+        why = _obstacle(given, A, Q, R) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
         raise BadInput(why) from None
-    eigenvalues = found.eigenvalues
-    if eigenvalues.real.max() > -DOUBTFUL * np.abs(eigenvalues).max() and (why := _obstacle(given, Q)):
+    slowest, all_values = found.eigenvalues.real.max(), np.concatenate([found.eigenvalues, np.linalg.eigvals(A)])
+    if slowest > -DOUBTFUL * np.abs(all_values).max() and (why := _obstacle(given, A, Q, R)):
         raise BadInput(why)
     return found
 
 
-def _obstacle(given: LinearSystem, Q: Array) -> str:
+def _obstacle(given: LinearSystem, A: Array, Q: Array, R: Array) -> str:
     """Why no gain is optimal; empty if there is one."""
     stuck = [each for each in controllability(given).lost if each.value.real >= 0.0]
     if stuck:
@@ -188,7 +213,9 @@ def _obstacle(given: LinearSystem, Q: Array) -> str:
             f"[lqr] inputs: not stabilisable, {' and '.join(given.inputs)} cannot control the mode "
             f"s = {_listed(stuck)}, which does not decay; add an input"
         )
-    seen = system(given.A, given.B, Q, states=given.states, inputs=given.inputs)
+    if not weights.semidefinite(Q.tolist()):
+        return _at_a_frequency(A, given.B, Q, R)
+    seen = system(A, given.B, Q, states=given.states, inputs=given.inputs)
     unseen = [each for each in observability(seen).lost if each.value.real == 0.0]
     if unseen:
         return (
@@ -196,6 +223,36 @@ def _obstacle(given: LinearSystem, Q: Array) -> str:
             "is optimal; weigh a state that takes part in it"
         )
     return ""
+
+
+def _at_a_frequency(A: Array, B: Array, Q: Array, R: Array) -> str:
+    """Why there is no gain where Q is indefinite: a motion of some frequency that costs nothing, or less.
+
+    There is a stabilising solution where, and only where, what a motion of any frequency costs is positive (J. C.
+    Willems). It is reckoned with under a gain that stabilises, which does not change its sign.
+    """
+    gain = np.linalg.solve(R, B.T @ riccati.stabilising(A, B, np.diag(1.0 / scaled(system(A, B)).states ** 2), R).P)
+    closed, across = A - B @ gain, -gain.T @ R
+    weight = Q + gain.T @ R @ gain
+    axis = np.abs(np.linalg.eigvals(riccati.hamiltonian(A, riccati.cost_of_control(B, R), Q)).imag)
+    size = float(np.abs(np.linalg.eigvals(closed)).max())
+    tried = np.unique(np.concatenate([axis, [0.0], np.geomspace(1e-4 * size, 1e2 * size, 400)]))
+    least, worst = np.inf, 0.0
+    scale = np.linalg.cholesky(R)
+    for frequency in np.sort(np.concatenate([tried, 0.5 * (tried[1:] + tried[:-1])])):
+        x = np.linalg.solve(1j * frequency * np.eye(len(A)) - closed, B.astype(complex))
+        cost = x.conj().T @ weight @ x + x.conj().T @ across + across.T @ x + R
+        relative = np.linalg.solve(scale, np.linalg.solve(scale, cost).conj().T)
+        lowest = float(np.linalg.eigvalsh(0.5 * (relative + relative.conj().T))[0])
+        if lowest < least:
+            least, worst = lowest, float(frequency)
+    if least > NOTHING:
+        return ""
+    cause = "has no lower bound" if least < -NOTHING else "has no minimum"
+    return (
+        f"[lqr] Q: the cost {cause}, for at the frequency {worst:.6g} the weights Q and N reward a motion by "
+        f"{'more than' if least < -NOTHING else 'all that'} its inputs cost; write larger weights"
+    )
 
 
 def _listed(modes: list[Eigenvalue]) -> str:

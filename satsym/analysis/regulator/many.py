@@ -59,21 +59,24 @@ def regulators(instances: Sequence[Instance]) -> Regulators | None:
     except BadInput:
         return None
     used, unit = [system.inputs.index(name) for name in options.inputs], scaled(system)
-    q, r = np.array(options.Q), np.array(options.R)
+    q, r, cross = np.array(options.Q), np.array(options.R), None if options.N is None else np.array(options.N)
     with np.errstate(all="ignore"):
         points, A, B, constant = _coefficients(instances, unit)
         b = system.B[:, used]
-        states = riccati.balancing(riccati.hamiltonian(system.A, riccati.cost_of_control(b, r), q))
+        like, weight, _ = riccati.without_cross(system.A, b, q, r, cross)
+        states = riccati.balancing(riccati.hamiltonian(like, riccati.cost_of_control(b, r), weight))
         a, b = A * states / states[:, None], B[:, :, used] / states[:, None]
         regular = constant & np.isfinite(a).all(axis=(1, 2)) & np.isfinite(b).all(axis=(1, 2))
         a[~regular], b[~regular] = -np.eye(len(states)), 0.0
         q = q * np.outer(states, states)
+        # from here on for v = u + R^-1 N'x, so that there is no cross weight any more
+        a, q, ahead = riccati.without_cross(a, b, q, r, None if cross is None else cross * states[:, None])
         K, P, residual = batch.solve(a, b, q, r)
         agreeing, eigenvalues = _eigenvalues(a, b, q, r, K)
         apart = (np.array([one.initial for one in instances]) - points) / states
         cost = np.einsum("ij,ijk,ik->i", apart, P, apart)
     clear = regular & agreeing & (residual <= batch.WANTED)
-    return Regulators(clear, K / states, eigenvalues, residual, cost)
+    return Regulators(clear, (K + ahead) / states, eigenvalues, residual, cost)
 
 
 def _coefficients(instances: Sequence[Instance], unit: Scaled) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
@@ -117,7 +120,8 @@ def _eigenvalues(
     found = np.take_along_axis(found, order, axis=1)
     size = np.abs(found).max(axis=1)
     off = np.abs(_polynomials(found / size[:, None]) - _polynomials(decaying / size[:, None])).max(axis=1)
-    return (off <= AGREEING) & (found.real.max(axis=1) <= -DOUBTFUL * size), found
+    fastest = np.maximum(size, np.abs(np.linalg.eigvals(a)).max(axis=1))
+    return (off <= AGREEING) & (found.real.max(axis=1) <= -DOUBTFUL * fastest), found
 
 
 def _polynomials(roots: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:

@@ -39,7 +39,7 @@ class Refined:
     P: Array
     """Shape (n, n)."""
     error: float
-    """Estimate of the error of P, relative to it, in units in which its diagonal elements are 1; infinite where
+    """Estimate of the error of P, relative to it, in units of :func:`units_of`; infinite where
     corrections do not become smaller."""
     eigenvalues: NDArray[np.complexfloating]
     """Of the closed loop, shape (n,); not numbers where there is no correction of P."""
@@ -82,10 +82,9 @@ def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> Refined:
 def _correction(
     A: Array, B: Array, Q: Array, R: Array, P: Array, residual_of: Callable[..., tuple[Array, Array]]
 ) -> _Correction:
-    diagonal = np.diag(P)
-    if not np.isfinite(P).all() or not (diagonal > 0.0).any():
+    if not np.isfinite(P).all() or not P.any():
         return _none(P) if P.any() else _Correction(P, 0.0, np.linalg.eigvals(A).astype(complex))
-    unit = np.exp2(-np.rint(0.5 * np.log2(np.where(diagonal > 0.0, diagonal, 1.0))))  # powers of two round nothing
+    unit = np.exp2(np.rint(np.log2(units_of(P))))  # powers of two round nothing
     weight = np.outer(unit, unit)
     a, b, q, p = A * (unit / unit[:, None]), B / unit[:, None], Q * weight, P * weight
     off, gain = residual_of(a, b, q, R, p)
@@ -96,6 +95,17 @@ def _correction(
     except ArithmeticError:
         return _none(P)
     return _Correction(found / weight, float(np.linalg.norm(found) / np.linalg.norm(p)), eigenvalues)
+
+
+def units_of(P: Array) -> Array:
+    """Units of the states in which the diagonal elements of P are 1 or -1, shape (n,).
+
+    A P that is indefinite may have larger elements beside its diagonal; then the largest of each row counts.
+    """
+    size = np.sqrt(np.abs(np.diag(P)))
+    if (np.abs(P) > 2.0 * np.outer(size, size)).any():
+        size = np.sqrt(np.abs(P).max(axis=1))
+    return np.asarray(1.0 / np.where(size > 0.0, size, 1.0))
 
 
 def _none(P: Array) -> _Correction:

@@ -56,10 +56,15 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
     Raises
     ------
     BadInput
-        If the horizon is finite: nothing steers after its end.
+        If the horizon is finite: nothing steers after its end; or if the cost to go is not positive.
     """
     if found.horizon is not None:
         raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
+    if not found.positive:
+        raise BadInput(
+            "a region of attraction is measured by the cost to go x'Px, which is not positive with these weights; "
+            "write a positive definite [lqr] Q"
+        )
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())
     if not about.nonlinear and (case is None or not case.control_set.bounded):

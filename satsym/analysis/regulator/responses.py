@@ -27,7 +27,7 @@ class Response:
     u: Array
 
     def cost(self, found: Regulator, times: Array) -> Array:
-        """Integral of x'Qx + u'Ru from the first time to each, shape (N+1,)."""
+        """Integral of x'Qx + 2x'Nu + u'Ru from the first time to each, shape (N+1,)."""
         rate = running_cost(found, self.x, self.u)
         steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(times)
         return np.concatenate([[0.0], np.cumsum(steps)])

@@ -1,5 +1,10 @@
 """The algebraic Riccati equation A'P + PA - P G P + Q = 0 with G = B R^-1 B', one at a time.
 
+A cross weight N, J = integral of x'Qx + 2x'Nu + u'Ru, is taken out beforehand by u = v - R^-1 N'x: A - B R^-1 N' takes
+the place of A and Q - N R^-1 N' that of Q. Neither this nor Q need be positive semidefinite: what is looked for is the
+one solution P that makes the closed loop stable, and where it exists no other control that does so costs less (J. C.
+Willems, Least squares stationary optimal control and the algebraic Riccati equation, IEEE TAC 16, 1971).
+
 From x' = A x + B u and J = integral of x'Qx + u'Ru (no 1/2) the minimum principle gives, with lambda = P x for the
 costates of J/2, the Hamiltonian matrix ((A, -G), (-Q, -A')). P comes from its invariant subspace of decaying motions
 (A. J. Laub, A Schur method for solving algebraic Riccati equations, IEEE TAC 24, 1979), in units that balance the
@@ -13,7 +18,7 @@ import warnings
 
 import numpy as np
 
-from satsym.analysis.regulator.refinement import Refined, refined
+from satsym.analysis.regulator.refinement import Refined, refined, units_of
 from satsym.arrays import Array
 from satsym.lapack import lapack
 
@@ -23,6 +28,15 @@ DOUBTFUL = 1e-6
 
 class NoSolution(ArithmeticError):
     """No solution for which the closed loop is stable was found."""
+
+
+def without_cross(A: Array, B: Array, Q: Array, R: Array, N: Array | None) -> tuple[Array, Array, Array]:
+    """A - B R^-1 N', Q - N R^-1 N' and R^-1 N'; leading axes are broadcast."""
+    if N is None or not N.any():
+        return A, Q, np.zeros((B.shape[-1], A.shape[-1]))
+    ahead = np.linalg.solve(R, np.swapaxes(N, -1, -2))
+    rest = Q - N @ ahead
+    return A - B @ ahead, 0.5 * (rest + np.swapaxes(rest, -1, -2)), ahead
 
 
 def hamiltonian(A: Array, G: Array, Q: Array) -> Array:
@@ -89,13 +103,12 @@ def cost_of_control(B: Array, R: Array) -> Array:
 def residual(A: Array, G: Array, Q: Array, P: Array, rate: Array | float = 0.0) -> float:
     """The norm of A'P + PA - P G P + Q - rate, relative to the sum of those of the four terms.
 
-    Both in units in which each diagonal element of P is 1, so that it is the same whatever the units are. In a finite
-    horizon P changes, with the time left, at a `rate`.
+    Both in units in which each diagonal element of P is 1 or -1, so that it is the same whatever the units are. In a
+    finite horizon P changes, with the time left, at a `rate`.
     """
-    diagonal = np.diag(P)
-    if not (diagonal >= 0.0).all() or not np.isfinite(P).all():
+    if not np.isfinite(P).all():
         return float("inf")
-    unit = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    unit = units_of(P)
     weight = np.outer(unit, unit)
     once, twice, q = A.T @ P * weight, P @ G @ P * weight, Q * weight
     size = 2.0 * np.linalg.norm(once) + np.linalg.norm(twice) + np.linalg.norm(q)

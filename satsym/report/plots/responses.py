@@ -221,7 +221,8 @@ def reach(design: Design, case: Instance) -> Figure | None:
     """How far each state alone may be off for the exact motion to return; nothing where only a linear one is known."""
     from satsym.analysis.regulator.region_of_attraction import region_of_attraction
 
-    if not design.about.nonlinear or design.regulator.horizon is not None:
+    regulator = design.regulator
+    if not design.about.nonlinear or regulator.horizon is not None or not regulator.positive:
         return None
     found, start = region_of_attraction(design.about, design.regulator, case), design.deviation
     assert start is not None
