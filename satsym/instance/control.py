@@ -29,7 +29,10 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
     normed = [part for part in spec.control_parts if part.normed]
     for name, value in table.items():
         key = f"[control] {printable(name)}"
-        if name in sets:
+        if name in sets and name in spec.control_names and name not in sets[name].controls:
+            others = ", ".join(sets[name].controls)
+            raise BadInput(f"{key}: {printable(name)} is a control and the set of {others}; give the set another name")
+        if name in sets and not (name in spec.control_names and isinstance(value, tuple)):
             norms |= _of_set(value, sets[name], spec, f"[control.{name}]")
         elif name in (MAX_NORM, MIN_NORM) and len(normed) == 1:
             whole = {k: v for k, v in table.items() if k in (MAX_NORM, MIN_NORM)}

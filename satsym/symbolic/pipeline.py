@@ -139,9 +139,9 @@ def derive(subject: Problem | Model) -> Derivation:
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:
     """The motion, then its outputs, then what follows from the cost."""
-    derivation, known = _moving(model, one := problem and as_one(problem), "steps")
-    if one is not problem and product.needs_its_sets(derivation):
-        derivation, known = _moving(model, problem, "steps")
+    derivation, known = _moving(model, problem and as_one(problem), "steps")
+    if problem is not None and (apart := _as_sets(derivation, problem)) is not None:
+        derivation, known = _moving(model, apart, "steps")
     if problem is not None:
         _refuse_unsolved(problem.name, derivation)
     derivation = _with_quantities(derivation)
@@ -150,6 +150,18 @@ def _derived(model: Model, problem: Problem | None) -> Derivation:
         names = path_notation.names(problem, with_bounds=False)
         derivation = replace(derivation, notation={**derivation.notation, **names})
     return _taken(derivation, known, (*OUTPUTS, *principle))[0]
+
+
+def _as_sets(motion_derived: Derivation, problem: Problem) -> Problem | None:
+    """The problem in the form over whose control sets H is minimised; ``None`` where that is the form it has."""
+    so_far = _with_quantities(motion_derived)
+    one = so_far.problem
+    if one is not None and one.control_set == "box" and not product.applies(so_far) and switching.applies(so_far):
+        return None
+    apart = product.as_sets(so_far, problem)
+    if apart is not None and problem.interior:
+        _refuse_interior(so_far.name)
+    return apart
 
 
 def _moving(
@@ -221,8 +233,7 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     if motion_derived.problem is None:
         return LINEAR
     if motion_derived.problem.interior and (product.applies(motion_derived) or switching.applies(motion_derived)):
-        message = "interior: points on the way are derived where H is quadratic in the controls; weigh their squares"
-        raise DerivationError(f"{motion_derived.name}: {message}", ("interior",))
+        _refuse_interior(motion_derived.name)
     if product.applies(motion_derived):
         switching.refuse_magnitudes(motion_derived)
         return PRODUCT_PRINCIPLE
@@ -231,6 +242,11 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
         return MINIMUM_PRINCIPLE
     boundary.refuse(motion_derived)
     return SWITCHING_PRINCIPLE
+
+
+def _refuse_interior(name: str) -> None:
+    message = "interior: points on the way are derived where H is quadratic in the controls; weigh their squares"
+    raise DerivationError(f"{name}: {message}", ("interior",))
 
 
 def _taken(

@@ -310,14 +310,15 @@ def test_hamiltonians_that_are_convex_in_each_control_have_a_law(cost: sp.Expr) 
     assert "control_law" in derive(problem(running_cost=cost))
 
 
-@pytest.mark.parametrize(
-    "cost",
-    [u1**2, (u1 + u2) ** 2, (u1 * sin(q1)) ** 2 + (u1 * cos(q1)) ** 2],
-    ids=str,
-)
-def test_a_singular_second_derivative_is_refused(cost: sp.Expr) -> None:
-    assert complaint(problem(running_cost=cost)) == (
-        "task: H_uu is singular, so H_u = 0 does not determine the controls"
+@pytest.mark.parametrize("cost", [u1**2, (u1 * sin(q1)) ** 2 + (u1 * cos(q1)) ** 2], ids=str)
+def test_a_control_that_is_linear_beside_others_is_refused_where_nothing_limits_it(cost: sp.Expr) -> None:
+    said = "task: H is linear in u2, which nothing limits; state a Box or a Ball"
+    assert complaint(problem(running_cost=cost)) == said
+
+
+def test_a_singular_second_derivative_is_refused() -> None:
+    assert complaint(problem(running_cost=(u1 + u2) ** 2)) == (
+        "task: H_uu of u1, u2 is singular, so H_u = 0 does not determine them; weigh the square of each"
     )
 
 

@@ -20,6 +20,7 @@ from satsym.control_part import DIRECTED, Branch
 from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle
+from satsym.symbolic.principle.control_sets import refuse_singular
 from satsym.symbolic.principle.parts import Part
 from satsym.symbolic.principle.stationary import indefinite, minimiser, nearest_angle, with_angle
 from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
@@ -228,17 +229,10 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
     if all(entry == 0 for entry in rows):
         if part.kind == "free":
             raise DerivationError(f"{name}: H is linear in {controls}, which nothing limits; state a Box or a Ball")
-        if part.kind == "box" and len(slopes) > 1:
-            boxes = ", ".join(f'"{u.name}": Box("{u.name}")' for u in part.symbols)
-            raise DerivationError(
-                f"{name}: H is linear in each of {controls}, which switch one by one; state them so: "
-                f"control_sets={{{boxes}, ...}}"
-            )
         if part.kind != "box" and len(slopes) == 1:
             raise DerivationError(f"{name}: H is linear in {controls} alone, which does not turn; state a Box")
         return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
-    if sp.simplify(rows.det()) == 0:
-        raise DerivationError(f"{name}: H_uu of {controls} is singular, so H_u = 0 does not determine them")
+    refuse_singular(name, part.kind, part.symbols, rows)
     if part.kind == "box" and rows.is_diagonal() and any(_falls(name, side * row) for row in rows.diagonal()):
         bends, falls = rows.diagonal(), (side * tidy(-entry) for entry in load)
         each = zip(part.symbols, bends, falls, strict=True)

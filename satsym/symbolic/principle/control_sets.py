@@ -13,6 +13,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
+from satsym.control_part import PartKind
 from satsym.spec import ControlSetKind, Variable
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.minimisers import Clip, Shorten
@@ -71,6 +72,27 @@ def refuse_unequal(hessian: sp.Matrix) -> None:
     m = hessian.rows
     if sp.simplify(hessian - hessian[0, 0] * sp.eye(m)) != sp.zeros(m, m):
         raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
+
+
+def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], hessian: sp.Matrix) -> None:
+    """Refuse controls of one set of which H_u = 0 does not determine every one.
+
+    Parameters
+    ----------
+    hessian
+        H_uu of them.
+    """
+    if sp.simplify(hessian.det()) != 0:
+        return
+    names = ", ".join(u.name for u in controls)
+    linear = [u.name for k, u in enumerate(controls) if all(sp.simplify(entry) == 0 for entry in hessian.row(k))]
+    if linear and kind == "free":
+        message = f"H is linear in {', '.join(linear)}, which nothing limits; state a Box or a Ball"
+        raise DerivationError(f"{name}: {message}")
+    if linear and kind in ("ball", "annulus"):
+        refuse_unequal(hessian)
+    message = f"H_uu of {names} is singular, so H_u = 0 does not determine them; weigh the square of each"
+    raise DerivationError(f"{name}: {message}")
 
 
 def ordered(control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:

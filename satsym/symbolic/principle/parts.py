@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -12,6 +13,7 @@ from satsym.spec import Variable
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
+from satsym.symbolic.sets import AdmissibleSet, Angle, Annulus, Ball, Box, Free
 
 SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
 """What follows the bounds in the ``bounds`` argument of kernels where controls are directions."""
@@ -28,6 +30,8 @@ def minimum_norm_of(part: Part) -> Variable:
     latex = rf"{control_sets.letter_of(part.controls)}_{{\mathrm{{{part.name}}}}}^{{\min}}"
     return Variable(f"{part.name}_least", latex, part.controls[0].unit, positive=True)
 
+
+STATED: Mapping[PartKind, type[AdmissibleSet]] = {one.kind: one for one in (Free, Box, Ball, Annulus, Angle)}
 
 SINGLE = "control"
 """The name of the one set of a problem that was stated in short."""
@@ -76,6 +80,9 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
     declared = {v.symbol: v for v in problem.model.controls}
     seen: list[str] = []
     found = []
+    boxed = {control for one in problem.control_sets.values() if one.kind == "box" for control in one.controls}
+    # the norm of the only vector is called as that of all controls would be, unless it is the bound of a control u
+    single = "u" not in boxed and sum(one.kind in ("ball", "annulus") for one in problem.control_sets.values()) == 1
     for name, one in problem.control_sets.items():
         if not one.controls or (one.kind == "angle" and len(one.controls) != 1):
             wanted = "one control" if one.kind == "angle" else "its controls"
@@ -86,7 +93,7 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
                     f"{problem.name}: control_sets {name!r}: {control!r} is no control; there are {', '.join(declared)}"
                 )
         seen += one.controls
-        mark = "" if sum(other.kind in ("ball", "annulus") for other in problem.control_sets.values()) == 1 else name
+        mark = "" if single else name
         found.append(_part(name, one.kind, tuple(declared[c] for c in one.controls), mark))
     for control in declared:
         if (times := seen.count(control)) != 1:
@@ -110,6 +117,35 @@ def as_one(problem: Problem) -> Problem:
     if kinds == {"box"}:
         return replace(problem, control_set="box", control_sets={})
     return replace(problem, control_sets={}) if kinds == {"free"} else problem
+
+
+def boxes_apart(problem: Problem, switched: Collection[str]) -> Problem:
+    """The same with a box for each of these controls that is in one with others; itself where none is.
+
+    Raises
+    ------
+    DerivationError
+        If its sets are not sets of the model's controls, each control in one of them.
+    """
+    every = parts_of(problem)
+    found: dict[str, AdmissibleSet] = {}
+    for part in every:
+        names = tuple(v.symbol for v in part.controls)
+        alone = [c for c in names if c in switched] if part.kind == "box" and len(names) > 1 else []
+        rest = [c for c in names if c not in alone]
+        taken = {other.name for other in every if other is not part} | found.keys()
+        for control in alone:
+            found[_free_name(control, taken | found.keys())] = Box(control)
+        if rest:
+            found[part.name if not alone else _free_name(part.name, taken | found.keys())] = STATED[part.kind](*rest)
+    same = len(found) == len(every)
+    return problem if same else replace(problem, control_set="free", control_sets=found)
+
+
+def _free_name(wanted: str, taken: Collection[str]) -> str:
+    """The name, with a number after it where it is taken."""
+    numbered = (f"{wanted}{k}" for k in itertools.count(2))
+    return next(name for name in itertools.chain([wanted], numbered) if name not in taken)
 
 
 def limits_of(problem: Problem) -> tuple[Variable, ...]:

@@ -221,8 +221,7 @@ def _linear_system(
         rows, load = sp.linear_eq_to_matrix(h_u, controls)
     except NonlinearError:
         raise DerivationError(f"{so_far.name}: H is not quadratic in the controls, H_u = 0 not linear") from None
-    if sp.simplify(rows.det()) == 0:
-        raise DerivationError(f"{so_far.name}: H_uu is singular, so H_u = 0 does not determine the controls")
+    control_sets.refuse_singular(so_far.name, _problem(so_far).control_set, controls, rows)
     return rows, load
 
 

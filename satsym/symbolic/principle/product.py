@@ -20,11 +20,11 @@ from satsym.symbolic.chain import named_parts
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
-from satsym.symbolic.model import symbols_of
+from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
-from satsym.symbolic.principle.parts import limits_of, parts_of, weighed
+from satsym.symbolic.principle.parts import boxes_apart, limits_of, parts_of, weighed
 from satsym.symbolic.principle.path.stationary_controls import refuse_jumping
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates, numeric_gradient
 from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
@@ -97,6 +97,35 @@ def needs_its_sets(so_far: Derivation) -> bool:
     parameters, cost = symbols_of(so_far.model.parameters), problem.running_cost
     bends = (sp.simplify(sp.diff(cost, u, 2)) for u in symbols_of(so_far.model.controls))
     return any(_either_sign(so_far, bend, parameters) for bend in bends)
+
+
+def as_sets(so_far: Derivation, stated: Problem) -> Problem | None:
+    """The problem with a box for each control that switches beside others; ``None`` where it can stay as it is.
+
+    Parameters
+    ----------
+    so_far
+        Up to the motion, of the problem with boxes put together in one where it has no other sets.
+    stated
+        The problem as it is stated.
+    """
+    apart = boxes_apart(stated, _linear(so_far, stated))
+    together = problem_of(so_far).control_set == "box" and bool(stated.control_sets)
+    if apart is not stated or (together and (needs_its_sets(so_far) or _linear(so_far, stated))):
+        return apart
+    return None
+
+
+def _linear(so_far: Derivation, stated: Problem) -> set[str]:
+    """Controls in boxes on which cost and motion depend linearly, without products with others of the same box."""
+    given = [sp.sympify(e) for e in (problem_of(so_far).running_cost, *so_far.rhs("first_order"))]
+    found = set()
+    for part in parts_of(stated):
+        for u in part.symbols if part.kind == "box" else ():
+            slopes = [sp.diff(e, u) for e in given]
+            if all(sp.simplify(sp.diff(slope, v)) == 0 for slope in slopes for v in part.symbols if slope.has(v)):
+                found.add(u.name)
+    return found
 
 
 def control_parts(so_far: Derivation) -> Step:

@@ -15,6 +15,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.concentrated import concentrated, from_the_start
 from satsym.solvers.switching.cold_start.recognition import guess, sample
+from satsym.spec import ProblemSpec
 
 SWITCHED = 0.35
 """Share of the time at most for which norms are far from their bounds where a structure is to be recognised."""
@@ -42,8 +43,16 @@ def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, lim
             break
     message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
     if shares[-1] > SWITCHED or _steady(shares):
-        message = "for some time nothing decides the norm of a vector, and no law is known there"
+        message = f"for some time nothing decides {_undecided(instance.model.spec)}, and no law is known there"
     return stopped(problem, instance, curve, message, limits)
+
+
+def _undecided(spec: ProblemSpec) -> str:
+    """What is neither at its least nor at its largest for some time, as far as the kinds of sets tell."""
+    single = [c for part in spec.control_parts if part.branch == "switched" for c in part.controls]
+    if single and all(part.branch != "throttled" for part in spec.control_parts):
+        return f"the value of {' or '.join(single)}"
+    return "the value of a control" if single else "the norm of a vector"
 
 
 def _steady(shares: Sequence[float]) -> bool:
