@@ -13,9 +13,10 @@ from satsym.solvers.certificate.switching import boundaries
 from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
-from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, TooMuchWork
+from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, Span, TooMuchWork
+from satsym.solvers.certificate.switching.next_switch import noise
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
-from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
+from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
 from satsym.solvers.certificate.switching.variation import convex, variation
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
@@ -116,6 +117,8 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     extended = with_end_switches(again, _along(again)[0])
     rates, gap, distance = _strictness(again, extended, free)
     checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
+    if _decided_by_signs(solution, again, free):
+        return [Check("switching function vanishes on an arc", float(_vanishes(solution, again, extended)), 0.0)]
     checks += [
         Check("strict bang-bang condition", float(not rates > STRICT), 0.0),
         Check("coinciding switching times", float(not gap > STRICT), 0.0),
@@ -137,6 +140,38 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
         checks.append(Check("second variation in the switching times", float(flat), 0.0))
         checks += [LATER] if second is not None and flat and second.flat_by_shift(CURVED) else []
     return checks
+
+
+def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bool:
+    """Whether the signs of the switching functions say all: in a convex problem, saturated all along.
+
+    No admissible motion costs less than such an extremal, and one that costs the same has the same control wherever
+    the switching function is not zero (Mangasarian, see :func:`convex`): it need not pass through its zeros at a rate,
+    and at the end several of its rates may vanish as well.
+    """
+    if any(free) or solution.instance.model.spec.throttled:
+        return False
+    saturated = all(piece.field.kept is None for piece in again.pieces) and not boundaries.on_boundary(again)
+    return saturated and convex(solution)
+
+
+def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
+    """Whether a switching function is, away from its switches, no further from its zeros than errors may take it.
+
+    It is next to nothing shortly before an end at which several of its rates vanish, but beyond these errors.
+    """
+    by = Integration(np.concatenate(typical(solution)), Limits(MOST, float("inf")))
+    lasting = float(again.times[-1] - again.times[0])
+    sizes, marks = _along(again)
+    for control, (times, margin) in enumerate(marks):
+        for piece in again.pieces:
+            own = extended.switching_times(control)
+            away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
+            here = (times >= piece.start) & (times <= piece.end) & (away > CLOSE * lasting)
+            errors = noise(Span(piece.field, piece.start, piece.end, piece.before), control, by, piece.spread)
+            if (margin[here] <= max(errors, UNDECIDED * sizes[control])).any():
+                return True
+    return False
 
 
 def _moved(solution: Solution, again: Replay) -> float:

@@ -35,11 +35,13 @@ def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
         if (level := _beyond(last.field, last.end, last.after, control, size)) is not None:
             field = _at(pieces[-1].field, control, level)
             pieces[-1] = replace(pieces[-1], switched=control)
-            pieces.append(Piece(field, last.end, last.end, last.after, last.after, None, np.eye(len(last.after))))
+            pieces.append(
+                Piece(field, last.end, last.end, last.after, last.after, None, np.eye(len(last.after)), last.spread)
+            )
         if (level := _beyond(first.field, first.start, first.before, control, size)) is not None:
             field = _at(pieces[0].field, control, level)
             same = np.eye(len(first.before))
-            pieces.insert(0, Piece(field, first.start, first.start, first.before, first.before, control, same))
+            pieces.insert(0, Piece(field, first.start, first.start, first.before, first.before, control, same, same))
     return replace(again, pieces=pieces)
 
 

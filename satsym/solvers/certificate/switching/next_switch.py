@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.certificate.switching.integration import Integration, Span
+from satsym.solvers.certificate.switching.integration import TOLERANCE, Integration, Span
 from satsym.solvers.switching.cold_start.recognition import levels
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR
@@ -19,6 +19,10 @@ POLISHED = 6
 AT_ONCE = 1e-9
 """Share of the time that is left within which a switch is the one that began the arc; and share of its size at which a
 switching function counts as zero there."""
+
+CLEAR = 1e-6
+"""Share of its size by which a switching function changes in the time that is left, at its rate at a zero, where nobody
+doubts that it passes it."""
 
 TOUCHED = 1e-11
 """Share of its size by which a switching function has to be beyond a zero, if it is not only touched."""
@@ -83,8 +87,16 @@ class Mark:
         return value
 
 
-def next_switch(span: Span, settled: list[bool], by: Integration) -> tuple[float, int] | None:
-    """When, and of which control, the next change of sign is.
+def next_switch(span: Span, settled: list[bool], by: Integration, spread: Array) -> tuple[float, int] | None:
+    """When, and of which control, the next change of sign is; ``None`` where there is none that rounding may not make.
+
+    Where a switching function and several of its rates vanish at the end, as if switches went on without end, it is
+    next to nothing long before, and its sign there is that of the errors which the flow has made until then.
+
+    Parameters
+    ----------
+    spread
+        How values at the start of the span follow those with which the flow began, shape (2n, 2n).
 
     Raises
     ------
@@ -119,14 +131,45 @@ def next_switch(span: Span, settled: list[bool], by: Integration) -> tuple[float
         and sign * mark.gap(t, y.tolist())[0] < -TOUCHED * mark.size(t, y, by.sizes)
     ]
     if between and min(between) < float(found.t[-1]):
-        earlier = next_switch(span.until(min(between)), settled, by)
+        earlier = next_switch(span.until(min(between)), settled, by, spread)
         if earlier is not None:
             return earlier
     if found.status == 0:
         return None
     which = next(k for k, times in enumerate(found.t_events[: len(marks)]) if len(times))
     when = _polished(marks[which], span, float(found.t_events[which][0]), by)
-    return (when, marks[which].control) if span.end - when > AT_THE_END * span.lasting else None
+    if span.end - when <= AT_THE_END * span.lasting or not _told(marks[which], span, when, by, spread):
+        return None
+    return when, marks[which].control
+
+
+def noise(span: Span, control: int, by: Integration, spread: Array) -> float:
+    """Up to which errors of integration make a switching function what it is at the end of a span.
+
+    To first order: each component is wrong by the tolerance, when the flow begins and when the span does.
+    """
+    z, transition = by.transition(span)
+    row = span.field.gradient(span.end, z.tolist(), control) @ transition
+    return TOLERANCE * float((np.abs(row) + np.abs(row @ spread)) @ by.sizes)
+
+
+def _told(mark: Mark, span: Span, when: float, by: Integration, spread: Array) -> bool:
+    """Whether a switching function is anywhere after a zero further beyond it than errors take it."""
+    there = by.end(span.until(when))
+    _, rate = mark.gap(when, there.tolist())
+    if abs(rate) * (span.end - when) > CLEAR * mark.size(when, there, by.sizes):
+        return True
+    least = noise(span, mark.control, by, spread)
+
+    def beyond(t: float, y: Array) -> float:
+        return abs(mark.gap(t, y.tolist())[0]) - least
+
+    beyond.terminal = True  # type: ignore[attr-defined]
+    rest = Span(span.field, when, span.end, there)
+    found = by.solved(
+        lambda t, y: span.field.rates(t, y.tolist()), rest, there, by.sizes, events=beyond, max_step=rest.lasting / 16.0
+    )
+    return found.status == 1 or beyond(span.end, found.y[:, -1]) > 0.0
 
 
 def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | None:

@@ -54,6 +54,8 @@ class Piece:
     """The control whose switch ends it; ``None`` at the final time."""
     transition: Array
     """Derivatives of ``after`` by ``before``, shape (2n, 2n)."""
+    spread: Array
+    """Those of ``before`` by what the flow began with, times of switches moving as well, shape (2n, 2n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,17 +151,20 @@ class _Again:
         cost = gap = 0.0
         anew: list[tuple[float, Array]] = [*self.anew, (end, z)]
         whole = True
+        spread: Array = np.eye(len(z))
         while len(pieces) <= MOST_SWITCHES:
-            piece, levels = self._piece(Span(equations(instance, levels), t, anew[0][0], z))
+            piece, levels = self._piece(Span(equations(instance, levels), t, anew[0][0], z), spread)
             row, added = self._stations(piece, stations)
             rows.append(row)
             pieces = [*pieces, piece] if whole else [*pieces[:-1], _joined(pieces[-1], piece)]
             t, z, cost, whole = piece.end, piece.after, cost + added, piece.switched is not None
+            spread = _spread(piece, equations(instance, levels))
             if any(isinstance(one, BoundaryField) for one in (piece.field, equations(instance, levels))):
                 z = z + jump(self.solution, t)
             if t >= anew[0][0] and len(anew) > 1:
                 (_, value), *anew = anew
                 gap, z = max(gap, float((np.abs(value - z) / self.by.sizes).max())), value
+                spread = np.eye(len(z))
             elif piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
                 cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
@@ -181,12 +186,12 @@ class _Again:
             found.append(best_level(resting, t, z.tolist(), i, 1e-6 * (end - t) if near else 0.0))
         return tuple(found)
 
-    def _piece(self, span: Span) -> tuple[Piece, tuple[int, ...]]:
+    def _piece(self, span: Span, spread: Array) -> tuple[Piece, tuple[int, ...]]:
         """The arc from a time to the next switch, and the levels after it."""
         field, start = span.field, span.start
         together = at_once(span, self.settled, self.by.sizes)
         if together is not None:
-            piece = Piece(field, start, start, span.z, span.z, together[0], np.eye(len(span.z)))
+            piece = Piece(field, start, start, span.z, span.z, together[0], np.eye(len(span.z)), spread)
             return piece, _with(field.levels, *together)
         known = [
             (now[1], i, after[2])
@@ -196,13 +201,13 @@ class _Again:
             and start + 1e-12 * span.lasting < now[1] <= span.end
         ]
         until, switched, level = min(known, default=(span.end, None, None))
-        met = next_switch(span.until(until), self.settled, self.by)
+        met = next_switch(span.until(until), self.settled, self.by, spread)
         touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
         if met is not None and not touching:
             until, switched = (self._stated(span, *met) if self.closely else met[0]), met[1]
             level = None
         after, transition = self.by.transition(span.until(until))
-        piece = Piece(field, start, until, span.z, after, switched, transition)
+        piece = Piece(field, start, until, span.z, after, switched, transition, spread)
         if switched is None:
             return piece, field.levels
         if level is None:
@@ -240,7 +245,27 @@ class _Again:
 
 def _joined(first: Piece, second: Piece) -> Piece:
     """Two parts of one arc."""
-    return replace(second, start=first.start, before=first.before, transition=second.transition @ first.transition)
+    whole = second.transition @ first.transition
+    return replace(second, start=first.start, before=first.before, transition=whole, spread=first.spread)
+
+
+def _spread(piece: Piece, following: Field) -> Array:
+    """How values after an arc, and after the switch that ends it, follow those with which the flow began.
+
+    A deviation moves the switch, and for as long the other field acts; where the switching function does not change at
+    a rate there, by how much is not told to first order, and nothing is added.
+    """
+    found = piece.transition @ piece.spread
+    if piece.switched is None or max(piece.field.kept is not None, following.kept is not None):
+        return found
+    t, z, control = piece.end, piece.after.tolist(), piece.switched
+    ratio = piece.field.ratio(control, (piece.field.levels[control], following.levels[control]))
+    _, rate = piece.field.passing(t, z, control, ratio)
+    if rate == 0.0:
+        return found
+    later = -(piece.field.passing_gradient(t, z, control, ratio) @ found) / rate
+    jump = np.array(piece.field.rates(t, z)) - np.array(following.rates(t, z))
+    return np.asarray(found + np.outer(jump, later))
 
 
 def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:
