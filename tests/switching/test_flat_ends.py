@@ -14,6 +14,9 @@ from satsym.solution import Certificate
 from satsym.solvers.certificate import certify
 from satsym.status import Status, Verdict
 
+ENDS = [(2, 1.5, 1), (2, 2.4, 1), (3, 3.0, 1), (3, 4.5, 3), (3, 5.0, 4), (4, 5.0, 2), (4, 6.0, 3)]
+"""Orders, final times and numbers of switches, short of those from which on they go on without end."""
+
 
 def integrators(order: int, tf: float, weight: float = 1.0) -> satsym.Solution:
     """The highest derivative of x in [-1, 1], from x = 1 at rest, for the least integral of its square."""
@@ -52,7 +55,8 @@ def moved(solution: satsym.Solution, costates: Array | float = 1.0, last: float 
     return certify(replace(found, times=nodes, lam=found.lam * costates, switching_times=(times,)), compared=False)
 
 
-@pytest.mark.parametrize(("order", "tf", "switches"), [(2, 3.0, 2), (3, 3.0, 1), (3, 4.5, 3), (3, 5.0, 4)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("order", "tf", "switches"), ENDS)
 def test_a_switching_function_that_is_flat_at_the_end_is_no_switch_there(order: int, tf: float, switches: int) -> None:
     found = integrators(order, tf)
     assert found.status is Status.CONVERGED, found.message
@@ -89,6 +93,7 @@ def test_what_is_stated_wrongly_at_a_flat_end_fails() -> None:
             assert other.verdict is Verdict.FAILED, costate
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weight", [1e-6, 1e6])
 def test_its_verdict_does_not_depend_on_units_of_the_cost(weight: float) -> None:
     found = integrators(3, 4.5, weight)

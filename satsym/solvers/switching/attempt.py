@@ -41,8 +41,8 @@ NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
 
 FLEETING = 1e-4
-"""The same beside a singular arc, if there is an extremal without: there a switching function has a double zero, and
-within so little time it comes to nothing that could be seen."""
+"""The same beside a singular arc or at an end, if there is an extremal without: there a switching function may have a
+double zero, and within so little time it comes to nothing that could be seen."""
 
 
 class Origin(Enum):
@@ -115,11 +115,12 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
 
 
 def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> Exact | None:
-    """The same without an arc that is next to nothing beside a singular one, if that is an extremal as well."""
+    """The same without an arc that is next to nothing beside a singular one or at an end, if that is one as well."""
     lengths, lasting = found.structure.durations(found.at.times, instance.t0, found.at.end), found.at.end - instance.t0
     for control, (row, own) in enumerate(zip(found.structure.levels, lengths, strict=True)):
         for arc in np.flatnonzero(own < FLEETING * lasting).tolist():
-            if SINGULAR in row[max(arc - 1, 0) : arc + 2] and row[arc] != SINGULAR:
+            beside = SINGULAR in row[max(arc - 1, 0) : arc + 2] or arc in (0, len(row) - 1)
+            if beside and row[arc] != SINGULAR and len(row) > 1:
                 less = replace(_dropped(found, control, arc), course=at.course, bounded=at.bounded)
                 return attempt(instance, less, limits)
     return None

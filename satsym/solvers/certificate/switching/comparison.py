@@ -22,6 +22,9 @@ COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
 DRAWN, BESIDE = 20012, (0.75, 1.3)
 """Seed of other starts where vectors are throttled, and other durations as shares of the solution's."""
 
+FURTHER = 8
+"""Starts besides where vectors are throttled, as long as none leads to an extremal."""
+
 MEETING = 20013
 """Seed of costates that are drawn."""
 
@@ -102,14 +105,13 @@ def _both(one: Competitors, other: Competitors) -> Competitors:
 
 
 def _drawn(solution: Solution, limits: Limits) -> Competitors:
-    """Extremals with throttled vectors from other starts, or in other durations."""
+    """Extremals with throttled vectors from other starts, or in other durations; more of these where none is found."""
     from satsym.solvers.switching.cold_start import by_throttle
 
     instance, rng = solution.instance, np.random.default_rng(DRAWN)
-    found = by_throttle.others(instance, float(solution.times[-1]) - instance.t0, limits, rng, BESIDE)
-    costs = [exact.trajectory.cost(instance) for exact in found]
-    kind = allowed(instance)[0]
-    return Competitors(kind, len(by_throttle.AMPLITUDES), len(costs), min(costs, default=float("nan")))
+    found = list(by_throttle.others(instance, float(solution.times[-1]) - instance.t0, limits, rng, BESIDE, FURTHER))
+    costs = [exact.trajectory.cost(instance) for exact in found if exact is not None]
+    return Competitors(allowed(instance)[0], len(found), len(costs), min(costs, default=float("nan")))
 
 
 def _around(solution: Solution, limits: Limits) -> Competitors | None:

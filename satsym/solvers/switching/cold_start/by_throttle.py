@@ -30,6 +30,9 @@ POINTS, NEAR, FAINT = 401, 1e-3, 1e-9
 """Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
 of ends that it meets, relative to sizes."""
 
+NEARER = 0.5
+"""By so much nearer to the straight line, or to the duration, further starts are than the ones before."""
+
 BESIDE = (0.6, 1.6)
 """Shares of a free duration that was found at which others are looked for."""
 
@@ -111,17 +114,34 @@ def coasting(instance: Instance, limits: Limits) -> Exact | None:
 
 
 def others(
-    instance: Instance, duration: float, limits: Limits, rng: np.random.Generator, shares: tuple[float, float]
-) -> Iterator[Exact]:
-    """Extremals from paths that are drawn; or in other durations, where these are free."""
-    plain = replace(instance, guess=Guess())
-    starts = [partial(bent, plain, rng, amplitude) for amplitude in AMPLITUDES]
-    if instance.tf is None:
-        starts = [partial(directed, _guessed(plain, share * duration), effort=False) for share in shares]
-    for start in starts:
+    instance: Instance,
+    duration: float,
+    limits: Limits,
+    rng: np.random.Generator,
+    shares: tuple[float, float],
+    further: int = 0,
+) -> Iterator[Exact | None]:
+    """Extremals from paths that are drawn; or in other durations, where these are free. ``None`` for each that fails.
+
+    Parameters
+    ----------
+    shares
+        Of the duration, where it is free.
+    further
+        Starts at most as long as none has led to an extremal: whether a single one does may hang on the last digit.
+    """
+    plain, answered = replace(instance, guess=Guess()), False
+    for number in range(len(AMPLITUDES) + further):
+        if number >= len(AMPLITUDES) and answered:
+            return
+        which, nearer = number % len(AMPLITUDES), NEARER ** (number // len(AMPLITUDES))
+        start = partial(bent, plain, rng, nearer * AMPLITUDES[which])
+        if instance.tf is None:
+            beside = _guessed(plain, (1.0 + nearer * (shares[which] - 1.0)) * duration)
+            start = partial(directed, beside, effort=False)
         found = None if limits.expired else tried(partial(start, limits=limits, unsmoothed=arcs))
-        if isinstance(found, Exact):
-            yield found
+        answered = answered or isinstance(found, Exact)
+        yield found if isinstance(found, Exact) else None
 
 
 def _guessed(instance: Instance, duration: float) -> Instance:
