@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import sympy as sp
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from satsym.symbolic.factoring import factored
@@ -94,12 +95,22 @@ def shortened(expression: sp.Expr) -> sp.Expr:
         return expression
     if operations * turned > TURNING and _differs_from_zero(expression):
         return expression
-    logarithms = {e: sp.Dummy(real=True) for e in expression.atoms(sp.log)}
+    named, steep = _steep_named(expression)
+    alone = {f: sp.Dummy(real=True) for f in named.atoms(HyperbolicFunction) if _is_alone(f, named)}
+    named, steep = named.xreplace(alone), steep | {dummy: f.xreplace(steep) for f, dummy in alone.items()}
+    logarithms = {e: sp.Dummy(real=True) for e in named.atoms(sp.log)}
     if not logarithms:
-        return sp.simplify(expression)
-    if sp.simplify(expression) == 0:
+        return sp.simplify(named).xreplace(steep)
+    if sp.simplify(named) == 0:
         return sp.Integer(0)
-    return sp.simplify(expression.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
+    simple = sp.simplify(named.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
+    return simple.xreplace(steep)
+
+
+def _is_alone(function: sp.Expr, within: sp.Expr) -> bool:
+    """Whether nothing is known of this function together with others: sympy would look for that for minutes."""
+    others = within.atoms(HyperbolicFunction, sp.exp) - {function}
+    return not any(other.free_symbols & function.free_symbols for other in others)
 
 
 def shortest(*forms: sp.Expr) -> sp.Expr:
@@ -181,13 +192,35 @@ def _parted(expression: sp.Expr, by: tuple[sp.Symbol, ...]) -> sp.Expr:
 def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
     """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h.
 
-    So are those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as e^(-(x - 5/2)^2):
-    their factors have no moderate numbers of their own.
+    And e^(2.34 h) is the 117th power of e^(h/50). Those whose exponents are small multiples of a common one are powers
+    of one symbol. So are named those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as
+    e^(-(x - 5/2)^2): their factors have no moderate numbers of their own.
     """
     scaled = (e for e in expression.atoms(sp.exp) if not e.args[0].is_number)
-    exponentials = [e for e in scaled if _scales_a_difference(e) or any(abs(c) > STEEP for c in _coefficients(e))]
-    named = {e: sp.Dummy(f"e{k}", positive=True) for k, e in enumerate(sorted(exponentials, key=sp.default_sort_key))}
-    return expression.xreplace(named), {dummy: e for e, dummy in named.items()}
+    exponentials = [e for e in scaled if _scales_a_difference(e) or any(map(_is_steep, _coefficients(e)))]
+    families: dict[sp.Expr, dict[sp.Expr, sp.Expr]] = {}
+    for e in sorted(exponentials, key=sp.default_sort_key):
+        factor, exponent = sp.expand(e.args[0]).primitive()
+        side = -1 if exponent.could_extract_minus_sign() else 1
+        families.setdefault(side * exponent, {})[e] = side * factor
+    named: dict[sp.Expr, sp.Expr] = {}
+    meant: dict[sp.Symbol, sp.Expr] = {}
+    for exponent, factors in families.items():
+        common = reduce(sp.gcd, factors.values())
+        if max(abs(f) for f in factors.values()) > STEEP * common:
+            powers = [({e: sp.Integer(1)}, e) for e in factors]
+        else:
+            powers = [({e: factor / common for e, factor in factors.items()}, sp.exp(common * exponent))]
+        for exponents, base in powers:
+            symbol = sp.Dummy(f"e{len(meant)}", positive=True)
+            meant[symbol] = base
+            named |= {e: symbol**n for e, n in exponents.items()}
+    return expression.xreplace(named), meant
+
+
+def _is_steep(coefficient: sp.Expr) -> bool:
+    """Whether a coefficient in an exponent makes a high power, or none that sympy sees."""
+    return abs(coefficient.p if coefficient.is_Rational else coefficient) > STEEP
 
 
 def _scales_a_difference(exponential: sp.exp) -> bool:

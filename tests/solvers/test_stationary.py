@@ -86,6 +86,8 @@ LAWS: dict[str, tuple[Expr, tuple[float, float] | None]] = {
     "quartic_in_a_box": (w**4 / 4 + w**2 / 2, (-0.5, 1.0)),
     "flat_quartic": (w**4, None),
     "rest_outside_the_box": (cosh(w) + w**2 / 2, (0.2, 1.0)),
+    "length_in_a_box": (sqrt(1 + w**2), (-0.5, 2.0)),
+    "exponential_in_a_box": (2 * exp(w), (-1.0, 1.5)),
     "stiff": (exp(20 * w) + w**2 / 2, (-3.0, 3.0)),
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import mpmath as mp
 import pytest
 import sympy as sp
@@ -133,3 +135,24 @@ def test_decimals_are_fractions_and_back() -> None:
     sides = numeric([again, expression])
     with mp.workdps(30):
         assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "decimals"))
+
+
+@pytest.mark.parametrize("make", [tidy, simplified, shortened])
+def test_an_exponential_with_a_decimal_in_it_is_no_high_power_of_another(make: Callable[[sp.Expr], sp.Expr]) -> None:
+    """With fractions for decimals sympy takes exp(2.34121812381485 q) for the power 46824362476297 of a root of exp."""
+    steep = sp.exp(-sp.Rational("2.34121812381485") * q**2)
+    assert make((steep * x + steep**3 / y) / steep - x - steep**2 / y).xreplace({q: sp.Rational(3, 7)}).evalf() == 0
+    assert make(steep**2 - sp.exp(-sp.Rational("4.6824362476297") * q**2)) == 0
+    assert simplified((1 + steep) ** 2 - 1 - 2 * steep - steep**2) == 0
+    assert simplified((steep - 2 * steep**2) / (1 - 2 * steep)) == steep
+
+
+def test_one_hyperbolic_function_is_a_letter_to_sympy() -> None:
+    """Its search for identities takes minutes where there are none."""
+    h = sp.tanh(q)
+    long = sum(k * y * (x + h**2) / (k * h**2 * x + h**2 + y + 1) ** (k % 2 + 1) for k in range(1, 6))
+    assert vanishes((1 + h**2) / (1 + h) - (1 + h**2) ** 2 / (1 + h + h**2 + h**3))
+    assert shortened(long).has(h)
+    assert vanishes(sp.cosh(q) ** 2 - sp.sinh(q) ** 2 - 1)
+    assert vanishes(sp.sinh(q) - h * sp.cosh(q))
+    assert vanishes(sp.cosh(q) - (sp.exp(q) + sp.exp(-q)) / 2)

@@ -1,6 +1,7 @@
 """Controls on which H depends neither linearly nor quadratically: its minimiser, one control at a time.
 
-Where the slope of H is ``a f(u) + b`` with a function that can be inverted, the minimiser is stated in closed form;
+Where the slope of H is ``a f(u) + b`` with a function that can be inverted, the minimiser is stated in closed form if
+the function takes all values or the control has no bounds, at which H may be least where the slope does not vanish;
 else it is the root of a slope that grows, found to the last digits where the law is evaluated. Of ``a cos u + b sin u``
 between bounds it is the direction of ``(-a, -b)``, or the end of the interval nearest to that. A control that
 multiplies what an angle turns, such as a lift, has two minimisers, one of either sign: they are compared. Of a
@@ -27,6 +28,9 @@ SAMPLES, CONTROLS = 10, 12
 
 INVERTED = 8
 """Operations of a function that sympy is asked to invert, at most."""
+
+REACH = (-3, 0, 3, 9)
+"""Decades of the values of which inverses are asked."""
 
 PRINTED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
 
@@ -59,7 +63,7 @@ def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
     constant = terms.pop(sp.Integer(1), sp.Integer(0))
     if len(terms) == 1:
         ((function, factor),) = terms.items()
-        if (inverse := _inverse(function, u)) is not None:
+        if (inverse := _inverse(function, u)) is not None and (ends[1] is sp.oo or _everywhere(inverse)):
             law = Convex(*_at(inverse, sp.diff(function, u), u, factor, constant))
             return law if ends[1] is sp.oo else Clip(law, *ends)
     return _root(name, terms, constant, u, ends)
@@ -164,6 +168,14 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
         if all(equal(with_digits(sides, p)) for p in points([u], f"inverse of {function}", CONTROLS)):
             return sp.Lambda(value, solution)
     return None
+
+
+def _everywhere(inverse: sp.Lambda) -> bool:
+    """Whether all values have an inverse, small and large ones of either sign."""
+    (value,), back = inverse.variables, numeric([inverse.expr])
+    with mp.workdps(DIGITS):
+        found = [back({value: side * 1.1 * mp.mpf(10) ** k})[0] for side in (1, -1) for k in REACH]
+    return not any(v != v or mp.isinf(v) or mp.im(v) for v in found)
 
 
 def _at(
