@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from satsym.instance import weights
 from satsym.instance.control import MAX_NORM
 from satsym.instance.resolve import parameters, quantity, time, value_of
 from satsym.spec import ProblemSpec, Variable
@@ -27,6 +28,7 @@ class Table(str, Enum):
     PARAMETERS = "parameters"
     TIME = "time"
     CONTROL = "control"
+    LQR = "lqr"
 
 
 GUESS = "tf_guess"
@@ -78,6 +80,8 @@ class Key:
             if self.name == MAX_NORM and number <= 0.0:
                 raise BadInput(f"{place}: {shown(given)} leaves no control; write a positive number")
             return number
+        if self.table is Table.LQR:
+            return quantity(given, "1", place)
         return value_of(self._variable(spec), given, place)
 
     def spread(self, given: float | str, spec: ProblemSpec) -> float:
@@ -100,6 +104,8 @@ class Key:
                 return instance.max_norm
             bound = float(getattr(instance, self.side)[self._control(spec)])
             return bound if math.isfinite(bound) else None
+        if self.table is Table.LQR:
+            return weights.entry(instance.lqr, self.name, spec.state_names)
         if self.table is Table.FINAL:
             found = instance.final.get(self.name)
             return found if isinstance(found, float) else None
@@ -118,8 +124,8 @@ class Key:
 
     def unit(self, spec: ProblemSpec) -> str:
         """Its unit; of times nothing, for the model says what it counts them in."""
-        if self.table is Table.TIME:
-            return ""
+        if self.table in (Table.TIME, Table.LQR):
+            return "" if self.table is Table.TIME else "1"
         return spec.controls[self._control(spec)].unit if self.table is Table.CONTROL else self._variable(spec).unit
 
     @property
@@ -153,6 +159,8 @@ def placed(instance: Instance, values: Mapping[Key, float]) -> Instance:
             case Table.INITIAL:
                 row = fields.get("initial", instance.initial)
                 fields["initial"] = _with(row, spec.state_names.index(key.name), value)
+            case Table.LQR:
+                fields["lqr"] = weights.placed(fields.get("lqr", instance.lqr), key.name, value, spec.state_names)
             case Table.PARAMETERS:
                 row = fields.get("parameters", instance.parameters)
                 fields["parameters"] = _with(row, spec.parameter_names.index(key.name), value)
@@ -172,6 +180,7 @@ def known(spec: ProblemSpec) -> Iterator[Key]:
         (Table.FINAL, spec.state_names),
         (Table.CONTROL, (MAX_NORM,) if spec.control_set == "ball" else ()),
         (Table.CONTROL, tuple(f"{name}.{side}" for name in _in_boxes(spec) for side in SIDES)),
+        (Table.LQR, weights.entries(spec.state_names, spec.control_names)),
     ):
         for name in names:
             yield Key(table, name)
@@ -270,6 +279,8 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
         if not math.isfinite(value):
             raise BadInput(f"{key.text}: {value} is not finite; give a number")
     found = placed(found, {key: key.value(value, spec) for key, value in ends.items()})
+    if found.lqr and any(key.table is Table.LQR for key in keys):
+        weights.checked(found.lqr.Q, found.lqr.R, found.lqr.N, len(spec.states), len(found.lqr.inputs))
     if any(key.table is Table.PARAMETERS for key in keys):
         parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
     for name, low, high in zip(spec.control_names, found.lower, found.upper, strict=True):

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from satsym.instance.resolve import known, quantity
 from satsym.spec import Variable
 from satsym.status import BadInput
 from satsym.wording import shown
+
+if TYPE_CHECKING:
+    from satsym.instance.types import LqrOptions
 
 Row = tuple[float, ...]
 Matrix = tuple[Row, ...]
@@ -54,6 +59,42 @@ def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) ->
             f"input ({inputs})"
         )
     return found
+
+
+def entries(states: Sequence[str], inputs: Sequence[str]) -> tuple[str, ...]:
+    """Names of weights: ``Q.x`` and ``R.u`` on the diagonals, ``N.x.u``."""
+    return (
+        *(f"Q.{name}" for name in states),
+        *(f"R.{name}" for name in inputs),
+        *(f"N.{state}.{control}" for state in states for control in inputs),
+    )
+
+
+def entry(options: LqrOptions | None, name: str, states: Sequence[str]) -> float | None:
+    """One of these; ``None`` where there is no regulator, or it does not use that input."""
+    if options is None or (place := _place(options, name, states)) is None:
+        return None
+    letter, i, j = place
+    rows = getattr(options, letter)
+    return 0.0 if rows is None else float(rows[i][j])
+
+
+def placed(options: LqrOptions | None, name: str, value: float, states: Sequence[str]) -> LqrOptions | None:
+    """The same with another value of one of these, which nothing checks."""
+    if options is None or (place := _place(options, name, states)) is None:
+        return options
+    letter, i, j = place
+    rows = [list(row) for row in getattr(options, letter) or [[0.0] * len(options.inputs) for _ in states]]
+    rows[i][j] = value
+    return replace(options, **{letter: tuple(map(tuple, rows))})
+
+
+def _place(options: LqrOptions, name: str, states: Sequence[str]) -> tuple[str, int, int] | None:
+    """Which matrix, row and column."""
+    letter, first, *second = name.split(".")
+    rows = options.inputs if letter == "R" else states
+    columns, last = (options.inputs, second[0]) if second else (rows, first)
+    return (letter, rows.index(first), columns.index(last)) if first in rows and last in columns else None
 
 
 def semidefinite(matrix: Sequence[Sequence[float]]) -> bool:

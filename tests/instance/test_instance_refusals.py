@@ -144,7 +144,7 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("lqr", "{Q = [1, 1, 1, [1]], R = [1, 1]}", ["[lqr] Q"]),
         ("lqr", "{Q = [1, 1, 1, 1], R = [[1, 0], [0]]}", ["[lqr] R: row 2"]),
         ("lqr", "{Q = [1, 1, 1, 1], R = [[1, 2], [0, 1]]}", ["[lqr] R", "not symmetric", "row 2"]),
-        ("lqr", "{Q = [1, 1, 1, -1], R = [1, 1]}", ["[lqr] Q", "semidefinite"]),
+        ("lqr", "{Q = [1, 1, 1, 1], R = [1, 1], N = [[1, 0]]}", ["[lqr] N", "each state (4)", "each active input (2)"]),
         ("lqr", "{Q = [1, 1, 1, 1], R = [1, 0]}", ["[lqr] R", "definite"]),
         ("lqr", "{Q = [1, 1, 1, 1], R = [[1, 2], [2, 1]]}", ["[lqr] R", "definite"]),
         ("lqr", '{Q = [1, 1, 1, 1], R = [1], inputs = ["u"]}', ["[lqr] inputs", '"u"', "u1, u2"]),

@@ -60,8 +60,14 @@ class Group:
         return abs(float(self.mean.real)) / size if size else np.inf
 
     def single(self, change: float) -> bool:
-        """Whether a relative change of this size can make the eigenvalues a single one."""
-        return self.apart <= change or sum(self._weyr(change)) == len(self.values)
+        """Whether a relative change of this size can make the eigenvalues a single one.
+
+        Where it has several Jordan blocks, the coefficients beyond the largest of them say nothing to first order.
+        """
+        if self.apart <= change:
+            return True
+        added = self._weyr(change)
+        return sum(added) == len(self.values) and added[0] > 1 and self._solved(len(added)) <= change
 
     def blocks(self, change: float) -> tuple[int, ...]:
         """Sizes of the Jordan blocks that these eigenvalues have as one, where relative changes of this size are none.
@@ -93,7 +99,11 @@ class Group:
     @cached_property
     def apart(self) -> float:
         """The least relative change that makes the eigenvalues a single one, to first order."""
-        rows, wanted = self._equations()
+        return self._solved(len(self.values))
+
+    def _solved(self, highest: int) -> float:
+        """The same by the coefficients up to this one alone."""
+        rows, wanted = self._equations(highest)
         if not wanted.any():
             return 0.0
         change, *_ = np.linalg.lstsq(rows, wanted, rcond=1e-13)
@@ -112,16 +122,16 @@ class Group:
         rest, left, right = (_floats(part) for part in (self._deviation, self.L, self.X))
         reached = np.abs(left[0]) @ np.abs(self.entries) @ np.abs(right[0]) * (left[1] * right[1])
         balanced, (scale, _) = matrix_balance(reached, permute=False, separate=True)
-        each = float(np.abs(balanced).max()) / np.sqrt(max(1, np.count_nonzero(self.entries)))
+        each = float(np.abs(balanced).max()) / max(1, np.count_nonzero(self.entries)) ** 0.5
         return rest[0] * rest[1] * (scale / scale[:, None]), each
 
-    def _equations(self) -> tuple[Array, Array]:
+    def _equations(self, highest: int) -> tuple[Array, Array]:
         """Linear equations for relative changes of the entries: rows of size 1, and what they shall give."""
         m, one = len(self.values), _identity(len(self.values))
         power, rows, wanted = one, [], []
         used = self.entries.ravel() != 0.0
         size, around = _largest(self._deviation) * m, _largest(self.X) * _largest(self.L)
-        for k in range(1, m + 1):  # Faddeev and Le Verrier: coefficients, and their derivatives by entries
+        for k in range(1, highest + 1):  # Faddeev and Le Verrier: coefficients, and their derivatives by entries
             product = self._deviation * power
             coefficient = -product.trace() / k
             if k > 1:
@@ -136,7 +146,7 @@ class Group:
                 elif not vanishes:
                     return np.zeros((1, 1)), np.ones(1)  # no change does that
             power = product + one * coefficient
-        found, right = np.array(rows).reshape(len(rows), -1), np.array(wanted, dtype=complex)
+        found, right = np.array(rows).reshape(len(rows), int(used.sum())), np.array(wanted, dtype=complex)
         if self.mean.imag == 0:
             return found.real, right.real
         return np.vstack([found.real, found.imag]), np.hstack([right.real, right.imag])

@@ -120,15 +120,16 @@ class _Tried:
     def within(self, change: float, rate: float) -> list[tuple[Eigenvalue, ...]]:
         """The eigenvalues if relative changes of this size are none.
 
-        Two groups may both be zero, and yet not a single eigenvalue: then what they are as one comes second.
+        Two groups may both be zero, and yet not a single eigenvalue: then that they are one comes second.
         """
         parts = list(self._told_apart(tuple(range(len(self.exact))), change))
         resting = [members for members in parts if self._one(members, change)[0] == 0.0]
-        possible = [parts]
+        possible = [self._shown(parts, change, rate)]
         if len(resting) > 1:
             together = tuple(sorted(k for members in resting for k in members))
-            possible.append([*(members for members in parts if members not in resting), together])
-        return [self._shown(each, change, rate) for each in possible]
+            others = self._shown([members for members in parts if members not in resting], change, rate)
+            possible.append(_sorted([*others, Eigenvalue(0j, self._tried(together)[0].blocks(change))]))
+        return possible
 
     def _shown(self, parts: list[tuple[int, ...]], change: float, rate: float) -> tuple[Eigenvalue, ...]:
         found = []

@@ -45,10 +45,10 @@ def solve(
     """
     a, b, q, r = (np.asarray(matrix, dtype=np.float64) for matrix in (A, B, Q, R))
     n = a.shape[-1]
-    a, q, ahead = riccati.without_cross(a, b, q, r, None if N is None else np.asarray(N, dtype=np.float64))
-    lead = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in (a, b, q, r)))
+    free, weight, ahead = riccati.without_cross(a, b, q, r, None if N is None else np.asarray(N, dtype=np.float64))
+    lead = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in (free, b, weight, r)))
     per_costate = np.linalg.solve(r, np.swapaxes(b, -1, -2))  # R^-1 B'
-    a, g, q = (np.broadcast_to(each, (*lead, n, n)).reshape(-1, n, n) for each in (a, b @ per_costate, q))
+    a, g, q = (np.broadcast_to(each, (*lead, n, n)).reshape(-1, n, n) for each in (free, b @ per_costate, weight))
     P, left = np.empty(a.shape), np.empty(len(a))
     for start in range(0, len(a), BLOCK):
         part = slice(start, start + BLOCK)

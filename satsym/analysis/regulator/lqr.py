@@ -131,8 +131,8 @@ def lqr(
             run = flow(A, G, weight, horizon)
         except NoLowerBound:
             raise BadInput(
-                "[lqr] horizon: the cost has no lower bound over so long a time, for what the weights Q and N reward "
-                "grows faster than the inputs cost; shorten it, or write larger weights"
+                "[lqr] horizon: the cost has no lower bound over so long a time, for what the weights reward "
+                "outgrows what the inputs cost; shorten it, or write larger weights"
             ) from None
         P, rate = run.T, run.E.T @ weight @ run.E
         eigenvalues = np.linalg.eigvals(A - G @ P).astype(complex)
@@ -248,10 +248,14 @@ def _at_a_frequency(A: Array, B: Array, Q: Array, R: Array) -> str:
             least, worst = lowest, float(frequency)
     if least > NOTHING:
         return ""
-    cause = "has no lower bound" if least < -NOTHING else "has no minimum"
+    if least < -NOTHING:
+        return (
+            f"[lqr] Q: the cost has no lower bound, for at the frequency {worst:.6g} the weights reward a motion by "
+            "more than its inputs cost; write larger weights"
+        )
     return (
-        f"[lqr] Q: the cost {cause}, for at the frequency {worst:.6g} the weights Q and N reward a motion by "
-        f"{'more than' if least < -NOTHING else 'all that'} its inputs cost; write larger weights"
+        f"[lqr] Q: the cost has no minimum, for at the frequency {worst:.6g} the weights reward a motion by all that "
+        "its inputs cost; write larger weights"
     )
 
 

@@ -36,7 +36,7 @@ def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, 
     """Find the gain of minimum cost: u = -K x for the deviation x.
 
     X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
-    cost is the integral of x'Qx + u'Ru, without a factor 1/2.
+    cost is the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find
