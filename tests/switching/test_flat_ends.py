@@ -18,7 +18,7 @@ ENDS = [(2, 1.5, 1), (2, 2.4, 1), (3, 3.0, 1), (3, 4.5, 3), (3, 5.0, 4), (4, 5.0
 """Orders, final times and numbers of switches, short of those from which on they go on without end."""
 
 
-def integrators(order: int, tf: float, weight: float = 1.0) -> satsym.Solution:
+def integrators_instance(order: int, tf: float, weight: float = 1.0) -> satsym.Instance:
     """The highest derivative of x in [-1, 1], from x = 1 at rest, for the least integral of its square."""
     names = [f"x{k}" for k in range(order)]
     x, u = sp.symbols(names, real=True), sp.Symbol("u", real=True)
@@ -27,7 +27,12 @@ def integrators(order: int, tf: float, weight: float = 1.0) -> satsym.Solution:
     chain = satsym.FirstOrder(name="c", title="c", states=states, controls=control, parameters=(), rates=rates)
     problem = satsym.Problem(name="p", title="p", model=chain, running_cost=weight * x[0] ** 2, control_set="box")
     initial = {name: float(k == 0) for k, name in enumerate(names)}
-    return satsym.solve(satsym.Instance.of(problem, initial=initial, tf=tf, control={"u": (-1, 1)}))
+    return satsym.Instance.of(problem, initial=initial, tf=tf, control={"u": (-1, 1)})
+
+
+def integrators(order: int, tf: float, weight: float = 1.0) -> satsym.Solution:
+    """Solved."""
+    return satsym.solve(integrators_instance(order, tf, weight))
 
 
 def cost(order: int, tf: float, times: tuple[float, ...], first: float) -> float:

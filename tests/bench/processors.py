@@ -1,0 +1,247 @@
+"""Whether what satsym says depends on the processor: the same verdicts with other kernels of OpenBLAS and NumPy.
+
+`make test-processors` solves and analyses some 80 cases in a process for each set of kernels, and once more with
+initial values that differ in the thirteenth digit. Status, verdict and objective must be the same in all. Kernels that
+this processor cannot run are skipped, names that stand for the same kernels are run once, and both are said. It ends
+with 1 where anything differs.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+
+CORES = {"Haswell": ("avx2", "fma"), "Zen": ("avx2", "fma"), "SkylakeX": ("avx512f",), "Prescott": ()}
+"""Names of OPENBLAS_CORETYPE, and the flags of a processor that can run such kernels."""
+
+MOVED = 1e-13
+"""By this share of themselves initial values are moved."""
+
+SAME = 1e-7
+"""Largest relative difference of objectives that are the same."""
+
+LONG = ("returns", "lapan-minimum-time-100s", "hypersensitive-10000", "reorientation", "shuttle", "shuttle-heating")
+"""Shipped instances that take too long for what they show."""
+
+SAMPLE = (
+    "soft-return",
+    "double-integrator-fuel",
+    "transfer-time",
+    "ends-4-rendezvous",
+    "analyse geo-lqr",
+    "lqr uny-lqr",
+)
+"""What continuous integration looks at."""
+
+ANALYSED = (
+    "geo-lqr",
+    "uny-lqr",
+    "lapan-coupling",
+    "lapan-roll-yaw",
+    "lapan-roll-yaw-lqr",
+    "gravity-gradient",
+    "molniya",
+)
+REGULATED = ("geo-lqr", "uny-lqr", "uny-lqr-both", "lapan-roll-yaw-lqr")
+
+Said = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """Settings under which all cases are run."""
+
+    name: str
+    settings: Mapping[str, str]
+    moved: float = 0.0
+
+
+def cases() -> dict[str, Callable[[float], Said]]:
+    """What is run, by name: functions of the share by which initial values are moved."""
+    shipped = sorted(
+        one.name.removesuffix(".toml") for one in resources.files("satsym.instances").iterdir() if ".toml" in one.name
+    )
+    found: dict[str, Callable[[float], Said]] = {}
+    for name in shipped:
+        if name not in LONG:
+            found[name] = lambda moved, name=name: _solved(_loaded(name), moved)  # type: ignore[misc]
+    for name in ANALYSED:
+        found[f"analyse {name}"] = lambda moved, name=name: _analysed("analyse", name)  # type: ignore[misc]
+    for name in REGULATED:
+        found[f"lqr {name}"] = lambda moved, name=name: _analysed("lqr", name)  # type: ignore[misc]
+    for name in ("THRIFTY", "SMOOTH"):
+        found[f"landing {name.lower()}"] = lambda moved, name=name: _solved(_landing(name), moved)  # type: ignore[misc]
+    for order, tf in ((2, 2.4), (3, 3.0), (3, 5.0), (4, 6.0)):
+        title = f"{order} integrators in {tf:g}"
+        found[title] = lambda moved, order=order, tf=tf: _solved(_integrators(order, tf), moved)  # type: ignore[misc]
+    return found
+
+
+def _loaded(name: str) -> Any:
+    from satsym import instance
+
+    return instance.load(name)
+
+
+def _landing(name: str) -> Any:
+    import satsym
+    from satsym.front.instance import as_case
+    from tests.solvers import test_steered_magnitudes as landings
+
+    bounds = {"T": (0, landings.STRONGEST), "b": (-0.15, 0.15)}
+    given = {"initial": landings.START, "final": landings.GROUND, "tf": landings.LASTING, "control": bounds}
+    return as_case(satsym.Instance.of(getattr(landings, name), **given))
+
+
+def _integrators(order: int, tf: float) -> Any:
+    from satsym.front.instance import as_case
+    from tests.switching.test_flat_ends import integrators_instance
+
+    return as_case(integrators_instance(order, tf))
+
+
+def _solved(case: Any, moved: float) -> Said:
+    from satsym.solvers import solve
+
+    given = replace(case, initial=tuple(value * (1.0 + moved) for value in case.initial))
+    found = solve(given)
+    verdict = found.certificate.verdict.value if found.certificate else ""
+    return {"status": found.status.value, "verdict": verdict, "objective": found.objective}
+
+
+def _analysed(what: str, name: str) -> Said:
+    import satsym
+
+    found = getattr(satsym, what)(name)
+    text = str(found).splitlines()
+    return {"status": "; ".join(line.strip() for line in text[:2]), "verdict": "", "objective": math.nan}
+
+
+def child(names: list[str], moved: float) -> None:
+    """Run cases in this process and print what comes of each, a line of JSON each; the kernels first."""
+    import numpy as np
+    from threadpoolctl import threadpool_info
+
+    from satsym.lapack import lapack
+
+    lapack()
+    known = cases()
+    features: Mapping[str, bool] = np._core._multiarray_umath.__cpu_features__  # type: ignore[attr-defined]
+    dispatched: list[str] = np._core._multiarray_umath.__cpu_dispatch__  # type: ignore[attr-defined]
+    blas = sorted({one["architecture"] for one in threadpool_info() if one.get("internal_api") == "openblas"})
+    print(json.dumps({"blas": blas, "numpy": [name for name in dispatched if features.get(name)]}), flush=True)
+    for name in names:
+        began = time.process_time()
+        try:
+            said = known[name](moved)
+        except Exception as error:
+            said = {"status": f"{type(error).__name__}: {error}", "verdict": "", "objective": math.nan}
+        print(json.dumps({"case": name, **said, "seconds": time.process_time() - began}), flush=True)
+
+
+def configurations() -> tuple[list[Kernels], list[str]]:
+    """Sets of kernels that this machine can run, the first being its own; and what is left out, with the reason."""
+    flags = _flags()
+    own, seen = Kernels("this machine", {}), {}
+    found, left = [own], []
+    seen[_header(own)] = own.name
+    options = [Kernels(f"OpenBLAS for {core}", {"OPENBLAS_CORETYPE": core}) for core in CORES]
+    numpy = _header(own)[1]
+    wide = [name for name in numpy if "512" in name or name == "X86_V4"] or list(numpy[-1:])
+    if wide:
+        options.append(Kernels(f"NumPy without {' '.join(wide)}", {"NPY_DISABLE_CPU_FEATURES": " ".join(wide)}))
+    for one in options:
+        core = one.settings.get("OPENBLAS_CORETYPE", "")
+        missing = [flag for flag in CORES.get(core, ()) if flag not in flags]
+        if missing:
+            left.append(f"{one.name}: skipped, this processor has no {' '.join(missing)}")
+            continue
+        header = _header(one)
+        if header in seen:
+            left.append(f"{one.name}: the same kernels as those of {seen[header]!r}")
+            continue
+        seen[header] = one.name
+        found.append(one)
+    return [*found, Kernels(f"initial values moved by {MOVED:g}", {}, MOVED)], left
+
+
+def _flags() -> set[str]:
+    """Of this processor; all that matter where nobody tells."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    flags = next((line for line in lines if line.startswith("flags")), "")
+    return set(flags.partition(":")[2].split()) or set(CORES["Haswell"])
+
+
+def _header(one: Kernels) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The kernels that OpenBLAS and NumPy say they use under these settings."""
+    first = next(_lines(one, []))
+    return tuple(first["blas"]), tuple(first["numpy"])
+
+
+def _lines(one: Kernels, names: list[str]) -> Iterator[Said]:
+    """What a process says under these settings, line by line."""
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **one.settings}
+    command = [sys.executable, "-m", "tests.bench.processors", "--child", str(one.moved), *names]
+    with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            yield json.loads(line)
+    if process.returncode:
+        raise RuntimeError(f"{one.name}: the process ended with {process.returncode}")
+
+
+def differs(one: Said, other: Said) -> list[str]:
+    """What differs between two answers to a case."""
+    found = [f"{key} {one[key]!r} and {other[key]!r}" for key in ("status", "verdict") if one[key] != other[key]]
+    values = one["objective"], other["objective"]
+    apart = abs(values[0] - values[1]) > SAME * max(map(abs, values))
+    if apart or math.isnan(values[0]) != math.isnan(values[1]):
+        found.append(f"objective {values[0]:.12g} and {values[1]:.12g}")
+    return found
+
+
+def run(names: list[str]) -> int:
+    """Run all configurations; 1 where anything differs from the first."""
+    todo, left = configurations()
+    print("\n".join(left))
+    known: dict[str, Said] = {}
+    different = 0
+    for one in todo:
+        seconds = 0.0
+        for number, said in enumerate(_lines(one, names)):
+            if not number:
+                continue
+            if sys.stderr.isatty():
+                print(f"\r\033[K{one.name}: {number} of {len(names)}, {said['case']}", end="", file=sys.stderr)
+            seconds += said["seconds"]
+            first = known.setdefault(said["case"], said)
+            for what in differs(first, said):
+                different += 1
+                print(f"{said['case']}: {what} ({todo[0].name}; {one.name})", flush=True)
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr)
+        print(f"{one.name}: {len(names)} cases, {seconds:.0f} s", flush=True)
+    print(f"{different} differences" if different else "no difference")
+    return int(different > 0)
+
+
+if __name__ == "__main__":
+    asked = sys.argv[1:]
+    if asked[:1] == ["--child"]:
+        child(asked[2:], float(asked[1]))
+    else:
+        sys.exit(run(list(SAMPLE) if asked == ["--sample"] else asked or list(cases())))
