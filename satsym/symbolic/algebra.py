@@ -101,7 +101,7 @@ def shortened(expression: sp.Expr) -> sp.Expr:
     logarithms = {e: sp.Dummy(real=True) for e in named.atoms(sp.log)}
     if not logarithms:
         return sp.simplify(named).xreplace(steep)
-    if sp.simplify(named) == 0:
+    if not _differs_from_zero(expression) and sp.simplify(named) == 0:
         return sp.Integer(0)
     simple = sp.simplify(named.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
     return simple.xreplace(steep)

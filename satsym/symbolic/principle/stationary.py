@@ -152,12 +152,13 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
     if function.free_symbols != {u} or function.count_ops() > INVERTED:
         return None
     value = sp.Dummy("value", real=True)
+    plain, scale = _unscaled(function, u)
     try:
-        solutions = sp.solve(sp.Eq(function, value), u)
+        solutions = sp.solve(sp.Eq(plain, value), u)
     except NotImplementedError:
         return None
     there = numeric([function])
-    for solution in map(sp.simplify, solutions):
+    for solution in (sp.simplify(found) / scale for found in solutions):
         if solution.has(sp.I) or not all(isinstance(f, PRINTED) for f in solution.atoms(sp.Function)):
             continue
         back = numeric([solution])
@@ -168,6 +169,16 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
         if all(equal(with_digits(sides, p)) for p in points([u], f"inverse of {function}", CONTROLS)):
             return sp.Lambda(value, solution)
     return None
+
+
+def _unscaled(function: sp.Expr, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """The function of ``c u``, and c: to solve for u in e^(5.82 u) is to sympy an equation of degree 291."""
+    inner = {f: f.args[0] / u for f in function.atoms(sp.Function) if f.has(u)}
+    (scale,) = set(inner.values()) if len(set(inner.values())) == 1 else {sp.Integer(1)}
+    outside = function.xreplace(dict.fromkeys(inner, sp.Integer(0)))
+    if not scale.is_number or outside.has(u):
+        return function, sp.Integer(1)
+    return function.xreplace({f: f.func(u) for f in inner}), scale
 
 
 def _everywhere(inverse: sp.Lambda) -> bool:
