@@ -10,12 +10,10 @@ from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.unsupported import FUNCTIONS
 
 LARGEST_PRODUCT = 4
 """Integer powers up to this one are printed as products, which are several times faster."""
-
-FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "Abs")
-"""Functions that derivations may use, by their sympy names."""
 
 
 class _Printer(PythonCodePrinter):
@@ -145,6 +143,10 @@ class ScalarPrinter(_Printer):
         excess, one, other = (self._print(a) for a in expr.args)
         return f"({one} if {excess} <= 0.0 else {other}) + 0.0*{excess}"
 
+    def _print_Until(self, expr: Any) -> str:
+        excess, one, other = (self._print(a) for a in expr.args)
+        return f"{one} if {excess} <= 0.0 else {other}"
+
     def _print_Vertex(self, expr: Any) -> str:
         curvature, slope, lower, upper = (self._factor(a) for a in expr.args)
         rise = f"({upper} - {lower})*(0.5*{curvature}*({lower} + {upper}) + {slope})"
@@ -250,6 +252,10 @@ class BatchPrinter(_Printer):
     def _print_Choice(self, expr: Any) -> str:
         excess, one, other = (self._print(a) for a in expr.args)
         return f"np.where({excess} <= 0.0, {one}, {other}) + 0.0*{excess}"
+
+    def _print_Until(self, expr: Any) -> str:
+        excess, one, other = (self._print(a) for a in expr.args)
+        return f"np.where({excess} <= 0.0, {one}, {other})"
 
     def _print_Vertex(self, expr: Any) -> str:
         curvature, slope, lower, upper = (self._factor(a) for a in expr.args)

@@ -5,7 +5,7 @@ Sympy keeps 15 digits of a float; multiplied out, and in exponentials and roots,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
@@ -26,8 +26,12 @@ CERTAIN = 400
 
 def lengthened(stated: T) -> T:
     """A problem or a model whose decimals are what is written, exactly; itself where it has none."""
-    found: T = _lengthened(stated)
-    return found
+
+    def exact(e: Any) -> Any:
+        decimals = {number: sp.Float(repr(float(number)), DIGITS) for number in e.atoms(sp.Float)}
+        return e.xreplace(decimals) if decimals else e
+
+    return everywhere(stated, exact)
 
 
 def as_fractions(expression: sp.Expr) -> sp.Expr:
@@ -46,12 +50,23 @@ def as_decimals(expression: sp.Expr) -> sp.Expr:
     return expression.func(*map(as_decimals, expression.args))
 
 
-def _lengthened(stated: Any) -> Any:
+def everywhere(stated: T, changing: Callable[[Any], Any]) -> T:
+    """A problem or a model with its expressions and matrices changed; itself where none is.
+
+    Parameters
+    ----------
+    changing
+        Gives back the very expression that it does not change.
+    """
+    found: T = _everywhere(stated, changing)
+    return found
+
+
+def _everywhere(stated: Any, changing: Callable[[Any], Any]) -> Any:
     if isinstance(stated, sp.Basic | sp.MatrixBase):
-        decimals = {number: sp.Float(repr(float(number)), DIGITS) for number in stated.atoms(sp.Float)}
-        return stated.xreplace(decimals) if decimals else stated
+        return changing(stated)
     parts = _parts(stated)
-    changed = {key: new for key, part in parts.items() if (new := _lengthened(part)) is not part}
+    changed = {key: new for key, part in parts.items() if (new := _everywhere(part, changing)) is not part}
     if not changed:
         return stated
     if isinstance(stated, Mapping):

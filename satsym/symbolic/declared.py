@@ -10,6 +10,7 @@ import sympy as sp
 
 from satsym.spec import NAMES, ControlSetKind, Variable, is_name
 from satsym.symbolic import notation as n
+from satsym.symbolic import unsupported
 from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
@@ -20,9 +21,6 @@ from satsym.symbolic.principle.path import interior
 from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
-
-CORNERS = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.Piecewise)
-"""Functions whose derivatives jump; of them only the magnitude of a control has its own place in a law."""
 
 
 def refuse_misfits(model: Model, problem: Problem | None) -> None:
@@ -58,7 +56,9 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
             f"{problem.name}: maximise: got {shown(problem.maximise)}; write True or False", ("maximise",)
         )
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
-        raise DerivationError(f"{problem.name}: no objective; state a running_cost or a terminal_cost")
+        raise DerivationError(
+            f"{problem.name}: no objective; state a running_cost, 1 for the least time, or a terminal_cost"
+        )
     if problem:
         _refuse_inequalities(problem)
         _refuse_constraints(problem)
@@ -129,11 +129,12 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     parameters, constants = set(symbols_of(model.parameters)), constants_of(model)
     motion = constants | set(symbols_of(model.states))
     everything = motion | set(symbols_of(model.controls))
-    moving = {*symbols_of(model.states), *symbols_of(model.controls), n.TIME}
+    moving = {*symbols_of(model.states), *symbols_of(model.controls)}
     magnitudes = {sp.Abs(u) for u in symbols_of(model.controls)}
     fixed = parameters | set(symbols_of(one.variable for one in model.definitions))
 
-    def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
+    def refuse(what: str, stated: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
+        expressions = list(stated)
         if any(sp.sympify(e).has(sp.nan, sp.oo, -sp.oo, sp.zoo) for e in expressions):
             message = f"{derivation.name}: {what} is not finite; something in it is divided by zero"
             raise DerivationError(message, (field,))
@@ -141,13 +142,9 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         if foreign:
             message = f"{derivation.name}: {what} {_complaint(foreign, everything)}"
             raise DerivationError(message, (field, *sorted(s.name for s in foreign)))
-        corners = (e for stated in expressions for e in sp.sympify(stated).atoms(*CORNERS) if e not in magnitudes)
-        if jumping := sorted(str(e) for e in corners if e.free_symbols & moving):
-            raise DerivationError(
-                f"{derivation.name}: {what} has {jumping[0]} in it, whose derivatives jump; state what is smooth, such "
-                "as sqrt(v**2 + h**2) with a small h in place of Abs(v)",
-                (field,),
-            )
+        for e in map(sp.sympify, expressions):
+            if complaint := unsupported.complaint(e, moving, magnitudes):
+                raise DerivationError(f"{derivation.name}: {what} {complaint}", (field,))
 
     for definition in model.definitions:
         refuse(f"the value of {definition.variable.symbol}", [definition.value], parameters, "definitions")

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import minimisers, roots, signed
+from satsym.symbolic import minimisers, pieces, roots, signed
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
@@ -82,7 +82,9 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return _common(limits, known)
     if isinstance(e, roots.Convex):
         return dimension_of(e.args[0], known)
-    if isinstance(e, roots.Choice):
+    if isinstance(e, pieces.Until):
+        dimension_of(e.args[0], known)
+    if isinstance(e, roots.Choice | pieces.Until):
         return _common(e.args[1:], known)
     if isinstance(e, roots.Vertex):
         return _common((e.args[1] / e.args[0], *e.args[2:]), known)

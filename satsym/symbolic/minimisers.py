@@ -11,7 +11,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
-from satsym.symbolic import roots
+from satsym.symbolic import pieces, roots
 
 
 class Clip(sp.Function):
@@ -139,7 +139,20 @@ class Side(sp.Function):
 
 
 MINIMISERS: tuple[type[sp.Function], ...] = (
-    *(Clip, Inside, Shorten, ShortenSlope, Stretch, StretchSlope, Within, WithinSlope, Switch, Shrink, Side),
+    *(
+        Clip,
+        Inside,
+        Shorten,
+        ShortenSlope,
+        Stretch,
+        StretchSlope,
+        Within,
+        WithinSlope,
+        Switch,
+        Shrink,
+        Side,
+        pieces.Until,
+    ),
     *roots.CONSTRUCTED,
 )
 
@@ -228,4 +241,5 @@ MPMATH_FUNCTIONS = {
     "Switch": _switch,
     "Shrink": _shrink,
     "Side": _side,
+    "Until": pieces.until,
 } | roots.MPMATH

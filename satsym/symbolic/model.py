@@ -272,7 +272,7 @@ class Problem:
     model
         The motion.
     running_cost
-        Integrand L(t, x, u, p) (Lagrange term).
+        Integrand L(t, x, u, p) (Lagrange term); zero where it is left out.
     terminal_cost
         S(x, t, p), taken at the final time (Mayer term).
     terminal_constraints
@@ -304,7 +304,7 @@ class Problem:
     name: str
     title: str
     model: Model
-    running_cost: sp.Expr
+    running_cost: sp.Expr = sp.Integer(0)
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
     terminal_inequalities: Mapping[str, sp.Expr] = field(default_factory=dict)

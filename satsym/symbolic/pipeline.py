@@ -9,16 +9,18 @@ from typing import Literal
 
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import drawn_from
 from satsym.symbolic.convention import as_cost
-from satsym.symbolic.decimals import lengthened
+from satsym.symbolic.decimals import everywhere, lengthened
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
-from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
+from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of, with_origins
 from satsym.symbolic.motion import steps
+from satsym.symbolic.pieces import breaks, in_pieces
 from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
 from satsym.symbolic.principle.parts import as_one
 from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls
@@ -125,16 +127,38 @@ def derive(subject: Problem | Model) -> Derivation:
         If what was declared is inconsistent, the conditions cannot be solved for the controls, or a check
         failed.
     """
-    subject = lengthened(subject)
+    subject = _in_pieces(lengthened(subject))
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
-        with drawn_from(variables_of(model)):
+        with drawn_from((*variables_of(model), *_times(subject))):
             return _derived(model, problem and as_cost(problem))
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
         message = str(error) if known else f"{subject.name}: {error}"
         raise DerivationError(message, error.named) from error.__cause__
+
+
+def _in_pieces(subject: Problem | Model) -> Problem | Model:
+    """The same with what is stated of time piece by piece in the form that is derived with."""
+    model = subject.model if isinstance(subject, Problem) else subject
+    moving = {v.symbol for one in with_origins(model) for v in (*one.states, *one.controls)}
+    return everywhere(subject, lambda e: in_pieces(e, n.TIME, moving))
+
+
+def _times(subject: Problem | Model) -> tuple[Variable, ...]:
+    """Time with where it typically lies, so that random points fall on all pieces of what is stated by pieces."""
+    stated: list[sp.Basic] = []
+
+    def noted(e: sp.Basic) -> sp.Basic:
+        stated.append(e)
+        return e
+
+    everywhere(subject, noted)
+    if not (ends := breaks(stated, n.TIME)):
+        return ()
+    reach = max(ends[-1] - ends[0], 1.0) / 4
+    return (Variable(n.TIME.name, n.TIME.name, typical=(ends[0] - reach, ends[-1] + reach)),)
 
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:

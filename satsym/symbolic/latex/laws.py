@@ -12,7 +12,10 @@ from sympy.printing.latex import LatexPrinter
 from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
 from satsym.symbolic.latex.products import sides
 from satsym.symbolic.minimisers import Clip
+from satsym.symbolic.pieces import pieces_of
 from satsym.symbolic.roots import Root
+
+LE, GE = r"\le", r"\ge"
 
 
 class LawPrinter(LatexPrinter):
@@ -97,6 +100,28 @@ class LawPrinter(LatexPrinter):
         one, other = (self._print(value).replace(r"\frac", r"\dfrac") for value in expr.args[1:])
         left, right = map(self._print, sides(expr.args[0]))
         return rf"\begin{{cases}} {one}, & {left} \le {right} \\ {other}, & {left} > {right} \end{{cases}}"
+
+    def _print_Until(self, expr: sp.Expr, exp: str | None = None) -> str:
+        """By cases in the order of time where numbers order them."""
+        if (found := pieces_of(expr)) is None:
+            text = self._print_Choice(expr)
+        else:
+            what, values, ends = found
+            shown = [self._print(value).replace(r"\frac", r"\dfrac") for value in values]
+            limits = [self._print(end) for end, _ in ends]
+            by = self._print(what)
+            begins = [
+                "",
+                *(rf"{limit} {'<' if before else LE} " for limit, (_, before) in zip(limits, ends, strict=True)),
+            ]
+            wheres = [
+                rf"{begin}{by} {LE if before else '<'} {limit}"
+                for begin, limit, (_, before) in zip(begins, limits, ends, strict=False)
+            ]
+            wheres.append(rf"{by} {'>' if ends[-1][1] else GE} {limits[-1]}")
+            rows = r" \\ ".join(rf"{value}, & {where}" for value, where in zip(shown, wheres, strict=True))
+            text = rf"\begin{{cases}} {rows} \end{{cases}}"
+        return rf"{self._enclosed(text)}^{{{exp}}}" if exp else text
 
     def _print_Vertex(self, expr: sp.Expr, exp: str | None = None) -> str:
         curvature, slope, lower, upper = expr.args

@@ -26,6 +26,7 @@ from satsym.symbolic.latex.products import (
     with_plus_first,
 )
 from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
+from satsym.symbolic.pieces import Until
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""
@@ -240,7 +241,7 @@ class Printer(LawPrinter):
         written = [number] if number else []
         for factor in factors:
             tex = self._print(factor)
-            if factor.is_Add or isinstance(factor, sp.Piecewise):
+            if factor.is_Add or isinstance(factor, sp.Piecewise | Until):
                 tex = self._enclosed(tex)
             written.append(rf"\cdot {tex}" if written and tex[0].isdigit() else tex)
         return " ".join(written)

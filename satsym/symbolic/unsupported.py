@@ -1,0 +1,73 @@
+"""What no derivation goes on from: values at other times, unknown functions, integrals, conditions on states."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.logic.boolalg import Boolean
+
+from satsym.symbolic.minimisers import MINIMISERS
+from satsym.symbolic.model import t
+from satsym.symbolic.pieces import CORNERS
+
+FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "Abs")
+"""Functions that derivations may use, by their sympy names."""
+
+_KNOWN = {*FUNCTIONS, *(kind.__name__ for kind in (*CORNERS, *MINIMISERS))}
+
+
+def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection[sp.Expr]) -> str:
+    """What is wrong with an expression and what to do about it, or nothing.
+
+    Parameters
+    ----------
+    moving
+        States and controls.
+    magnitudes
+        Those of controls, which have their own place in a law.
+    """
+    if isinstance(e, Boolean) and not e.is_Symbol:
+        return f"is {e}, a condition and no number; one of time alone may stand in a Piecewise((1, ...), (0, True))"
+    names = {s.name for s in moving}
+    if found := _first(e, sp.Derivative, sp.Subs):
+        return (
+            f"has {found} in it, a derivative that is not carried out; state the rate of a state as that of another "
+            "state, and derivatives of known functions by diff"
+        )
+    if found := _first(e, sp.Integral, sp.Sum, sp.Product):
+        return f"has {found} in it, which is not carried out; state a further state whose rate is what is integrated"
+    if found := _first(e, AppliedUndef):
+        return _unknown(found, names)
+    if other := sorted({f.func.__name__ for f in e.atoms(sp.Function)} - _KNOWN):
+        return f"has the function {other[0]} in it, which is not supported; there are {', '.join(FUNCTIONS)} and sqrt"
+    corners = [c for c in sorted(e.atoms(*CORNERS), key=str) if c not in magnitudes]
+    if jumping := [c for c in corners if c.free_symbols & set(moving)]:
+        return (
+            f"has {jumping[0]} in it, whose derivatives jump; state what is smooth, such as sqrt(v**2 + h**2) with a "
+            "small h in place of Abs(v)"
+        )
+    if open_ended := [c for c in corners if t in c.free_symbols or isinstance(c, sp.Piecewise)]:
+        return (
+            f"has {open_ended[0]} in it, which is not given by comparisons for all times; compare by < and >, and end "
+            "it with (value, True)"
+        )
+    return ""
+
+
+def _first(e: sp.Basic, *kinds: type) -> sp.Basic | None:
+    return min(e.atoms(*kinds), key=str, default=None)
+
+
+def _unknown(found: sp.Basic, moving: Collection[str]) -> str:
+    """What is wrong with a function that nobody defined."""
+    name = found.func.__name__
+    if name not in moving:
+        return (
+            f"has {found} in it, an unknown function; state what it is, by functions such as sin and exp, or of time "
+            "alone by a table, interpolating_spline(3, t, times, values)"
+        )
+    if found.args == (t,):
+        return f"has {found} in it; write {name}, the symbol of the state or control, without its time"
+    return f"has {found} in it, a value at another time; delays are not supported: state the motion without them"
