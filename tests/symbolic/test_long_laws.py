@@ -27,9 +27,7 @@ def transfer() -> Problem:
         k: root * square * s / (2 * w) * normal,
         longitude: w**2 / (p * root) + root * tilt / w * normal,
     }
-    model = FirstOrder(
-        name="elements", title="Elements", states=elements, controls=thrust, parameters=(), rates=rates
-    )
+    model = FirstOrder(name="elements", title="Elements", states=elements, controls=thrust, parameters=(), rates=rates)
     sets = {"thrust": Ball("radial", "transverse", "normal")}
     return Problem(name="transfer", title="Transfer", model=model, running_cost=1, control_sets=sets)
 
