@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import mpmath as mp
 import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
+from satsym.symbolic.decimals import DIGITS
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.unsupported import FUNCTIONS
 
 LARGEST_PRODUCT = 4
 """Integer powers up to this one are printed as products, which are several times faster."""
+
+WRITTEN: dict[float, Any] = {}
+"""Magnitudes of floats that were written -> the numbers of mpmath that they are the nearest ones of."""
 
 
 class _Printer(PythonCodePrinter):
@@ -34,14 +39,15 @@ class _Printer(PythonCodePrinter):
         return self._print(item) if _literal(item) else super().parenthesize(item, level, strict)
 
     def _print_Integer(self, expr: Any) -> str:
-        return repr(float(expr))
+        return _noted(expr)
 
     def _print_Rational(self, expr: Any) -> str:
-        return repr(float(expr)) if _exact(expr) else f"{float(expr.p)!r}/{float(expr.q)!r}"
+        return _noted(expr) if _exact(expr) else f"{_noted(sp.Integer(expr.p))}/{_noted(sp.Integer(expr.q))}"
 
     _print_Half = _print_NegativeOne = _print_One = _print_Zero = _print_Rational
 
     def _print_Float(self, expr: Any) -> str:
+        WRITTEN[float(expr)] = mp.make_mpf(expr._mpf_)
         return repr(float(expr))
 
     def _print_Pi(self, expr: Any) -> str:
@@ -293,6 +299,14 @@ class BatchPrinter(_Printer):
         # Finite whatever the limit and the norm, because the other factor must be able to make it zero.
         slope = f"np.minimum({limit}, 1e100)/np.maximum({s}*np.sqrt({s}), 1e-100)"
         return f"-0.5*np.heaviside({s} - {limit}*{limit}, 0.0)*{slope}"
+
+
+def _noted(number: Any) -> str:
+    """A number as a literal; :data:`WRITTEN` has what its nearest float is short of."""
+    nearest = float(number)
+    with mp.workdps(DIGITS):
+        WRITTEN[abs(nearest)] = abs(sp.N(number, DIGITS)._to_mpmath(mp.mp.prec))
+    return repr(nearest)
 
 
 def _exact(number: Any) -> bool:

@@ -17,7 +17,8 @@ from satsym.codegen.emitter import Emitter, live
 from satsym.codegen.naming import Code
 from satsym.codegen.printers import ScalarPrinter
 from satsym.codegen.rk4 import unpacking
-from satsym.kernels.composition import weights
+from satsym.kernels.composition import shares
+from satsym.symbolic.decimals import DIGITS
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
 
@@ -76,12 +77,12 @@ def source(code: Code, of: Split, constants: Sequence[Assignment]) -> str:
     first = emit.inline(force, {})
     opening = live(emit.take_lines(), first)
     place, pace, pull = [*q], [*v], [*slopes]
-    kicks, drifts = weights()
+    kicks, drifts = ([sp.Float(sp.Rational(share), DIGITS) for share in group] for group in shares())
     for k, kick in enumerate(kicks, start=1):
-        fraction = emit.assign(sp.Float(kick) * h, f"kick_{k}")
+        fraction = emit.assign(kick * h, f"kick_{k}")
         pace = [emit.assign(b + fraction * a, f"{y}_{k}") for y, b, a in zip(v, pace, pull, strict=True)]
         if k <= len(drifts):
-            fraction = emit.assign(sp.Float(drifts[k - 1]) * h, f"drift_{k}")
+            fraction = emit.assign(drifts[k - 1] * h, f"drift_{k}")
             place = [emit.assign(b + fraction * a, f"{y}_{k}") for y, b, a in zip(q, place, pace, strict=True)]
             pulls = emit.inline(force, dict(zip(q, place, strict=True)))
             pull = [emit.assign(a, f"a{k}_{y}") for y, a in zip(v, pulls, strict=True)]

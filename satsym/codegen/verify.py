@@ -1,8 +1,9 @@
 """Generated text against the derivation, before it is written: values, derivatives, and whole loops.
 
-Three independent routes: every function, in both forms, against its expression evaluated with 30 digits;
-derivatives against complex steps through other generated functions; loops against a plain RK4 that calls the
-generated right-hand sides.
+The text of every function, in both forms, is evaluated with as many digits as it takes to hold it against its
+expression, and the text of loops against a plain RK4 that calls the generated right-hand sides: a slip in the least of
+their terms is seen, and nothing is refused for rounding. On floats, where a number may differ by what rounding does to
+it, values are compared once more, and derivatives with complex steps through other generated functions.
 """
 
 from __future__ import annotations
@@ -10,30 +11,39 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache, partial
+from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from satsym.agreement import DIGITS
+from satsym.agreement import DIGITS, Sides, disagreement
+from satsym.agreement import LIMIT as EQUAL
 from satsym.arrays import Array
+from satsym.codegen import digits
 from satsym.codegen.block import used
 from satsym.codegen.functions import ARGUMENTS, Function, Symbols
 from satsym.codegen.naming import code_of
+from satsym.codegen.printers import WRITTEN
 from satsym.kernels import Kernels, plain
-from satsym.kernels.contract import TUPLES
+from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.spec import ProblemSpec
 from satsym.symbolic.checks import drawn_from, numeric_along, random_number
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
-POINTS = 12
-HUGE = 1e12
-"""Largest numbers that are compared."""
+POINTS, FEW = 12, 2
+"""Places at which floats are compared, and those of them with more digits."""
+HUGE = 1e150
+"""Largest numbers that are compared: floats have their squares."""
 LIMIT = 1e-12
-"""Allowed deviation relative to one plus the size of the number: rounding of some tens of operations."""
+"""Deviation of floats, relative to one plus the size of the number, from which on it is asked what rounding does."""
+ROUNDED = 100.0
+"""How many times as much as where it is tried rounding may do elsewhere."""
 
 DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
@@ -58,6 +68,10 @@ DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
 
 TRIES = 400
 """Random places at most, of which those serve where functions have moderate numbers."""
+PRECISION = 53
+"""Bits of floats."""
+SHORTEST, FARTHEST = 15, 10.0
+"""Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Of the loops that are compared; the first is where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
@@ -76,7 +90,7 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     DerivationError
         Naming the first function that deviates, and by how much. Nothing must be written then.
     """
-    with drawn_from(variables_of(derivation.model)):
+    with drawn_from(variables_of(derivation.model)), np.errstate(all="ignore"):
         _verify(derivation, kernels)
 
 
@@ -86,27 +100,43 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     chains = [(*constants.items(), *used(code.chain, function.outputs)) for function in found]
     exact = [numeric_along(chain, f.outputs)[0] for chain, f in zip(chains, found, strict=True)]
     rng = random.Random(derivation.name)
-    places, expected = _places(derivation, kernels.spec, found, exact, rng)
+    places, expected = _places(derivation, kernels, found, exact, rng)
+    text = digits.functions_of(kernels.text or "", WRITTEN)
     for k, function in enumerate(found):
-        _same_values(derivation.name, kernels, (function, exact[k]), known, places, [each[k] for each in expected])
+        of = _Of(derivation.name, function, exact[k], known)
+        for place, values in zip(places[:FEW], expected, strict=False):
+            _same_text(of, text, place, values[k])
+        _same_values(of, kernels, text, places, [each[k] for each in expected])
     names = {f.name for f in found}
-    for name, (of, by, factor) in DERIVATIVES.items():
-        functions = (of,) if isinstance(of, str) else of
+    for name, (argument, by, factor) in DERIVATIVES.items():
+        functions = (argument,) if isinstance(argument, str) else argument
         if {name, *functions} <= names:
             _same_derivatives(derivation.name, kernels, (name, functions, by, factor), found, places)
-    _same_loops(derivation, known, kernels, rng, places[-1])
+    _same_loops(derivation, known, kernels, text, rng, places[-1])
+
+
+@dataclass(frozen=True)
+class _Of:
+    """A function that is looked at, and what it was generated from."""
+
+    model: str
+    function: Function
+    exact: Exact
+    known: Symbols
 
 
 def _places(
-    derivation: Derivation, spec: ProblemSpec, found: Sequence[Function], exact: Sequence[Exact], rng: random.Random
+    derivation: Derivation, kernels: Kernels, found: Sequence[Function], exact: Sequence[Exact], rng: random.Random
 ) -> tuple[list[Arguments], list[list[list[Any]]]]:
-    """Random arguments at which all functions have moderate numbers, and these, function by function."""
+    """Random arguments at which all functions have numbers, also on floats, and these, function by function."""
     known = code_of(derivation).symbols
     places, expected = [], []
     for _ in range(TRIES):
-        place = _arguments(known, spec, rng)
+        place = _arguments(known, kernels.spec, rng)
         with mp.workdps(DIGITS), suppress(ArithmeticError, ValueError):
             values = [e(_point(f, known, place)) for f, e in zip(found, exact, strict=True)]
+            for function in found:
+                getattr(kernels, function.name)(*(place[a] for a in function.arguments))
             if all(moderate(each) and not any(map(mp.im, each)) for each in values):
                 places.append(place)
                 expected.append(values)
@@ -137,15 +167,47 @@ def _arguments(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Argumen
     return place | {"t": draw(known.t)}
 
 
+def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> None:
+    """Compare both forms of a function at a place with its expression, with as many digits as that takes."""
+    function = of.function
+
+    @cache
+    def expected(count: int) -> list[Any]:
+        return [mp.re(v) for v in (values if count == DIGITS else of.exact(_point(function, of.known, place)))]
+
+    def sides(form: str, count: int) -> Sides:
+        with mp.workdps(count):
+            given = [_exactly(place[a]) for a in function.arguments]
+            if not form:
+                found = text[function.name](*given)
+                return list(found) if isinstance(found, tuple) else [found], expected(count)
+            shape = {"scalar": (), "vector": (len(function.outputs),)}.get(function.kind, function.value.shape)
+            out = np.empty(shape, dtype=object)
+            text[function.name + form](*given, out)
+            return out.ravel().tolist(), expected(count)
+
+    for form in ("", BATCH):
+        try:
+            error = disagreement(partial(sides, form))
+        except (ArithmeticError, TypeError):  # on arrays such a place may be passed over
+            continue
+        if not error <= EQUAL:
+            raise DerivationError(_deviates(of.model, f"{function.name}{form}", error))
+
+
+def _exactly(value: Any) -> Any:
+    """A number, or several, with all digits of mpmath."""
+    return tuple(map(mp.mpf, value)) if isinstance(value, tuple) else mp.mpf(value)
+
+
 def _same_values(
-    name: str,
+    of: _Of,
     kernels: Kernels,
-    of: tuple[Function, Exact],
-    known: Symbols,
+    text: Mapping[str, digits.Function],
     places: Sequence[Arguments],
     expected: Sequence[Sequence[Any]],
 ) -> None:
-    function, exact = of
+    function = of.function
     batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
     # a function of the parameters of a model that has none is one and the same at all places
     outputs = len(function.outputs)
@@ -155,12 +217,22 @@ def _same_values(
         wanted = np.array([float(mp.re(v)) for v in values])
         scalar = np.atleast_1d(getattr(kernels, function.name)(*(place[a] for a in function.arguments)))
         spread: Array | float = 0.0
-        if not max(_error(scalar, wanted), _error(column, wanted)) <= LIMIT:  # rounding of arguments may do as much
-            with mp.workdps(DIGITS):
-                aside = exact(_point(function, known, place, ROUNDING))
-                spread = np.array([float(abs(v - a)) for v, a in zip(values, aside, strict=True)])
-        _refuse(name, f"{function.name}", scalar, wanted, spread)
-        _refuse(name, f"{function.name}_batch", column, wanted, spread)
+        if not max(_error(scalar, wanted), _error(column, wanted)) <= LIMIT:
+            spread = _rounding(of, text, place, values)
+        _refuse(of.model, f"{function.name}", scalar, wanted, spread)
+        _refuse(of.model, f"{function.name}_batch", column, wanted, spread)
+
+
+def _rounding(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> Array:
+    """What rounding may do to values: of their arguments, and of each operation."""
+    with mp.workdps(DIGITS):
+        aside = of.exact(_point(of.function, of.known, place, ROUNDING))
+    moved = np.array([float(abs(v - a)) for v, a in zip(values, aside, strict=True)])
+    with mp.workprec(PRECISION), suppress(ArithmeticError, TypeError):
+        found = text[of.function.name](*(_exactly(place[a]) for a in of.function.arguments))
+        each = found if isinstance(found, tuple) else (found,)
+        moved += ROUNDED * np.array([float(abs(v - a)) for v, a in zip(values, each, strict=True)])
+    return moved
 
 
 def _same_derivatives(
@@ -172,18 +244,28 @@ def _same_derivatives(
 ) -> None:
     name, of, by, factor = relation
     signature = {f.name: f.arguments for f in found}
-    arguments = {a: _stacked(a, places) for f in (name, *of) for a in signature[f]}
-    derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
-    slopes = []
-    for argument in by:
-        for moved in _moved(arguments[argument]):
-            stepped = {**arguments, argument: moved}
-            values = [getattr(kernels, f"{f}_batch")(*(stepped[a] for a in signature[f])) for f in of]
-            slopes.append(np.imag(values[0] if len(of) == 1 else np.concatenate(values)) / COMPLEX_STEP)
-    if not slopes:  # a model without controls
+
+    def both(moved: float) -> tuple[Array, Array] | None:
+        aside = [{a: np.asarray(v) * (1.0 + moved) for a, v in place.items()} for place in places]
+        arguments = {a: _stacked(a, aside) for f in (name, *of) for a in signature[f]}
+        derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
+        slopes = []
+        for argument in by:
+            for values in _moved(arguments[argument]):
+                stepped = {**arguments, argument: values}
+                stack = [getattr(kernels, f"{f}_batch")(*(stepped[a] for a in signature[f])) for f in of]
+                slopes.append(np.imag(stack[0] if len(of) == 1 else np.concatenate(stack)) / COMPLEX_STEP)
+        if not slopes:  # a model without controls
+            return None
+        columns = np.stack(slopes, axis=-2)
+        return derived.reshape(columns.shape), factor * columns
+
+    if (sides := both(0.0)) is None:
         return
-    columns = np.stack(slopes, axis=-2)
-    _refuse(model, f"{name} (as derivative of {' and '.join(of)})", derived.reshape(columns.shape), factor * columns)
+    spread: Array | float = 0.0
+    if not _error(*sides) <= LIMIT and (aside := both(ROUNDING)) is not None:
+        spread = ROUNDED * sum((np.abs(a - b) for a, b in zip(sides, aside, strict=True)), np.zeros(()))
+    _refuse(model, f"{name} (as derivative of {' and '.join(of)})", *sides, spread)
 
 
 def _moved(values: Any) -> Iterator[Any]:
@@ -203,29 +285,83 @@ def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
     return tuple(values) if argument in TUPLES else values
 
 
-def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: random.Random, place: Arguments) -> None:
-    p = place["p"]
+def _same_loops(
+    derivation: Derivation,
+    known: Symbols,
+    kernels: Kernels,
+    text: Mapping[str, digits.Function],
+    rng: random.Random,
+    place: Arguments,
+) -> None:
+    """Compare the loops with those of textbooks, with as many digits as that takes."""
     steps, m = len(STEPS) - 1, len(known.u)
     u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))
-    for shorter in (1.0, 0.1, 0.01, 0.001):  # longer steps may leave the domain
-        times = place["t"] + shorter * np.cumsum(STEPS)
+    begin = np.abs(place["x"])
+    for power in range(0, SHORTEST, 2):  # longer steps may leave the domain, or what the digits tell
+        times = place["t"] + 10.0**-power * np.cumsum(STEPS)
         with suppress(ArithmeticError, ValueError):
-            exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, p)
-            if moderate([*exact.flat, *exact_mid.flat, cost]):
+            exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, place["p"])
+            moved = np.abs(np.hstack([exact, exact_mid])).max(axis=1) <= FARTHEST * (1.0 + begin)
+            if moved.all() and moderate([cost]):
                 break
     else:
-        raise DerivationError(f"{derivation.name}: no step of a thousandth is possible at random points; {LIE}")
-    x, x_mid, total = kernels.forward(times, place["x"], u, u_mid, p)
-    _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([exact, exact_mid]))
-    if kernels.spec.separable:
-        found = kernels.symplectic(times, place["x"], p)
-        _refuse(derivation.name, "symplectic", found, plain.symplectic(kernels, times, place["x"], p))
-    if derivation.problem is None:
-        return
-    _refuse(derivation.name, "forward (cost)", [total], [cost])
-    lam = np.hstack(kernels.backward(times, place["lam"], x, x_mid, u, u_mid, p))
-    exact = np.hstack(plain.backward(kernels, times, place["lam"], x, x_mid, u, u_mid, p))
-    _refuse(derivation.name, "backward", lam, exact)
+        raise DerivationError(f"{derivation.name}: no step of 1e-{SHORTEST} is possible at random points; {LIE}")
+    for name, sides in _loops(kernels.spec, text, place, (times, u, u_mid)).items():
+        error = disagreement(sides)
+        if not error <= EQUAL:
+            raise DerivationError(_deviates(derivation.name, name, error))
+
+
+def _loops(
+    spec: ProblemSpec, text: Mapping[str, digits.Function], place: Arguments, along: tuple[Array, Array, Array]
+) -> dict[str, Callable[[int], Sides]]:
+    """Digits -> what a loop and the same one of textbooks give, by name of the loop."""
+    one: Any = SimpleNamespace(spec=spec, **text)
+    n, steps = len(spec.states), len(along[0]) - 1
+
+    def blank() -> tuple[Any, Any]:
+        return tuple([mp.nan] * (steps + 1) for _ in range(n)), tuple([mp.nan] * steps for _ in range(n))
+
+    def rows(table: Array) -> tuple[list[Any], ...]:
+        return tuple(row.tolist() for row in table)
+
+    def given() -> tuple[Any, ...]:
+        return *(_to_objects(values) for values in along), *(_exactly(place[a]) for a in ("x", "lam", "p"))
+
+    def forward(count: int) -> Sides:
+        with mp.workdps(count):
+            times, u, u_mid, x0, _, p = given()
+            x, x_mid = blank()
+            cost = text["forward"](times.tolist(), x0, rows(u), rows(u_mid), p, x, x_mid)
+            exact, exact_mid, total = plain.forward(one, times, x0, u, u_mid, p)
+            found = [v for row in (*x, *x_mid) for v in row]
+            return [*found, cost or 0], [*exact.flat, *exact_mid.flat, total]
+
+    def backward(count: int) -> Sides:
+        with mp.workdps(count):
+            times, u, u_mid, x0, lam_f, p = given()
+            x, x_mid, _ = plain.forward(one, times, x0, u, u_mid, p)
+            lam, lam_mid = blank()
+            text["backward"](times.tolist(), lam_f, *map(rows, (x, x_mid, u, u_mid)), p, lam, lam_mid)
+            exact = plain.backward(one, times, lam_f, x, x_mid, u, u_mid, p)
+            return [v for row in (*lam, *lam_mid) for v in row], [v for table in exact for v in table.flat]
+
+    def symplectic(count: int) -> Sides:
+        with mp.workdps(count):
+            times, *_, x0, _, p = given()
+            x, _ = blank()
+            text["symplectic"](times.tolist(), x0, p, x)
+            return [v for row in x for v in row], [*plain.symplectic(one, times, x0, p).flat]
+
+    found = {"forward": forward, "backward": backward, "symplectic": symplectic}
+    return {name: loop for name, loop in found.items() if name in text}
+
+
+def _to_objects(values: Array) -> Any:
+    """An array of numbers of mpmath."""
+    found = np.empty(values.size, dtype=object)
+    found[:] = [mp.mpf(float(v)) for v in values.flat]
+    return found.reshape(values.shape)
 
 
 def moderate(values: Iterable[Any]) -> bool:
@@ -237,7 +373,11 @@ def _refuse(model: str, what: str, found: Any, expected: Any, spread: Array | fl
     """Raise unless the numbers agree, but for what they are spread by."""
     error = _error(found, expected, spread)
     if not error <= LIMIT:
-        raise DerivationError(f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written")
+        raise DerivationError(_deviates(model, what, error))
+
+
+def _deviates(model: str, what: str, error: float) -> str:
+    return f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written"
 
 
 def _error(found: Any, expected: Any, spread: Array | float = 0.0) -> float:

@@ -1,6 +1,6 @@
 """The trajectory loops once more, as textbooks have them, by calls of functions of one point in time.
 
-Slow, and therefore only what the generated loops are held against.
+Slow, and therefore only what the generated loops are held against; on arrays of objects with any number of digits.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.composition import weights
+from satsym.kernels.composition import shares
 from satsym.kernels.core import Kernels
 
 
@@ -26,7 +26,7 @@ def forward(
         return np.array([*kernels.dynamics(t, state, control, p), *running])
 
     y, y_mid = _rk4(rates, times, np.array([*x0, *([0.0] if costs else [])]), u, u_mid)
-    return y[:n], y_mid[:n], float(y[n, -1]) if costs else 0.0
+    return y[:n], y_mid[:n], y[n, -1] if costs else 0.0
 
 
 def backward(
@@ -55,12 +55,12 @@ def symplectic(kernels: Kernels, times: Array, x0: Sequence[float], p: tuple[flo
     """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
     spec = kernels.spec
     moved, kicked = (np.isin(spec.state_names, group) for group in (spec.coordinates, spec.velocities))
-    kicks, drifts = weights()
+    kicks, drifts = shares()
     coast = (0.0,) * len(spec.controls)
-    y = [np.array(x0, dtype=float)]
+    y = [np.array(x0)]
     for i, h in enumerate(np.diff(times)):
         now = y[-1]
-        for kick, drift in zip(kicks, [*drifts, 0.0], strict=True):
+        for kick, drift in zip(kicks, [*drifts, 0], strict=True):
             now = now + kick * h * kicked * kernels.dynamics(times[i], tuple(now.tolist()), coast, p)
             now = now + drift * h * moved * kernels.dynamics(times[i], tuple(now.tolist()), coast, p)
         y.append(now)
@@ -73,7 +73,7 @@ def _rk4(
     """RK4 and Hermite midpoints; times may run backward."""
     y, middles = [start], []
     for i, h in enumerate(np.diff(times)):
-        t, here = float(times[i]), y[-1]
+        t, here = times[i], y[-1]
         k1 = rates(t, here, given[:, i])
         k2 = rates(t + h / 2, here + h / 2 * k1, given_mid[:, i])
         k3 = rates(t + h / 2, here + h / 2 * k2, given_mid[:, i])

@@ -202,15 +202,16 @@ def _largest(values: Iterable[Any]) -> float:
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
     """Check that expressions are identically zero, by simplification where multiplying out does not show it.
 
-    What has decimals, which are rounded when they are multiplied out, or too many terms is looked at in numbers.
+    What has decimals, which are rounded when they are multiplied out, or too many terms is looked at in numbers, and so
+    is what sympy does not simplify so far.
     """
 
     def zero(e: sp.Expr) -> bool:
         terms = terms_of(e)
         if terms <= PROVABLE and sp.expand(e) == 0:
             return True
-        if terms <= LARGEST and not e.has(sp.Float):
-            return vanishes(e)
+        if terms <= LARGEST and not e.has(sp.Float) and vanishes(e):
+            return True
         value = numeric([e])
         return compare(claim, e.free_symbols, lambda point: (value(point), [0])).passed
 

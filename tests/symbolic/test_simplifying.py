@@ -11,7 +11,7 @@ from sympy import cos, sin, sqrt
 
 from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, terms_of, tidy, vanishes
 from satsym.symbolic.checks import identity, numeric, points
-from satsym.symbolic.decimals import as_decimals, as_fractions
+from satsym.symbolic.decimals import DIGITS, as_decimals, as_fractions
 from satsym.symbolic.linear.matrices import right_half_plane
 from tests.support.distance import deviation
 
@@ -124,7 +124,7 @@ def test_identities_too_long_to_be_multiplied_out_are_decided_by_numbers(off: sp
 
 
 def test_decimals_are_fractions_and_back() -> None:
-    a, b, c = (sp.Float(text, 60) for text in ("20.967", "0.47", "6.265"))
+    a, b, c = (sp.Float(text, DIGITS) for text in ("20.967", "0.47", "6.265"))
     expression = sqrt(x) * (a * x * y + b * c * y) ** 2 + sp.exp(-b * q)
     fractions = as_fractions(sp.expand(expression))
     assert not fractions.has(sp.Float)
