@@ -305,7 +305,7 @@ def _same_loops(
             if moved.all() and moderate([cost]):
                 break
     else:
-        raise DerivationError(f"{derivation.name}: no step of 1e-{SHORTEST} is possible at random points; {LIE}")
+        raise DerivationError(f"{derivation.name}: no step, however short, is possible at random points; {LIE}")
     for name, sides in _loops(kernels.spec, text, place, (times, u, u_mid)).items():
         error = disagreement(sides)
         if not error <= EQUAL:
