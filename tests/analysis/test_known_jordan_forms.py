@@ -106,7 +106,6 @@ def test_exact_ranks_and_lost_modes_are_those_that_were_built(seed: int) -> None
 
 
 @pytest.mark.study
-@pytest.mark.slow
 def test_three_thousand_matrices_over_ten_decades() -> None:
     undecided, others = check(range(SAMPLE, SAMPLE + COUNT))
     assert undecided <= 0.02 * COUNT
