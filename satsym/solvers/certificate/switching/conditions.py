@@ -18,6 +18,7 @@ from satsym.solvers.certificate.switching.next_switch import noise
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
 from satsym.solvers.certificate.switching.variation import convex, variation
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.structure import SINGULAR
@@ -152,7 +153,7 @@ def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bo
     if any(free) or solution.instance.model.spec.throttled:
         return False
     saturated = all(piece.field.kept is None for piece in again.pieces) and not boundaries.on_boundary(again)
-    return saturated and convex(solution)
+    return saturated and bool(tried(lambda: convex(solution)))  # it looks at states at which costs may have no value
 
 
 def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
