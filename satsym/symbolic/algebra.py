@@ -96,7 +96,7 @@ def shortened(expression: sp.Expr) -> sp.Expr:
     if operations * turned > TURNING and _differs_from_zero(expression):
         return expression
     named, steep = _steep_named(expression)
-    alone = {f: sp.Dummy(real=True) for f in named.atoms(HyperbolicFunction) if _is_alone(f, named)}
+    alone = _alone(named)
     named, steep = named.xreplace(alone), steep | {dummy: f.xreplace(steep) for f, dummy in alone.items()}
     logarithms = {e: sp.Dummy(real=True) for e in named.atoms(sp.log)}
     if not logarithms:
@@ -107,10 +107,22 @@ def shortened(expression: sp.Expr) -> sp.Expr:
     return simple.xreplace(steep)
 
 
-def _is_alone(function: sp.Expr, within: sp.Expr) -> bool:
-    """Whether nothing is known of this function together with others: sympy would look for that for minutes."""
-    others = within.atoms(HyperbolicFunction, sp.exp) - {function}
-    return not any(other.free_symbols & function.free_symbols for other in others)
+def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
+    """Letters for functions of which nothing is known together with others: sympy would look for that for minutes.
+
+    Sines and cosines are such where there are decimals, with whose digits it takes long, and no powers of them.
+    """
+    hyperbolic, exponentials = expression.atoms(HyperbolicFunction), expression.atoms(sp.exp)
+    found = [f for f in hyperbolic if not _meets(f, (hyperbolic | exponentials) - {f})]
+    if expression.has(sp.Float):
+        turning = expression.atoms(TrigonometricFunction)
+        raised = {p.base for p in expression.atoms(sp.Pow)}
+        found += [f for f in turning - raised if not _meets(f, turning - {f})]
+    return {f: sp.Dummy(real=True) for f in sorted(found, key=sp.default_sort_key)}
+
+
+def _meets(function: sp.Expr, others: Iterable[sp.Expr]) -> bool:
+    return any(other.free_symbols & function.free_symbols for other in others)
 
 
 def shortest(*forms: sp.Expr) -> sp.Expr:
