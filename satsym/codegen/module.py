@@ -46,13 +46,14 @@ def render(derivation: Derivation, source: str) -> str:
     code = code_of(derivation)
     s, constants = code.symbols, list(code.constants.items())
     parts_of_motion = symplectic.split(derivation)
+    written = [(f, *_straight_line(f, s, constants, code.chain)) for f in code.functions]
     parts = [
         _header(derivation, source),
         _literal(spec(derivation, source)),
-        *(_scalar_form(f, s, constants, code.chain) for f in code.functions),
+        *(_scalar_form(f, s, assignments, outputs) for f, assignments, outputs in written),
         *(rk4.source(loop) for loop in _loops(derivation, code, constants)),
         *([symplectic.source(code, parts_of_motion, constants)] if parts_of_motion else []),
-        *(_batch_form(f, s, constants, code.chain) for f in code.functions),
+        *(_batch_form(f, s, assignments, outputs) for f, assignments, outputs in written),
     ]
     return sealed("\n\n".join(parts))
 
@@ -190,9 +191,8 @@ def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr
     return written(symbol.name, value, form, code) if written else [f"{symbol} = {code(value)}"]
 
 
-def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:
+def _scalar_form(function: Function, s: Symbols, assignments: Sequence[Assignment], outputs: Sequence[sp.Expr]) -> str:
     code = ScalarPrinter().doprint
-    assignments, outputs = _straight_line(function, s, constants, chain)
     results = [code(o) for o in outputs]
     body = [*_unpack(function, s), *(line for a, e in assignments for line in _lines(a, e, "math", code))]
     if function.kind == "scalar":
@@ -202,9 +202,8 @@ def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment]
     return _function(f"{function.name}({', '.join(function.arguments)})", function.summary, body)
 
 
-def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:
+def _batch_form(function: Function, s: Symbols, assignments: Sequence[Assignment], outputs: Sequence[sp.Expr]) -> str:
     code = BatchPrinter().doprint
-    assignments, outputs = _straight_line(function, s, constants, chain)
     rows, columns = function.value.shape
     shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
     sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES and s.of(a)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from keyword import kwlist
 from typing import TypeVar
 
@@ -49,6 +50,7 @@ class Code:
         return expression.xreplace(dict(self.names))
 
 
+@lru_cache(maxsize=1)  # what writes a module and what verifies it ask alike
 def code_of(derivation: Derivation) -> Code:
     """What the module of a derivation is written from."""
     if not is_minimum(derivation):
