@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from satsym.instance.resolve import known, quantity
 from satsym.spec import Variable
@@ -86,7 +86,8 @@ def placed(options: LqrOptions | None, name: str, value: float, states: Sequence
     letter, i, j = place
     rows = [list(row) for row in getattr(options, letter) or [[0.0] * len(options.inputs) for _ in states]]
     rows[i][j] = value
-    return replace(options, **{letter: tuple(map(tuple, rows))})
+    changed: dict[str, Any] = {letter: tuple(map(tuple, rows))}
+    return replace(options, **changed)
 
 
 def _place(options: LqrOptions, name: str, states: Sequence[str]) -> tuple[str, int, int] | None:

@@ -122,7 +122,7 @@ class Group:
         rest, left, right = (_floats(part) for part in (self._deviation, self.L, self.X))
         reached = np.abs(left[0]) @ np.abs(self.entries) @ np.abs(right[0]) * (left[1] * right[1])
         balanced, (scale, _) = matrix_balance(reached, permute=False, separate=True)
-        each = float(np.abs(balanced).max()) / max(1, np.count_nonzero(self.entries)) ** 0.5
+        each = float(np.abs(balanced).max()) / max(1.0, float(np.count_nonzero(self.entries))) ** 0.5
         return rest[0] * rest[1] * (scale / scale[:, None]), each
 
     def _equations(self, highest: int) -> tuple[Array, Array]:

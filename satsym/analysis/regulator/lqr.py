@@ -115,8 +115,8 @@ def lqr(
         steady a mode that does not decay, or the weights do not see one on the imaginary axis.
     """
     n, m = len(given.states), len(given.inputs)
-    rows = (np.asarray(part, dtype=float).tolist() for part in (Q, R))
-    found = weights.checked(*rows, None if N is None else np.asarray(N, dtype=float).tolist(), n, m)
+    rows, costs = (np.asarray(part, dtype=float).tolist() for part in (Q, R))
+    found = weights.checked(rows, costs, None if N is None else np.asarray(N, dtype=float).tolist(), n, m)
     q, r, cross = np.array(found[0]), np.array(found[1]), np.zeros((n, m)) if found[2] is None else np.array(found[2])
     # from here on for v = u + R^-1 N'x, so that there is no cross weight any more
     A, weight, ahead = riccati.without_cross(given.A, given.B, q, r, cross)

@@ -70,9 +70,9 @@ def regulators(instances: Sequence[Instance]) -> Regulators | None:
         a[~regular], b[~regular] = -np.eye(len(states)), 0.0
         q = q * np.outer(states, states)
         # from here on for v = u + R^-1 N'x, so that there is no cross weight any more
-        a, q, ahead = riccati.without_cross(a, b, q, r, None if cross is None else cross * states[:, None])
-        K, P, residual = batch.solve(a, b, q, r)
-        agreeing, eigenvalues = _eigenvalues(a, b, q, r, K)
+        free, weight, ahead = riccati.without_cross(a, b, q, r, None if cross is None else cross * states[:, None])
+        K, P, residual = batch.solve(free, b, weight, r)
+        agreeing, eigenvalues = _eigenvalues(free, b, weight, r, K)
         apart = (np.array([one.initial for one in instances]) - points) / states
         cost = np.einsum("ij,ijk,ik->i", apart, P, apart)
     clear = regular & agreeing & (residual <= batch.WANTED)
