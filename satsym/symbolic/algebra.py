@@ -219,8 +219,11 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
     meant: dict[sp.Symbol, sp.Expr] = {}
     for exponent, factors in families.items():
         common = reduce(sp.gcd, factors.values())
+        least = min(factors, key=lambda e: abs(factors[e]))
         if max(abs(f) for f in factors.values()) > STEEP * common:
             powers = [({e: sp.Integer(1)}, e) for e in factors]
+        elif abs(factors[least]) == common:  # written as it is
+            powers = [({e: factor / factors[least] for e, factor in factors.items()}, least)]
         else:
             powers = [({e: factor / common for e, factor in factors.items()}, sp.exp(common * exponent))]
         for exponents, base in powers:
