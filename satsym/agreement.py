@@ -27,7 +27,7 @@ MOST = 8 * DIGITS
 LIMIT = 1e-20
 """Largest distance of equal numbers, relative to the larger one: two thirds of the digits."""
 
-FAINT, LEAST = 1e-60, 1e-240
+FAINT, TINY = 1e-60, 1e-240
 """What is smaller than the first, times the largest number beside it, or than the second counts as zero.
 
 Differences do not resolve the one, and decimals that cancel leave the other.
@@ -58,7 +58,7 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
     before: dict[int, tuple[Any, Any]] | None = None
     while True:
         pairs = list(zip(*sides(digits), strict=True))
-        faint = max(FAINT * max((_size(*pair) for pair in pairs), default=0), LEAST)
+        faint = max(FAINT * max((_size(*pair) for pair in pairs), default=0), TINY)
         still: dict[int, tuple[Any, Any]] = {}
         for k in range(len(pairs)) if before is None else before:
             gap, size = abs(pairs[k][0] - pairs[k][1]), _size(*pairs[k])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen.printers import LARGEST_PRODUCT
-from satsym.symbolic.minimisers import MINIMISERS, Side
+from satsym.symbolic.functions.minimisers import MINIMISERS, Side
 
 Assignment = tuple[sp.Symbol, sp.Expr]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
 from keyword import kwlist
 from typing import TypeVar
 
@@ -50,9 +49,21 @@ class Code:
         return expression.xreplace(dict(self.names))
 
 
-@lru_cache(maxsize=1)  # what writes a module and what verifies it ask alike
+_LATEST: list[tuple[Derivation, Code]] = []
+"""The derivation that was asked for last, with its code."""
+
+
 def code_of(derivation: Derivation) -> Code:
-    """What the module of a derivation is written from."""
+    """What the module of a derivation is written from.
+
+    It is kept until another derivation is asked for: what writes a module and what verifies it ask in turn.
+    """
+    if not (_LATEST and _LATEST[0][0] is derivation):
+        _LATEST[:] = [(derivation, _code_of(derivation))]
+    return _LATEST[0][1]
+
+
+def _code_of(derivation: Derivation) -> Code:
     if not is_minimum(derivation):
         raise ValueError(f"{derivation.name}: kernels are generated from the minimum form of a problem")
     found, constants = symbols(derivation), definitions_of(derivation.model)

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from satsym.symbolic.roots import Argmin
+from satsym.symbolic.functions.roots import Argmin
 
 STEPS, POLISHED = 60, 2
 """Halvings of an interval, and steps of Newton's method at the best place."""

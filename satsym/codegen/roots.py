@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from satsym.symbolic.roots import Root
+from satsym.symbolic.functions.roots import Root
 
 STEPS, POLISHED = 60, 3
 """Steps between ends, and steps of Newton's method after that."""

@@ -17,7 +17,7 @@ from satsym.codegen.emitter import Emitter, live
 from satsym.codegen.naming import Code
 from satsym.codegen.printers import ScalarPrinter
 from satsym.codegen.rk4 import unpacking
-from satsym.kernels.composition import shares
+from satsym.kernels.composition import exact_weights
 from satsym.symbolic.decimals import DIGITS
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
@@ -77,7 +77,7 @@ def source(code: Code, of: Split, constants: Sequence[Assignment]) -> str:
     first = emit.inline(force, {})
     opening = live(emit.take_lines(), first)
     place, pace, pull = [*q], [*v], [*slopes]
-    kicks, drifts = ([sp.Float(sp.Rational(share), DIGITS) for share in group] for group in shares())
+    kicks, drifts = ([sp.Float(sp.Rational(share), DIGITS) for share in group] for group in exact_weights())
     for k, kick in enumerate(kicks, start=1):
         fraction = emit.assign(kick * h, f"kick_{k}")
         pace = [emit.assign(b + fraction * a, f"{y}_{k}") for y, b, a in zip(v, pace, pull, strict=True)]

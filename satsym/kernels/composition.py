@@ -17,12 +17,12 @@ DRIFTS = ("0.123229775946271", "0.290553797799558", "-0.127049212625417", "-0.24
 
 def weights() -> tuple[list[float], list[float]]:
     """Shares of the step of the twelve kicks, and of the eleven drifts between them."""
-    kicks, drifts = shares()
+    kicks, drifts = exact_weights()
     return [float(k) for k in kicks], [float(d) for d in drifts]
 
 
-def shares() -> tuple[list[Fraction], list[Fraction]]:
-    """The same exactly."""
+def exact_weights() -> tuple[list[Fraction], list[Fraction]]:
+    """Shares of the step of the twelve kicks, and of the eleven drifts between them, as exact fractions."""
     kicks, drifts = ([Fraction(c) for c in given] for given in (KICKS, DRIFTS))
     kicks.append(Fraction(1, 2) - sum(kicks))
     middle = 1 - 2 * sum(drifts, Fraction(0))

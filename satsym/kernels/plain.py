@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.composition import shares
+from satsym.kernels.composition import exact_weights
 from satsym.kernels.core import Kernels
 
 
@@ -55,7 +55,7 @@ def symplectic(kernels: Kernels, times: Array, x0: Sequence[float], p: tuple[flo
     """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
     spec = kernels.spec
     moved, kicked = (np.isin(spec.state_names, group) for group in (spec.coordinates, spec.velocities))
-    kicks, drifts = shares()
+    kicks, drifts = exact_weights()
     coast = (0.0,) * len(spec.controls)
     y = [np.array(x0)]
     for i, h in enumerate(np.diff(times)):

@@ -18,8 +18,8 @@ from satsym.agreement import DIGITS, LIMIT, Sides, disagreement, finite
 from satsym.spec import Variable
 from satsym.symbolic.algebra import LARGEST, PROVABLE, terms_of, vanishes
 from satsym.symbolic.derivation import Check, DerivationError
-from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
-from satsym.symbolic.roots import Root
+from satsym.symbolic.functions.minimisers import MPMATH_FUNCTIONS
+from satsym.symbolic.functions.roots import Root
 
 POINTS = 5
 TRIES = 60

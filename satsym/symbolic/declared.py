@@ -57,7 +57,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
         raise DerivationError(
-            f"{problem.name}: no objective; state a running_cost, 1 for the least time, or a terminal_cost"
+            f"{problem.name}: no objective; state a running_cost, 1 for the minimum time, or a terminal_cost"
         )
     if problem:
         _refuse_inequalities(problem)

@@ -106,9 +106,9 @@ class Step:
     kinds: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Derivation:
-    """Everything derived from a problem (or a model without a cost), in order; equal to itself alone.
+    """Everything derived from a problem (or a model without a cost), in order.
 
     ``notation`` maps the name of each symbol that occurs to its LaTeX. ``original`` is the derivation of the motion
     that a linear model linearises, as far as its first-order form.

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import minimisers, pieces, roots, signed
+from satsym.symbolic.functions import minimisers, pieces, roots, signed
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""

@@ -17,10 +17,10 @@ from satsym.symbolic.convention import as_cost
 from satsym.symbolic.decimals import everywhere, lengthened
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
+from satsym.symbolic.functions.pieces import breaks, in_pieces
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of, with_origins
 from satsym.symbolic.motion import steps
-from satsym.symbolic.pieces import breaks, in_pieces
 from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
 from satsym.symbolic.principle.parts import as_one
 from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls

@@ -8,9 +8,9 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
-from satsym.symbolic.minimisers import MINIMISERS
+from satsym.symbolic.functions.minimisers import MINIMISERS
+from satsym.symbolic.functions.pieces import CORNERS
 from satsym.symbolic.model import t
-from satsym.symbolic.pieces import CORNERS
 
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "Abs")
 """Functions that derivations may use, by their sympy names."""

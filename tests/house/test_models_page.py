@@ -88,7 +88,11 @@ def of_users(name: str) -> bool:
 
 
 def test_refusals_are_quoted_as_they_are_given() -> None:
-    files = [path for room in ("symbolic", "codegen", "kernels") for path in (ROOT / "satsym" / room).rglob("*.py")]
+    files = [
+        path
+        for room in ("symbolic", "codegen", "kernels", "instance")
+        for path in (ROOT / "satsym" / room).rglob("*.py")
+    ]
     source = "".join(path.read_text(encoding="utf-8") for path in files)
     text = re.sub(r'"\s*\n\s*f?"', "", source)
     quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When it is refused")[2], re.MULTILINE)[1:]

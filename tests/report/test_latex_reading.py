@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from satsym.symbolic import Derivation, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic.functions.minimisers import by_signs
 from satsym.symbolic.latex.typeset import Typesetter
-from satsym.symbolic.minimisers import by_signs
 from satsym.symbolic.principle import control_sets
 from tests.support.derived import each, shipped
 from tests.support.examples import examples

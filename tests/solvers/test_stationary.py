@@ -18,7 +18,7 @@ from satsym.instance import Instance
 from satsym.solvers import solve
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive, symbols_of
-from satsym.symbolic.roots import root_of
+from satsym.symbolic.functions.roots import root_of
 from tests.support.models import build, k, q, scalar, w
 
 PLACE = tuple(Variable(name, name) for name in ("x", "y"))

@@ -30,7 +30,7 @@ from satsym.symbolic import (
     t,
 )
 from satsym.symbolic.checks import numeric
-from satsym.symbolic.minimisers import Clip, Shorten
+from satsym.symbolic.functions.minimisers import Clip, Shorten
 from tests.support.derived import derived
 from tests.support.examples import examples
 

@@ -14,7 +14,7 @@ import satsym
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of, t
 from satsym.symbolic.checks import numeric
-from satsym.symbolic.pieces import Until, breaks, in_pieces
+from satsym.symbolic.functions.pieces import Until, breaks, in_pieces
 
 STATES = (Variable("x", "x"), Variable("v", "v"))
 (x, v), u = symbols_of(STATES), sp.Symbol("u", real=True)

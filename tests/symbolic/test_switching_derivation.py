@@ -25,8 +25,8 @@ from satsym.symbolic import (
     symbols_of,
 )
 from satsym.symbolic.checks import numeric, points
+from satsym.symbolic.functions.minimisers import Shrink, Side, Switch
 from satsym.symbolic.lookup.formulas import plain, to_tree
-from satsym.symbolic.minimisers import Shrink, Side, Switch
 from satsym.symbolic.switching import functions as steps
 from satsym.symbolic.switching import singular, singular_search
 from tests.support.distance import deviation

@@ -120,7 +120,7 @@ def test_a_terminal_cost_alone_makes_a_problem() -> None:
 
 
 def test_neither_cost_is_refused_with_what_least_time_needs() -> None:
-    with pytest.raises(BadInput, match="no objective; state a running_cost, 1 for the least time, or a terminal_cost"):
+    with pytest.raises(BadInput, match="no objective; state a running_cost, 1 for the minimum time, or"):
         satsym.derive(stated(running_cost=sp.Integer(0), control_set="box"))
 
 

@@ -9,11 +9,11 @@ from functools import partial, reduce
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
+from satsym.symbolic.functions.minimisers import Clip
+from satsym.symbolic.functions.pieces import pieces_of
+from satsym.symbolic.functions.roots import Root
 from satsym.symbolic.latex.levels import extreme, letter, levels, nearest, size
 from satsym.symbolic.latex.products import sides
-from satsym.symbolic.minimisers import Clip
-from satsym.symbolic.pieces import pieces_of
-from satsym.symbolic.roots import Root
 
 LE, GE = r"\le", r"\ge"
 

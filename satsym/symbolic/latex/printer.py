@@ -12,6 +12,7 @@ from typing import Any
 
 import sympy as sp
 
+from satsym.symbolic.functions.pieces import Until
 from satsym.symbolic.latex.laws import LawPrinter
 from satsym.symbolic.latex.products import (
     Product,
@@ -26,7 +27,6 @@ from satsym.symbolic.latex.products import (
     with_plus_first,
 )
 from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
-from satsym.symbolic.pieces import Until
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""

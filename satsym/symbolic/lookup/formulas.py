@@ -16,7 +16,7 @@ from sympy.functions.elementary.trigonometric import TrigonometricFunction
 from satsym.formula.budget import charge
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
 from satsym.symbolic.checks import POINTS, points
-from satsym.symbolic.minimisers import Clip, Shorten, Shrink, Switch, by_signs
+from satsym.symbolic.functions.minimisers import Clip, Shorten, Shrink, Switch, by_signs
 
 _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
     "sin": sp.sin,

@@ -19,11 +19,11 @@ from sympy.solvers.solveset import NonlinearError
 from satsym.control_part import DIRECTED, Branch
 from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.control_sets import refuse_singular
 from satsym.symbolic.principle.parts import Part
 from satsym.symbolic.principle.stationary import indefinite, minimiser, nearest_angle, with_angle
-from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
 
 
 @dataclass(frozen=True)

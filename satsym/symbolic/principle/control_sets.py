@@ -16,7 +16,7 @@ import sympy as sp
 from satsym.control_part import PartKind
 from satsym.spec import ControlSetKind, Variable
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.minimisers import Clip, Shorten
+from satsym.symbolic.functions.minimisers import Clip, Shorten
 
 
 def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[Variable, ...]:

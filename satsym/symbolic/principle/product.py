@@ -20,6 +20,7 @@ from satsym.symbolic.chain import named_parts
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.functions.roots import Argmin, Choice, Vertex
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
@@ -39,7 +40,6 @@ from satsym.symbolic.principle.set_laws import (
     written_out,
 )
 from satsym.symbolic.principle.stationary import indefinite
-from satsym.symbolic.roots import Argmin, Choice, Vertex
 
 STEP = "control_parts"
 """The step that only derivations of such problems have."""

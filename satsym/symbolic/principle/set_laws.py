@@ -11,14 +11,14 @@ from satsym.spec import ControlSetKind
 from satsym.symbolic import notation as n
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.minimisers import Clip, Stretch, Switch, Within
+from satsym.symbolic.functions.minimisers import Clip, Stretch, Switch, Within
+from satsym.symbolic.functions.roots import Choice
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, minima, norm_of, with_norms
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, minimum_norm_of, parts_of
-from satsym.symbolic.roots import Choice
 
 EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))
 

@@ -19,9 +19,9 @@ from satsym.agreement import DIGITS, equal, finite
 from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.minimisers import Clip
+from satsym.symbolic.functions.minimisers import Clip
+from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
 from satsym.symbolic.principle.circle import by_circle
-from satsym.symbolic.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
 
 SAMPLES, CONTROLS = 10, 12
 """Random points at which H is looked at, and controls at each."""

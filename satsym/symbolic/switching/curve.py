@@ -12,7 +12,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.minimisers import Switch
+from satsym.symbolic.functions.minimisers import Switch
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.switching import curve_checks

@@ -22,12 +22,12 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, never_below, numeric, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.minimisers import Clip, Shrink, Switch
+from satsym.symbolic.functions.minimisers import Clip, Shrink, Switch
+from satsym.symbolic.functions.signed import SignedClip, SignedSwitch, compared
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.parts import weighed
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
-from satsym.symbolic.signed import SignedClip, SignedSwitch, compared
 from satsym.symbolic.switching import notation as s
 
 SCALES = (0.1, 1.0, 10.0)

@@ -15,11 +15,11 @@ from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.checks import Check, Point, compare, numeric, partial
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.functions.roots import Argmin, Vertex
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.branches import Minimum
 from satsym.symbolic.principle.path import notation as pn
 from satsym.symbolic.principle.path import path_constraints as states
-from satsym.symbolic.roots import Argmin, Vertex
 
 
 def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:

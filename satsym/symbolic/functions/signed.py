@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from satsym.symbolic.minimisers import Clip
-from satsym.symbolic.roots import Choice
+from satsym.symbolic.functions.minimisers import Clip
+from satsym.symbolic.functions.roots import Choice
 
 
 class SignedSwitch(sp.Function):

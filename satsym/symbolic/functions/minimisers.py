@@ -11,7 +11,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
-from satsym.symbolic import pieces, roots
+from satsym.symbolic.functions import pieces, roots
 
 
 class Clip(sp.Function):
