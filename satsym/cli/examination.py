@@ -8,6 +8,7 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 
 import satsym
@@ -98,11 +99,17 @@ def _dependency(requirement: Requirement) -> Finding:
     if version is None:
         return Finding(requirement.name, "not installed", False, True, wanted)
     try:
-        importlib.import_module(requirement.name)
+        importlib.import_module(_module_of(requirement.name))
     except Exception as error:  # a broken package may raise anything
         return Finding(requirement.name, version, False, True, f"cannot be imported: {_line(error)}")
     fine = requirement.allows(version)
     return Finding(requirement.name, version, fine, True, "" if fine else wanted)
+
+
+def _module_of(package: str) -> str:
+    """The module of an installed package; python-flint has one that is called flint."""
+    own = sorted(module for module, packages in metadata.packages_distributions().items() if package in packages)
+    return package if package in own or not own else own[0]
 
 
 def _extras(stated: list[Requirement]) -> Iterator[Finding]:

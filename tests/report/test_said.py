@@ -79,7 +79,17 @@ WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the
 TOO_EARLY = ("not after", "too far from")
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
 MISSHAPEN = ("it has <n> entries of the wrong number or mixed kinds", "row <i> has <n> numbers")
+UNSUPPORTED = (
+    *("", ", a derivative that is not carried out", ", which is not carried out", ", an unknown function"),
+    *(", a value at another time", ", which is not given by comparisons for all times", ", whose derivatives jump"),
+)
+UNDECIDED = ("the value of <a>", "the norm of a vector")
 COMPOSED = (
+    *(f"<a> has <b> in it{what}" for what in UNSUPPORTED),
+    "<a> has the function <b> in it, which is not supported",
+    "<a> is <b>, a condition and no number",
+    *(f"for some time nothing decides {what}, and no law is known there" for what in UNDECIDED),
+    "the entries are not known well enough to decide. Either <verdict>: <reason>; or <other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
