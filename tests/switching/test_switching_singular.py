@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import msgspec
 import numpy as np
@@ -15,9 +16,10 @@ from sympy import cos, sin, sqrt
 
 from satsym import solvers as solve
 from satsym.instance import Instance
-from satsym.solvers import certificate
+from satsym.solvers import certificate, iteration
 from satsym.solvers.certificate.switching import conditions as certifying
 from satsym.solvers.certificate.switching import replay as replaying
+from satsym.solvers.certificate.switching.integration import Integration, OutOfTime
 from satsym.solvers.switching import solving
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR
@@ -126,6 +128,17 @@ def test_time_that_ends_while_checks_are_made_neither_certifies_nor_fails() -> N
         assert verdict.verdict == "extremal only"
         assert verdict.not_checked
         assert all(c.name.startswith("time was up before: ") for c in verdict.checks if not c.passed)
+
+
+@pytest.mark.parametrize("looks", range(1, 7))
+def test_time_that_ends_between_two_looks_at_the_clock_is_no_excess_of_work(
+    looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = iter([0.0] * looks + [2.0] * 100)
+    monkeypatch.setattr(iteration, "computed", lambda: next(clock))
+    by = Integration(np.ones(2), iteration.Limits(iteration.MOST, deadline=1.0))
+    with pytest.raises(OutOfTime):
+        by.solved(lambda t, y: -y, SimpleNamespace(start=0.0, end=1.0, lasting=1.0), np.ones(1), np.ones(1))
 
 
 HUMP = problem("hump", {x: v}, x**2 / (1 + x**4), ("v",))

@@ -105,10 +105,8 @@ class Integration:
 
         def timed(t: float, y: Array) -> Sequence[float] | Array:
             self.limits.spend(1)
-            if self.limits.late:
-                raise OutOfTime
-            if self.limits.expired:
-                raise TooMuchWork
+            if self.limits.expired:  # asked first: the time may be up between both questions
+                raise OutOfTime if self.limits.late else TooMuchWork
             return rates(t, y)
 
         ends = span.start, span.end
