@@ -47,8 +47,7 @@ class _Printer(PythonCodePrinter):
     _print_Half = _print_NegativeOne = _print_One = _print_Zero = _print_Rational
 
     def _print_Float(self, expr: Any) -> str:
-        WRITTEN[float(expr)] = mp.make_mpf(expr._mpf_)
-        return repr(float(expr))
+        return _noted(expr)
 
     def _print_Pi(self, expr: Any) -> str:
         return f"{self.module}.pi"
