@@ -253,8 +253,9 @@ def _shortest(expression: sp.Expr) -> sp.Expr:
     expanded = _expand(expression)
     # A sum with decimals is hardly ever a product of others, and to look for them takes sympy up to a minute.
     plain = expression.has(sp.Float) or len(sp.Add.make_args(expanded)) > FACTORED
-    products = sp.gcd_terms(expanded) if plain else factored(expression)
-    return min((expanded, products, sp.together(expression)), key=sp.count_ops)
+    fraction = sp.together(expression)
+    products = sp.gcd_terms(expanded) if plain else factored(expression, fraction)
+    return min((expanded, products, fraction), key=sp.count_ops)
 
 
 def _expand(expression: sp.Expr) -> sp.Expr:

@@ -67,7 +67,12 @@ def named_parts(
 def along(value: sp.Expr, slopes: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     """The derivative of a value whose symbols have these derivatives."""
     found = sorted((s for s in value.free_symbols if s in slopes), key=lambda s: s.name)
-    return sp.Add(*(sp.diff(value, s) * slopes[s] for s in found))
+    return sp.Add(*(_partial(value, s) * slopes[s] for s in found))
+
+
+@lru_cache(maxsize=4096)  # asked again for each symbol by which a whole chain is differentiated
+def _partial(value: sp.Expr, by: sp.Symbol) -> sp.Expr:
+    return sp.diff(value, by)
 
 
 class Elimination:

@@ -8,16 +8,21 @@ from __future__ import annotations
 import sympy as sp
 
 
-def factored(expression: sp.Expr) -> sp.Expr:
+def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
     """Write an expression as a quotient of products of irreducible polynomials with rational coefficients.
 
     Functions, roots and symbols count as independent. What has decimals or complex numbers is left to sympy.
+
+    Parameters
+    ----------
+    fraction
+        The expression as one fraction, where that is known.
     """
     expression = sp.sympify(expression)
     if expression.has(sp.Float, sp.I, sp.Order, sp.Derivative, sp.Integral):
         return sp.factor(expression)
     coefficient, factors = sp.Integer(1), []
-    for part in sp.Mul.make_args(sp.together(expression)):
+    for part in sp.Mul.make_args(sp.together(expression) if fraction is None else fraction):
         base, exponent = part.args if part.is_Pow else (part, sp.Integer(1))
         if part.is_Number:
             coefficient *= part
@@ -27,6 +32,8 @@ def factored(expression: sp.Expr) -> sp.Expr:
             content, found = _factors(base)
             coefficient *= content**exponent
             factors += [factor ** (exponent * times) for factor, times in found]
+        elif exponent.is_Rational:
+            factors += _roots(base, exponent)
         else:
             return sp.factor(expression)
     number, product = sp.Mul(*factors).as_coeff_Mul()
@@ -39,6 +46,15 @@ def factored(expression: sp.Expr) -> sp.Expr:
     )
 
 
+def _roots(base: sp.Expr, exponent: sp.Rational) -> list[sp.Expr]:
+    """Factors of a root of a polynomial: those that are positive have roots of their own."""
+    content, found = _factors(base)
+    alone = [factor ** (times * exponent) for factor, times in found if factor.is_positive]
+    rest = [factor**times for factor, times in found if not factor.is_positive]
+    (alone if content.is_positive else rest).append(content**exponent if content.is_positive else content)
+    return [*alone, sp.Mul(*rest) ** exponent]
+
+
 def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]]]:
     """Content and irreducible factors with multiplicities; each has a positive leading coefficient, as in sympy."""
     from flint import Ordering, fmpz_mpoly_ctx
@@ -49,7 +65,11 @@ def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]
         return content, found
     denominator, whole = poly.clear_denoms(convert=True)
     context = fmpz_mpoly_ctx.get([f"x{k}" for k in range(len(poly.gens))], Ordering.lex)
-    number, found = context.from_dict({powers: int(c) for powers, c in whole.as_dict(native=True).items()}).factor()
+    try:
+        number, found = context.from_dict({powers: int(c) for powers, c in whole.as_dict(native=True).items()}).factor()
+    except OverflowError:  # python-flint sorts the factors by coefficients, of which it takes none beyond 64 bits
+        content, found = sp.factor_list(polynomial)
+        return content, found
     content, factors = sp.Rational(int(number), int(denominator)), []
     for factor, times in found:
         terms = factor.to_dict()

@@ -26,6 +26,7 @@ from satsym.symbolic.latex.products import (
     turned_round,
     with_plus_first,
 )
+from satsym.symbolic.latex.rewriting import rewritten
 from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
@@ -81,7 +82,7 @@ class Printer(LawPrinter):
 
     def normalised(self, expression: sp.Expr) -> sp.Expr:
         """With the first term of a sum below a fraction line, or squared, positive, where it has whole powers."""
-        return expression.replace(is_power_of_sum, self._turned)
+        return rewritten(expression, is_power_of_sum, self._turned)
 
     def _turned(self, power: sp.Expr) -> sp.Expr:
         root, exponent = power.as_base_exp()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 
 import sympy as sp
@@ -11,12 +11,25 @@ import sympy as sp
 def readable(expression: sp.Expr) -> sp.Expr:
     """The expression with a sin^2 + a cos^2 as a, squares of sums as such, and exponentials multiplied out."""
     if expression.has(sp.cos):
-        expression = expression.replace(lambda e: e.is_Add and e.has(sp.cos), _united)
-        expression = expression.replace(lambda e: e.is_Mul and e.has(sp.cos), _doubled)
+        expression = rewritten(expression, lambda e: e.is_Add and e.has(sp.cos), _united)
+        expression = rewritten(expression, lambda e: e.is_Mul and e.has(sp.cos), _doubled)
     if expression.has(sp.exp):
-        expression = expression.replace(lambda e: e.is_Mul and e.has(sp.exp), _one_exponential)
-    expression = expression.replace(lambda e: e.is_Add and len(e.args) > 2, _squared)
-    return expression.replace(lambda e: e.is_Add and len(e.args) == 2, _over_one)
+        expression = rewritten(expression, lambda e: e.is_Mul and e.has(sp.exp), _one_exponential)
+    expression = rewritten(expression, lambda e: e.is_Add and len(e.args) > 2, _squared)
+    return rewritten(expression, lambda e: e.is_Add and len(e.args) == 2, _over_one)
+
+
+def rewritten(expression: sp.Expr, matches: Callable[[sp.Expr], bool], change: Callable[[sp.Expr], sp.Expr]) -> sp.Expr:
+    """The expression with the parts changed that match, by sympy, which takes long where no part changes."""
+    seen, left = {expression}, [expression]
+    while left:
+        part = left.pop()
+        if matches(part) and change(part) != part:
+            return expression.replace(matches, change)
+        new = [e for e in part.args if e not in seen]
+        seen.update(new)
+        left += new
+    return expression
 
 
 def _united(total: sp.Expr) -> sp.Expr:
