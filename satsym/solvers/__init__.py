@@ -76,10 +76,21 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
 
         return end_limits.solve(instance, progress, partial(_found, examined=False), found)
     if not instance.free:
-        return found(instance, progress)
+        return _searched(found(instance, progress), progress, examined)
     from satsym.solvers.unknowns import solving
 
-    return solving.solve(instance, progress, _uncertified, found)
+    return _searched(solving.solve(instance, progress, _uncertified, found), progress, examined)
+
+
+def _searched(solution: Solution, progress: Progress | None, examined: bool) -> Solution:
+    """What was found, or what a direct search finds where that is nothing, or costs more."""
+    if solution.instance.solver.method != methods.AUTO:
+        return solution
+    from satsym.solvers.search import solving as search
+
+    if not solution.status.answered:
+        return search.instead(solution, progress, examined)
+    return search.cheaper(solution, progress) if examined else solution
 
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:

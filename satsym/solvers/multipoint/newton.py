@@ -1,0 +1,126 @@
+"""Newton's method on the equations of an extremal in arcs, damped, and on meshes that are made finer until they tell.
+
+The length of steps is measured in the metric of the present derivatives, see Deuflhard, Newton Methods for Nonlinear
+Problems (2011), section 3.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.collocation.gauss import STAGES, scheme
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.iteration import Limits
+from satsym.solvers.multipoint.equations import Problem, between, cost, system
+
+SOLVED = 1e-11
+"""Size of the last step, relative to the sizes of what is unknown."""
+
+SHORTEST, MOST = 1e-3, 40
+"""Of steps, as a share of the whole one; how many there are at most."""
+
+SETTLED = 1e-11
+"""Change of cost, times and initial costates from one mesh to the next that is none, relative to their sizes."""
+
+FINEST = 2000
+"""Intervals of all arcs."""
+
+
+@dataclass(frozen=True, eq=False)
+class Extremal:
+    """Unknowns that solve the equations of a problem."""
+
+    problem: Problem
+    unknown: Array
+    step: float
+    """Size of the last step of Newton's method, or the change from the last mesh, whichever is larger."""
+    iterations: int
+
+    @property
+    def cost(self) -> float:
+        """What it costs."""
+        return cost(self.problem, self.unknown)
+
+    @property
+    def times(self) -> Array:
+        """Where arcs begin and end."""
+        return self.problem.times(self.unknown)
+
+
+def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
+    """Solve the equations on one mesh; ``None`` where that leads nowhere."""
+    from scipy.sparse.linalg import splu
+
+    units = problem.units()
+    for iteration in range(1, MOST + 1):
+        if limits.expired:
+            return None
+        try:
+            residual, slopes = system(problem, v)
+            inverse = splu(slopes)
+            step = inverse.solve(residual)
+        except FAILURES:
+            return None
+        whole, length = float(np.abs(step / units).max()), 1.0
+        if not np.isfinite(whole):
+            return None
+        while True:
+            there = v - length * step
+            again = inverse.solve(system(problem, there, sloped=False)[0])
+            after = float(np.abs(again / units).max())
+            if after <= (1.0 - length / 4.0) * whole or after < SOLVED:
+                break
+            length /= 2.0
+            if length < SHORTEST:
+                return None
+        v = there
+        limits.spend(len(v) // len(units[: 2 * problem.n]))
+        if length == 1.0 and after < SOLVED:
+            return Extremal(problem, v, after, iteration)
+    return None
+
+
+def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
+    """Solve the equations on meshes of which each is twice as fine, until the answer does not change."""
+    found = newton(problem, v, limits)
+    while found is not None and sum(found.problem.intervals) < FINEST:
+        finer = newton(*_refined(found), limits)
+        if finer is None:
+            return None
+        change = _change(found, finer)
+        found = replace(finer, iterations=found.iterations + finer.iterations, step=max(finer.step, change))
+        if change < SETTLED:
+            return found
+    return None
+
+
+def _refined(found: Extremal) -> tuple[Problem, Array]:
+    """The unknowns on intervals of half the length."""
+    old, v = found.problem, found.unknown
+    problem = replace(old, intervals=tuple(2 * k for k in old.intervals))
+    own, parts = np.concatenate([[0.0], scheme(STAGES).nodes]), []
+    for arc, k in enumerate(problem.intervals):
+        shares = np.append(((np.arange(k)[:, None] + own) / k).ravel(), 1.0)
+        rows = between(old, v, arc, shares).T
+        rows[-1] = old.values(v, arc)[0][-1]
+        parts.append(rows.ravel())
+    return problem, np.concatenate([*parts, v[old.layout.junctions :]])
+
+
+def _change(found: Extremal, finer: Extremal) -> float:
+    """From one mesh to the next: of initial and final values, of times, of what is free, and of the cost."""
+    both, duration, _ = found.problem.sizes
+    pairs = [(one.problem.layout, one.unknown) for one in (found, finer)]
+    d = len(both)
+    edges = [np.concatenate([v[:d], v[at.arcs[-1] - d : at.arcs[-1]]]) / np.tile(both, 2) for at, v in pairs]
+    times = [one.times / duration for one in (found, finer)]
+    costs = [one.cost for one in (found, finer)]
+    size = max(abs(costs[1]), float((both[: d // 2] * both[d // 2 :]).max()))
+    return max(
+        float(np.abs(edges[0] - edges[1]).max()),
+        float(np.abs(times[0] - times[1]).max()),
+        abs(costs[0] - costs[1]) / size,
+    )

@@ -1,0 +1,78 @@
+"""An extremal in arcs as a solution."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.unknowns import Place
+from satsym.solution import Solution
+from satsym.solvers.control.slopes import continued
+from satsym.solvers.multipoint.equations import between
+from satsym.solvers.multipoint.newton import Extremal
+from satsym.status import Status
+
+
+def answered(instance: Instance, extremal: Extremal) -> Solution:
+    """The solution of an instance that an extremal is; times hold each junction twice, before and after.
+
+    Parameters
+    ----------
+    instance
+        As it was stated; the solution has the values that were found for what it leaves free.
+    """
+    problem = extremal.problem
+    given = _with_values(instance, extremal)
+    times, z, u = _grid(extremal, np.linspace(given.t0, float(extremal.times[-1]), instance.solver.steps + 1))
+    n, m = problem.n, len(instance.model.spec.controls)
+    if instance.model.spec.directional and len(problem.laws) == 1:
+        u = continued(given, times, z[:n], z[n:], u)
+    switches = [(float(t), one.control) for t, one in zip(extremal.times[1:-1], problem.junctions, strict=True)]
+    structure = f"structure {''.join(law.name for law in problem.laws)}, " if len(problem.laws) > 1 else ""
+    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
+    return Solution(
+        instance=given,
+        method="bang-bang" if instance.model.spec.throttled else "collocation",
+        status=status,
+        message=f"{structure}estimated error {extremal.step:.0e} on {sum(problem.intervals)} intervals, by the search",
+        objective=extremal.cost,
+        times=times,
+        x=z[:n],
+        u=u,
+        lam=z[n:],
+        switching_times=tuple(tuple(t for t, control in switches if control == k) for k in range(m)),
+        iterations=extremal.iterations,
+        history=(),
+        wall_s=0.0,
+    )
+
+
+def _with_values(instance: Instance, extremal: Extremal) -> Instance:
+    """With what was found for what is free besides the end."""
+    problem, v = extremal.problem, extremal.unknown
+    parameters = tuple(float(np.real(value)) for value in problem.given(v))
+    initial = list(instance.initial)
+    for one in instance.free:
+        if one.place is Place.INITIAL:
+            initial[one.index] = float(v[one.index])
+    return replace(instance, initial=tuple(initial), parameters=parameters, t0=problem.instance.t0)
+
+
+def _grid(extremal: Extremal, even: Array) -> tuple[Array, Array, Array]:
+    """Times, values and controls at even times and at both sides of each junction."""
+    problem, v, edges = extremal.problem, extremal.unknown, extremal.times
+    p, times, values, controls = problem.given(v), list[Array](), list[Array](), list[Array]()
+    near = 1e-9 * (edges[-1] - edges[0])
+    for arc, law in enumerate(problem.laws):
+        begin, end = edges[arc], edges[arc + 1]
+        inside = even[(even > begin + near) & (even < end - near)]
+        t = np.concatenate([[begin], inside, [end]])
+        z = between(problem, v, arc, np.clip((t - begin) / (end - begin), 0.0, 1.0))
+        z[:, -1] = problem.values(v, arc)[0][-1]
+        times.append(t)
+        values.append(z)
+        controls.append(np.asarray(law.control(t, z, p)))
+    return np.concatenate(times), np.concatenate(values, axis=1), np.concatenate(controls, axis=1)

@@ -1,0 +1,240 @@
+"""Controls as a programme has them: rates are smooth in these, also where a norm, a magnitude or an angle is in them.
+
+Rates that contain the norm of a vector are ``a + B u + c |u|``, and those that contain an angle are
+``a + b cos(u) + c sin(u)``. Both are sums of the rates at a few fixed controls, the nodes, with weights that are linear
+in the vector and its norm, or in cosine and sine. The norm is a variable s of its own with ``|u|^2 <= s^2``, and so are
+cosine and sine with ``cos^2 + sin^2 <= 1``: at an optimum both hold with equality, or convexity says that nothing is
+gained.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.control_set import ControlSet
+from satsym.instance import Instance
+
+DRAWN, SAME = 6, 1e-9
+"""Random controls at which rates by nodes are compared with rates, and the share by which they may differ."""
+
+Node = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Lift:
+    """Controls that are replaced by variables in which rates are linear.
+
+    Attributes
+    ----------
+    places
+        Of these controls in the model's order.
+    variables
+        Places of what replaces them, in the order of the columns of `weights` but its first.
+    nodes
+        Values of these controls, one row each.
+    weights
+        Row by row the weights of the nodes: a constant, then factors of the variables.
+    """
+
+    places: tuple[int, ...]
+    variables: tuple[int, ...]
+    nodes: tuple[Node, ...]
+    weights: Array
+
+
+@dataclass(frozen=True)
+class Norm:
+    """A bound on the length of variables: not above `outer` or the variable `spot`, and not below `inner`."""
+
+    places: tuple[int, ...]
+    inner: float
+    outer: float
+    spot: int | None = None
+
+
+@dataclass(frozen=True)
+class Controls:
+    """The variables of a programme that stand for controls.
+
+    Attributes
+    ----------
+    given
+        How many controls there are; the first variables are these.
+    lower, upper
+        Bounds of all variables.
+    """
+
+    given: int
+    lower: Array
+    upper: Array
+    lifts: tuple[Lift, ...] = ()
+    norms: tuple[Norm, ...] = ()
+    angles: dict[int, tuple[int, int]] = field(default_factory=dict)
+    """Place of an angle -> those of its cosine and its sine."""
+
+    @property
+    def count(self) -> int:
+        """How many variables there are."""
+        return len(self.lower)
+
+    def nodes(self, v: Array) -> list[tuple[Array, Array]]:
+        """Controls (m, M) at which rates are asked for, and the weights (M,) with which they are added.
+
+        Parameters
+        ----------
+        v
+            Variables, shape (count, M), real or complex.
+        """
+        u = np.array(v[: self.given])
+        for lift in self.lifts:
+            u[list(lift.places)] = np.array(lift.nodes[0])[:, None]
+        whole = [(u, np.ones(v.shape[1], v.dtype))]
+        for lift in self.lifts:
+            weights = lift.weights[:, :1] + lift.weights[:, 1:] @ v[list(lift.variables)]
+            for node, weight in zip(lift.nodes[1:], weights[1:], strict=True):
+                moved = np.array(u)
+                moved[list(lift.places)] = np.array(node)[:, None]
+                whole.append((moved, weight))
+            whole[0] = (u, whole[0][1] + weights[0] - 1.0)
+        return whole
+
+    def controls(self, v: Array) -> Array:
+        """The controls that variables stand for, shape (m, M)."""
+        u = np.array(v[: self.given])
+        for place, (cosine, sine) in self.angles.items():
+            u[place] = np.arctan2(v[sine], v[cosine])
+        return u
+
+    def variables(self, u: Array) -> Array:
+        """The variables that stand for controls, shape (count, M)."""
+        v = np.zeros((self.count, u.shape[1]))
+        v[: self.given] = u
+        for norm in self.norms:
+            if norm.spot is not None:
+                v[norm.spot] = np.linalg.norm(v[list(norm.places)], axis=0)
+        for place, (cosine, sine) in self.angles.items():
+            v[cosine], v[sine] = np.cos(u[place]), np.sin(u[place])
+        return v
+
+
+def controls_of(instance: Instance) -> Controls | None:
+    """The variables of an instance; ``None`` where rates are not what they need to be for these."""
+    within, m = instance.control_set, len(instance.model.spec.controls)
+    parts = within.parts if within.kind == "product" else ((tuple(range(m)), within),)
+    lower, upper = np.full(m, -np.inf), np.full(m, np.inf)
+    made = _Made(instance, list(lower), list(upper))
+    for places, part in parts:
+        made.add(places, part)
+    found = made.controls(m)
+    return found if _reproduces(instance, found) else None
+
+
+class _Made:
+    """Variables as they are added, set by set."""
+
+    def __init__(self, instance: Instance, lower: list[float], upper: list[float]) -> None:
+        self.instance, self.lower, self.upper = instance, lower, upper
+        self.lifts: list[Lift] = []
+        self.norms: list[Norm] = []
+        self.angles: dict[int, tuple[int, int]] = {}
+
+    def controls(self, m: int) -> Controls:
+        lower, upper = np.array(self.lower), np.array(self.upper)
+        return Controls(m, lower, upper, tuple(self.lifts), tuple(self.norms), self.angles)
+
+    def new(self, low: float, high: float) -> int:
+        self.lower.append(low)
+        self.upper.append(high)
+        return len(self.lower) - 1
+
+    def add(self, places: tuple[int, ...], part: ControlSet) -> None:
+        spec = self.instance.model.spec
+        if part.kind == "box":
+            for place, low, high in zip(places, part.lower, part.upper, strict=True):
+                self.lower[place], self.upper[place] = low, high
+                weighed = spec.switching and low < 0.0 < high
+                if weighed and _depends_on_norms(self.instance, (place,)):
+                    self._with_norm((place,), 0.0, max(-low, high))
+        elif part.kind == "angle":
+            cosine, sine = self.new(-1.0, 1.0), self.new(-1.0, 1.0)
+            self.lower[places[0]] = self.upper[places[0]] = 0.0
+            self.angles[places[0]] = cosine, sine
+            quarter = np.pi / 2
+            weights = np.array([[0.5, 0.5, -0.5], [0.0, 0.0, 1.0], [0.5, -0.5, -0.5]])
+            self.lifts.append(Lift(places, (cosine, sine), ((0.0,), (quarter,), (2 * quarter,)), weights))
+            self.norms.append(Norm((cosine, sine), 0.0, 1.0))
+        elif part.kind in ("ball", "annulus"):
+            if part.throttled and _depends_on_norms(self.instance, places):
+                self._with_norm(places, part.inner, part.radius)
+            elif np.isfinite(part.radius) or part.inner:
+                self.norms.append(Norm(places, part.inner, part.radius))
+            if np.isfinite(part.radius):
+                for place in places:
+                    self.lower[place], self.upper[place] = -part.radius, part.radius
+
+    def _with_norm(self, places: tuple[int, ...], inner: float, outer: float) -> None:
+        """A lift of a vector whose norm counts."""
+        spot = self.new(inner, outer)
+        size, k = (outer if np.isfinite(outer) else 1.0), len(places)
+        nodes = [np.zeros(k), *(sign * size * row for row in np.eye(k) for sign in (1.0, -1.0))]
+        # with f = a + B u + c s: c = (f(e) + f(-e) - 2 f(0)) / 2 size, of the first axis, and B e = (f(e) - f(-e)) / 2
+        weights = np.zeros((len(nodes), k + 2))
+        weights[0] = [1.0, *np.zeros(k), -1.0 / size]
+        weights[1:3, k + 1] = 0.5 / size
+        for axis in range(k):
+            weights[1 + 2 * axis, 1 + axis] += 0.5 / size
+            weights[2 + 2 * axis, 1 + axis] -= 0.5 / size
+        self.lifts.append(Lift(places, (*places, spot), tuple(map(tuple, nodes)), weights))
+        self.norms.append(Norm(places, inner, outer, spot))
+
+
+def rates(instance: Instance, t: Array, x: Array, u: Array, p: tuple[Any, ...]) -> Array:
+    """Rates of the states and of the cost, shape (n + 1, M)."""
+    model, n = instance.model, len(x)
+    kind = np.result_type(t, x, u, *p)
+    found = np.empty((n + 1, x.shape[1]), kind)
+    found[:n] = model.dynamics_batch(t, x, u, p)
+    found[n] = model.running_cost_batch(t, x, u, p)
+    return found
+
+
+def _drawn(instance: Instance) -> tuple[Array, Array, np.random.Generator]:
+    """Times, states about the start, and the random numbers that go on."""
+    rng, start = np.random.default_rng(0), np.array(instance.initial)
+    x = start[:, None] * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (len(start), DRAWN)))
+    return np.full(DRAWN, instance.t0), x, rng
+
+
+def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
+    """Whether rates are no linear function of these controls: what is left is their norm."""
+    t, x, _ = _drawn(instance)
+    u = np.zeros((len(instance.model.spec.controls), DRAWN))
+    with np.errstate(all="ignore"):
+        still = rates(instance, t, x, u, instance.parameters)
+        u[places[0]] = 1.0
+        ahead = rates(instance, t, x, u, instance.parameters)
+        back = rates(instance, t, x, -u, instance.parameters)
+    bent = np.abs(ahead + back - 2.0 * still)
+    return bool(np.nanmax(bent) > SAME * max(np.nanmax(np.abs(ahead - still)), 1e-300))
+
+
+def _reproduces(instance: Instance, controls: Controls) -> bool:
+    """Whether rates by nodes are rates."""
+    t, x, rng = _drawn(instance)
+    u = rng.uniform(-1.0, 1.0, (controls.given, DRAWN))
+    low, high = controls.lower[: controls.given, None], controls.upper[: controls.given, None]
+    finite = np.isfinite(low) & np.isfinite(high) & (low < high)
+    with np.errstate(all="ignore"):
+        span, middle = np.where(finite, high - low, 2.0), np.where(finite, (high + low) / 2, 0.0)
+        u = middle + 0.4 * span * u
+        direct = rates(instance, t, x, u, instance.parameters)
+        nodes = controls.nodes(controls.variables(u))
+        each = [weight * rates(instance, t, x, node, instance.parameters) for node, weight in nodes]
+        size = np.sum(np.abs(each), axis=0)
+        error = np.abs(np.sum(each, axis=0) - direct)
+    known = np.isfinite(direct)
+    return bool(known.any() and (error[known] <= SAME * np.maximum(size[known], 1e-300)).all())

@@ -1,0 +1,70 @@
+"""Finer meshes: where the equations are not met between the points, and where controls jump."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.search.nlp import Found
+from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.transcription import DEGREE, NODES, RADAU, basis
+
+TOLERANCE, MOST = 1e-5, 6
+"""Residual that is small enough, relative to the sizes of states; pieces into which an interval is cut at most."""
+
+JUMP, PIECES = 0.15, 4
+"""Change of a control within an interval, as a share of what it may do, that is a jump; how often it is cut then."""
+
+MIDDLES = 0.5 * (NODES[:-1] + NODES[1:])
+STATES = np.array([[one(tau) for one in basis(NODES)] for tau in MIDDLES])
+RISES = np.array([[one.deriv()(tau) for one in basis(NODES)] for tau in MIDDLES])
+VARIABLES = np.array([[one(tau) for one in basis(RADAU)] for tau in MIDDLES])
+
+
+def refined(found: Found) -> tuple[list[Array], float]:
+    """Edges of finer intervals, phase by phase, and the largest residual that was found."""
+    programme = found.programme
+    errors, jumps = _residuals(found), _jumps(found)
+    pieces = np.clip(np.ceil((errors / TOLERANCE) ** (1.0 / (DEGREE + 1))), 1, MOST).astype(int)
+    pieces = np.where(jumps, np.maximum(pieces, PIECES), pieces)
+    meshes, k = [], 0
+    for mesh in programme.meshes:
+        edges = [mesh[:1]]
+        for low, high in pairwise(mesh):
+            edges.append(np.linspace(low, high, pieces[k] + 1)[1:])
+            k += 1
+        meshes.append(np.concatenate(edges))
+    return meshes, float(errors.max())
+
+
+def _residuals(found: Found) -> Array:
+    """Of the equations between the points, the largest of each interval."""
+    programme = found.programme
+    x, v, durations, free, start = programme.unpacked(found.unknown)
+    k, d = programme.intervals, DEGREE
+    nodes = np.arange(k)[:, None] * d + np.arange(d + 1)
+    states, slopes = (np.einsum("pj,nkj->nkp", table, x[:, nodes]) for table in (STATES, RISES))
+    variables = np.einsum("pj,nkj->nkp", VARIABLES, v[:, nodes[:, 1:] - 1])
+    low, high = (row[:, None, None] for row in (programme.controls.lower, programme.controls.upper))
+    variables = np.clip(variables, low, high)
+    times = programme.times(durations, start)
+    steps = (programme.steps @ durations)[::d]
+    t = times[nodes[:, :1]] + steps[:, None] * MIDDLES
+    y = np.concatenate([states, variables, t[None], np.broadcast_to(free[:, None, None], (len(free), *t.shape))])
+    with np.errstate(all="ignore"):
+        f = programme.points.rates(y.reshape(len(y), -1))[:-1].reshape(states.shape)
+    error = np.abs(slopes - steps[:, None] * f) / programme.sizes.states[:, None, None]
+    return np.asarray(np.nan_to_num(error, nan=1.0).max(axis=(0, 2)))
+
+
+def _jumps(found: Found) -> Array:
+    """In which intervals a bounded control changes much."""
+    programme: Programme = found.programme
+    v = programme.unpacked(found.unknown)[1]
+    span = programme.controls.upper - programme.controls.lower
+    span = np.where(np.isfinite(span) & (span > 0.0), span, np.inf)
+    k, d = programme.intervals, DEGREE
+    around = np.clip(np.arange(k)[:, None] * d + np.arange(-1, d + 1), 0, programme.count - 1)
+    return np.asarray((np.ptp(v[:, around], axis=2) / span[:, None]).max(axis=0) > JUMP)

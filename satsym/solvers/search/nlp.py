@@ -1,0 +1,108 @@
+"""The interior-point code that solves programmes: the one place that knows which it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.iteration import Limits
+from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.transcription import Places
+
+TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
+"""Of optimality, and what is taken where rounding allows no more."""
+
+SOLVED, ACCEPTED = 0, 1
+"""What the code says of its end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where a solution of a programme ended.
+
+    Attributes
+    ----------
+    solved
+        Whether it is optimal, at least acceptably.
+    multipliers
+        Of the rows.
+    """
+
+    programme: Programme
+    unknown: Array
+    multipliers: Array
+    objective: float
+    iterations: int
+    solved: bool
+
+
+class _Watched:
+    """A programme as the code calls it, which ends where time is up."""
+
+    def __init__(self, programme: Programme, limits: Limits | None) -> None:
+        self.programme, self.limits, self.iterations = programme, limits, 0
+        self.objective, self.gradient, self.constraints = programme.objective, programme.gradient, programme.values
+        self.jacobian = programme.jacobian
+
+    def jacobianstructure(self) -> tuple[Places, Places]:
+        """Rows and columns."""
+        return self.programme.jacobian_places
+
+    def hessianstructure(self) -> tuple[Places, Places]:
+        """Rows and columns."""
+        return self.programme.hessian_places
+
+    def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
+        """Of the Lagrangian."""
+        return self.programme.hessian(np.asarray(w), np.asarray(multipliers), factor)
+
+    def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *_: object) -> bool:
+        """Called once an iteration; whether to go on."""
+        self.iterations += 1
+        if self.limits is None:
+            return True
+        self.limits.spend(self.programme.unknowns)
+        self.limits.tell(objective * self.programme.sizes.cost, infeasibility)
+        return not self.limits.expired
+
+
+def solve(
+    programme: Programme, start: Array, limits: Limits | None = None, most: int = 500, near: bool = False
+) -> Found:
+    """Solve a programme.
+
+    Parameters
+    ----------
+    start
+        Unknowns to begin with.
+    most
+        Iterations.
+    near
+        Whether the start is near a solution.
+    """
+    import pounce  # type: ignore[import-untyped]
+
+    low, high = programme.bounds
+    lower, upper = programme.limits
+    watched = _Watched(programme, limits)
+    problem = pounce.Problem(n=len(low), m=len(lower), problem_obj=watched, lb=low, ub=high, cl=lower, cu=upper)
+    options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
+    options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}
+    if near:
+        options["mu_init"] = 1e-4
+    for name, value in options.items():
+        problem.add_option(name, value)
+    with np.errstate(all="ignore"):
+        w, report = problem.solve(np.clip(start, low, high))
+    solved = report["status"] in (SOLVED, ACCEPTED)
+    w = np.asarray(w)
+    return Found(
+        programme,
+        w,
+        np.asarray(report["mult_g"]),
+        programme.objective(w) * programme.sizes.cost,
+        watched.iterations,
+        solved,
+    )

@@ -1,0 +1,187 @@
+"""Values and exact derivatives, point by point, of rates, costs and constraints, from generated functions.
+
+First derivatives are complex steps through these functions. Second ones are complex steps through ``costate_rate``,
+which is the derivative of the Hamiltonian by the states, and differences of complex steps for the few others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.control_set import stated_constraints
+from satsym.instance import Instance
+from satsym.kernels.active import stated
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.search.controls import Controls, rates
+
+STEP = 1e-30
+"""Of complex differences."""
+
+DIFFERENCE = 1e-5
+"""Of real ones, in units of the sizes of what is moved."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """A problem at many points at once; local variables are states x, variables v, the time t, free parameters q.
+
+    Parameters
+    ----------
+    free
+        Places of the parameters that are free.
+    sizes
+        Of local variables.
+    """
+
+    instance: Instance
+    controls: Controls
+    free: tuple[int, ...]
+    sizes: Array
+
+    @property
+    def states(self) -> int:
+        """How many."""
+        return len(self.instance.initial)
+
+    @property
+    def local(self) -> int:
+        """How many local variables there are."""
+        return self.states + self.controls.count + 1 + len(self.free)
+
+    @cached_property
+    def kept(self) -> list[int]:
+        """Path constraints that are no bounds of controls, by their numbers."""
+        return list(stated_constraints(self.instance.model.spec).values())
+
+    def _parted(self, y: Array) -> tuple[Array, Array, Array, tuple[Any, ...]]:
+        n, k = self.states, self.states + self.controls.count
+        p = list[Any](self.instance.parameters)
+        for row, place in enumerate(self.free):
+            p[place] = y[k + 1 + row]
+        return y[:n], y[n:k], y[k], tuple(p)
+
+    def rates(self, y: Array) -> Array:
+        """Rates of states and of the cost, shape (n + 1, M), at local variables (l, M), real or complex."""
+        x, v, t, p = self._parted(y)
+        return sum(weight * rates(self.instance, t, x, u, p) for u, weight in self.controls.nodes(v))  # type: ignore[return-value]
+
+    def constraints(self, y: Array) -> Array:
+        """Path constraints, none above zero, shape (c, M)."""
+        if not self.kept:
+            return np.empty((0, y.shape[1]), y.dtype)
+        x, v, t, p = self._parted(y)
+        u, spec = v[: self.controls.given], self.instance.model.spec
+        found = self.instance.model.path_constraints_batch(t, x, u, p, self.instance.control_set.arguments)
+        return np.asarray(np.broadcast_to(found, (len(spec.path_constraints), len(t)))[self.kept])
+
+    def slopes(self, function: Callable[[Array], Array], y: Array) -> Array:
+        """Derivatives (rows, l, M) of a function by all local variables."""
+        return self._complex(function, y, range(self.local))
+
+    def _complex(self, function: Callable[[Array], Array], y: Array, by: range) -> Array:
+        many = np.repeat(y.astype(complex)[:, None], len(by), 1)
+        for k, place in enumerate(by):
+            many[place, k] += 1j * STEP
+        found = function(many.reshape(len(y), -1))
+        return np.imag(found).reshape(len(found), len(by), y.shape[1]) / STEP
+
+    def _by_states(self, y: Array, mu: Array, weight: Array) -> Array:
+        """Derivatives (n, M) by the states of mu f + weight L, at M columns that may be a multiple of those of mu."""
+        x, v, t, p = self._parted(y)
+        times = y.shape[1] // mu.shape[1]
+        lam, weight = np.tile(mu, (1, times)), np.tile(weight, times)
+        model, plain = self.instance.model, bool((weight > 0.0).all())
+        if plain:
+            lam = lam / weight
+        total = np.zeros(x.shape, y.dtype)
+        for u, share in self.controls.nodes(v):
+            found = np.broadcast_to(model.costate_rate_batch(t, x, u, lam, p), x.shape)
+            if plain:
+                total -= weight * share * found
+                continue
+            cost = np.broadcast_to(model.costate_rate_batch(t, x, u, np.zeros_like(lam), p), x.shape)
+            total -= share * (found + (weight - 1.0) * cost)
+        return total
+
+    def hessian(self, y: Array, mu: Array, weight: Array, eta: Array) -> tuple[Array, Array, Array]:
+        """Gradient (l, M) and second derivatives (l, l, M) of mu f + weight L, and those of eta g.
+
+        Parameters
+        ----------
+        mu, weight, eta
+            Shapes (n, M), (M,) and (c, M).
+        """
+        n, count = self.states, self.local
+        weights = np.concatenate([mu, weight[None]])
+
+        def added(z: Array) -> Array:
+            return np.sum(self.rates(z) * np.tile(weights, z.shape[1] // mu.shape[1]), axis=0)[None]
+
+        def held(z: Array) -> Array:
+            return np.sum(self.constraints(z) * np.tile(eta, z.shape[1] // mu.shape[1]), axis=0)[None]
+
+        gradient = self._complex(added, y, range(count))[0]
+        found = np.zeros((count, count, y.shape[1]))
+        found[:n] = self._complex(lambda z: self._by_states(z, mu, weight), y, range(count))
+        found[n:, :n] = found[:n, n:].transpose(1, 0, 2)
+        found[n:, n:] = self._differences(added, y, range(n, count))
+        other = self._differences(held, y, range(count)) if len(eta) else np.zeros_like(found)
+        return gradient, found, other
+
+    def _differences(self, function: Callable[[Array], Array], y: Array, by: range) -> Array:
+        """Second derivatives (k, k, M) of one row by some variables."""
+        moved = np.repeat(y[:, None], 2 * len(by), 1)
+        for k, place in enumerate(by):
+            moved[place, 2 * k] += DIFFERENCE * self.sizes[place]
+            moved[place, 2 * k + 1] -= DIFFERENCE * self.sizes[place]
+        slopes = self._complex(function, moved.reshape(len(y), -1), by)[0]
+        slopes = slopes.reshape(len(by), len(by), 2, y.shape[1])
+        steps = 2.0 * DIFFERENCE * self.sizes[list(by)]
+        found = (slopes[:, :, 0] - slopes[:, :, 1]) / steps[None, :, None]
+        return 0.5 * (found + found.transpose(1, 0, 2))
+
+    def cost(self, y: Array) -> Array:
+        """The terminal cost, shape (1, M)."""
+        x, _, t, p = self._parted(y)
+        if not self.instance.model.spec.has_terminal_cost:
+            return np.zeros((1, y.shape[1]), y.dtype)
+        return np.asarray(np.broadcast_to(self.instance.model.terminal_cost_batch(t, x, p), (1, y.shape[1])))
+
+    def ends(self, y: Array) -> Array:
+        """What vanishes at the end besides given states, first, and inequalities that are not above zero; (e, M)."""
+        x, _, t, p = self._parted(y)
+        rows, spec = [], self.instance.model.spec
+        places = [k for k, name in enumerate(spec.state_names) if self.instance.final.get(name) == "reference"]
+        if places:
+            curve = np.broadcast_to(self.instance.model.reference_batch(t, p), x.shape)
+            rows.append((x - curve)[places])
+        whole = stated(self.instance.model)
+        if count := len(whole.spec.multipliers):
+            lam, nu = np.ones_like(x), (0.0,) * count
+            arguments = self.instance.control_set.arguments, final_argument(self.instance)
+            # only the rows of constraints are used, which no costate is in
+            found = np.asarray(whole.boundary_batch(t, x, lam, nu, p, *arguments))
+            n = len(x)
+            rows.append(np.broadcast_to(found[n : n + count].reshape(count, -1), (count, y.shape[1])))
+        return np.concatenate(rows) if rows else np.empty((0, y.shape[1]), y.dtype)
+
+    @property
+    def inequalities(self) -> int:
+        """How many of the rows at the end are inequalities: the last ones."""
+        return len(stated(self.instance.model).spec.terminal_inequalities)
+
+    def on_the_way(self, y: Array) -> Array:
+        """What vanishes at points on the way, all of their conditions, shape (k, M)."""
+        x, _, t, p = self._parted(y)
+        spec = self.instance.model.spec
+        count = sum(one.conditions for one in spec.interior)
+        if not count:
+            return np.empty((0, y.shape[1]), y.dtype)
+        found = np.asarray(self.instance.model.interior_batch(t, x, p)).reshape(count, -1)
+        return np.broadcast_to(found, (count, y.shape[1]))

@@ -1,0 +1,202 @@
+"""Units of a programme's unknowns, from the motion at rest, the end that is missed, and what the cost comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.unknowns import Place
+from satsym.solvers.search.controls import Controls, rates
+from satsym.solvers.search.transcription import Sizes
+
+STEPS = 200
+"""In which the motion at rest is followed."""
+
+FAR = 30.0
+"""Multiple of the largest given number beyond which it is not followed."""
+
+LEVEL = 0.3
+"""Share of the sizes of controls at which the cost is looked at."""
+
+
+def wanted(instance: Instance, end: float) -> Array:
+    """Final states as far as they are given, the nearest within ranges; NaN elsewhere."""
+    found = np.full(len(instance.initial), np.nan)
+    for i, name in enumerate(instance.model.spec.state_names):
+        value = instance.final.get(name)
+        if isinstance(value, float | int):
+            found[i] = value
+        elif value == "reference":
+            found[i] = instance.model.reference(end, instance.parameters)[i]
+        elif name in instance.ranges:
+            low, high = instance.ranges[name]
+            found[i] = min(max(instance.initial[i], low), high)
+    return found
+
+
+def resting(controls: Controls) -> Array:
+    """Variables of controls that are small and within their bounds, and away from both where they can be."""
+    low, high = controls.lower, controls.upper
+    v = np.clip(np.zeros(controls.count), low, high)
+    bounded = np.isfinite(low) & np.isfinite(high)
+    at_bound = bounded & ((v <= low) | (v >= high)) & (low < high)
+    v = np.where(at_bound, v + 0.02 * (high - low) * np.where(v <= low, 1.0, -1.0), v)
+    for norm in controls.norms:
+        outer = norm.outer if np.isfinite(norm.outer) else 1.0
+        length = max(0.1 * outer, norm.inner)
+        v[list(norm.places)] = length / np.sqrt(len(norm.places))
+        if norm.spot is not None:
+            v[norm.spot] = max(0.2 * outer, norm.inner)
+    return v
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """The motion with controls at rest."""
+
+    controls: Array
+    states: Array
+    """Row by row of time, as far as it stays within reason."""
+    whole: bool
+    """Whether that is all of it."""
+
+
+def sizes_of(instance: Instance, controls: Controls, duration: float) -> Sizes:
+    """Units of the unknowns of an instance for a duration, which is a guess where that is free."""
+    rest = _rest(instance, controls, duration)
+    states = _of_states(instance, controls, duration, rest)
+    variables, cost = _of_controls(instance, controls, duration, rest)
+    free = [one.of(instance) for one in instance.free if one.place is Place.PARAMETER]
+    return Sizes(states, variables, duration, cost, np.array([abs(value) or 1.0 for value in free]))
+
+
+def flow(instance: Instance, controls: Controls, t: float, x: Array, v: Array) -> Array:
+    """Rates (n + 1,) of states and of the cost at one point."""
+    found = [
+        weight[0] * rates(instance, np.array([t]), x[:, None], u, instance.parameters)[:, 0]
+        for u, weight in controls.nodes(v[:, None])
+    ]
+    return np.asarray(np.sum(found, axis=0))
+
+
+def followed(instance: Instance, controls: Controls, times: Array, x: Array, v: Array, far: float) -> Array:
+    """States row by row along times with constant controls, by steps of RK4, as far as they stay within reason."""
+    rows = [x]
+    for t, after in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
+        h = after - t
+        a = flow(instance, controls, t, x, v)[:-1]
+        b = flow(instance, controls, t + h / 2, x + h / 2 * a, v)[:-1]
+        c = flow(instance, controls, t + h / 2, x + h / 2 * b, v)[:-1]
+        d = flow(instance, controls, t + h, x + h * c, v)[:-1]
+        x = x + h / 6 * (a + 2 * (b + c) + d)
+        if not np.isfinite(x).all() or np.abs(x).max() > far:
+            break
+        rows.append(x)
+    return np.array(rows)
+
+
+def _rest(instance: Instance, controls: Controls, duration: float) -> Rest:
+    low, high = controls.lower, controls.upper
+    bounded = np.isfinite(low) & np.isfinite(high)
+    v = np.zeros(controls.count)
+    v[bounded] = 0.5 * (low + high)[bounded]
+    start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    far = FAR * max(1.0, np.abs(start).max(), np.nanmax(np.abs(end), initial=0.0))
+    times = instance.t0 + duration * np.linspace(0.0, 1.0, STEPS + 1)
+    states = followed(instance, controls, times, start, v, far)
+    return Rest(v, states, len(states) == STEPS + 1)
+
+
+def _of_states(instance: Instance, controls: Controls, duration: float, rest: Rest) -> Array:
+    start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    typical = [one.typical for one in instance.model.spec.states]
+    span = np.array([one[1] - one[0] if one else 0.0 for one in typical])
+    between = np.where(np.isnan(end), 0.0, np.abs(end - start))
+    size = np.maximum(np.abs(start), np.nan_to_num(np.abs(end)))
+    size = np.where(span > 0.0, np.maximum(span, between), size)
+    size = np.where(size > 0.0, size, np.ptp(rest.states, axis=0))
+    if not (size > 0.0).all():
+        size = _through_others(instance, controls, duration, size, rest)
+    return np.where(size > 0.0, size, 1.0)
+
+
+def _through_others(instance: Instance, controls: Controls, duration: float, size: Array, rest: Rest) -> Array:
+    """Sizes of states of which nothing is given: what moves the others by their sizes."""
+    n, size = len(size), size.copy()
+    v = rest.controls + 0.1 * reaches(controls)
+    x = np.array(instance.initial) + 1e-3 * size
+    slopes = np.zeros((n, n))
+    for j in range(n):
+        moved = x.astype(complex)
+        moved[j] += 1e-30j
+        slopes[:, j] = np.abs(np.imag(flow(instance, controls, instance.t0, moved, v)[:-1])) / 1e-30
+    slopes = np.nan_to_num(slopes)
+    for _ in range(n):
+        for i in np.flatnonzero(size == 0.0):
+            through = size[slopes[:, i] > 0.0] / (slopes[slopes[:, i] > 0.0, i] * duration)
+            through = through[through > 0.0]
+            if len(through):
+                size[i] = through.min()
+    return size
+
+
+def reaches(controls: Controls) -> Array:
+    """The largest magnitudes of variables between two bounds; one elsewhere."""
+    bounded = np.isfinite(controls.lower) & np.isfinite(controls.upper)
+    largest = np.maximum(np.abs(controls.lower), np.abs(controls.upper))
+    return np.where(bounded & (largest > 0.0), np.where(bounded, largest, 1.0), 1.0)
+
+
+def _of_controls(instance: Instance, controls: Controls, duration: float, rest: Rest) -> tuple[Array, float]:
+    """Units of the variables, and of the cost.
+
+    Where a control has no bound, it is what makes up for the part of the end that the motion at rest misses.
+    """
+    start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    given = ~np.isnan(end)
+    last = rest.states[-1] if rest.whole else start
+    goal = np.where(given, end, last)
+    missed = np.where(given, np.abs(goal - last), 0.0)
+    bounded = np.isfinite(controls.lower) & np.isfinite(controls.upper)
+    size = reaches(controls)
+    need = _needed(instance, controls, duration, 0.5 * (start + goal), missed)
+    size = np.where(bounded, size, np.where(need > 0.0, need, 1.0))
+    path = rest.states[:: STEPS // 5] if rest.whole else start + (goal - start) * np.linspace(0.0, 1.0, 6)[:, None]
+    times = instance.t0 + duration * np.linspace(0.0, 1.0, len(path))
+    level = np.where(bounded, LEVEL * size, size) if given.any() else rest.controls
+
+    def cost(v: Array) -> float:
+        running = [abs(flow(instance, controls, t, x, v)[-1]) for t, x in zip(times.tolist(), path, strict=True)]
+        at = goal if given.any() else last
+        spec = instance.model.spec
+        final = (
+            instance.model.terminal_cost(instance.t0 + duration, tuple(at), instance.parameters)
+            if spec.has_terminal_cost
+            else 0.0
+        )
+        return float(duration * np.mean(running) + abs(final))
+
+    whole = cost(level)
+    whole = whole if np.isfinite(whole) and whole > 1e-30 else 1.0
+    if not bounded.all() and not (need > 0.0).any():  # nothing is missed: controls that cost about as much
+        scales = 10.0 ** np.arange(-12.0, 7.0)
+        costs = np.array([abs(cost(np.where(bounded, 0.0, k)) - cost(np.zeros(controls.count))) for k in scales])
+        fitting = scales[(costs > 0.0) & (costs <= whole)]
+        size = np.where(bounded, size, fitting[-1] if len(fitting) else 1.0)
+    return size, whole
+
+
+def _needed(instance: Instance, controls: Controls, duration: float, x: Array, missed: Array) -> Array:
+    """By each variable alone, the least that makes up for some part of the end that is missed; zero where none does."""
+    found = np.zeros(controls.count)
+    for k in range(controls.count):
+        moved = np.full(controls.count, 0.1 + 0.0j)
+        moved[k] += 1e-30j
+        slopes = np.abs(np.imag(flow(instance, controls, instance.t0, x.astype(complex), moved)[:-1])) / 1e-30
+        able = (slopes > 0.0) & (missed > 0.0) & np.isfinite(slopes)
+        if able.any():
+            found[k] = (missed[able] / (slopes[able] * duration)).min()
+    return found

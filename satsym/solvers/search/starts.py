@@ -1,0 +1,260 @@
+"""Where programmes are started: a short fixed list of motions, whatever the problem.
+
+The straight line to the end, coasts from both ends, revolutions about the origin, the straight line with controls bent
+by drawn waves; durations that are free are guessed several times as long.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.unknowns import Place
+from satsym.solvers.search.controls import Controls
+from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.sizes import flow, followed, resting, wanted
+from satsym.solvers.search.transcription import Places
+
+WITHIN = 1e2
+"""Multiple of its size to which a state may grow in a start."""
+
+WAVES = 3
+"""Of which drawn starts are made."""
+
+FREELY, DRAWS = 1.0, 40
+"""Standard deviation of drawn ends, in sizes of their states, and how many are drawn."""
+
+TURNS = (0, 1, 2, 3)
+"""Revolutions that are tried where the duration is free."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How a start is made.
+
+    Attributes
+    ----------
+    scale
+        The duration, as a share of the first guess.
+    noise, seed
+        How far states and controls are bent, as a share of their sizes, and by which random numbers.
+    turns
+        How often the motion goes round the origin; ``None`` for a straight line.
+    coasting
+        Whether the motion is that of both ends without controls, blended into one another.
+    turned
+        What angles of controls are at, as a share of half a turn.
+    loose
+        Whether it is first solved without path constraints.
+    drawn
+        By which random numbers free ends are drawn; 0 where they are not.
+    """
+
+    scale: float = 1.0
+    noise: float = 0.0
+    seed: int = 0
+    turns: int | None = None
+    coasting: bool = False
+    turned: float | None = None
+    loose: bool = False
+    drawn: int = 0
+
+
+def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
+    """The list for an instance, in the order in which they are tried."""
+    given = instance.tf is not None
+    if given:
+        drawn = ((0.1, 1), (0.3, 2), (0.3, 3), (1.0, 4), (1.0, 5))
+        found = [Plan(), *(Plan(noise=noise, seed=seed) for noise, seed in drawn)]
+    else:
+        found = [Plan(scale=scale) for scale in (1.0, 2.5, 0.6, 6.0)]
+        found += [
+            Plan(noise=noise, seed=seed, scale=scale)
+            for noise, seed, scale in ((0.1, 1, 1.5), (0.3, 2, 2.0), (0.3, 3, 4.0))
+        ]
+    round_ = turning(instance, controls)
+    start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    if round_:
+        places = [place for pair in round_[:2] for place in pair]
+        speed = 0.5 * (_turn_rate(start, round_) + _turn_rate(np.where(np.isnan(end), start, end), round_))
+        if given or np.isnan(end[places]).any():
+            usual = int(speed * duration / (2.0 * np.pi))
+            turns = dict.fromkeys((usual, max(usual - 1, 0), usual + 1))
+            found[1:1] = [Plan(coasting=True), *(Plan(turns=k) for k in turns)]
+        elif speed > 0.0:
+            angle = _swept(start, end, round_)
+            rounds = [Plan(turns=k, scale=max((angle + 2.0 * np.pi * k) / speed / duration, 0.2)) for k in TURNS]
+            found = rounds + found
+    elif given and len(instance.final) >= len(start) - 1:
+        found.insert(1, Plan(coasting=True))
+    if any(one.place is Place.INITIAL for one in instance.free) or (np.isnan(end).any() and not np.isnan(end).all()):
+        found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
+    if controls.angles:
+        found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
+    if instance.model.spec.path_constraints:
+        found[1:1] = [Plan(loose=True), Plan(loose=True, noise=0.2, seed=7)]
+    return found
+
+
+def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
+    """Positions with their velocities, two or three pairs: states whose rates are states, and nothing else."""
+    rng, n = np.random.default_rng(1), len(instance.initial)
+    x = np.array(instance.initial) * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, n)) + 1e-3
+    v = resting(controls)
+    with np.errstate(all="ignore"):
+        f = flow(instance, controls, instance.t0, x, v)
+    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and f[i] == x[j]]
+    return pairs if 2 <= len(pairs) <= 3 else []
+
+
+def _turn_rate(x: Array, pairs: list[tuple[int, int]]) -> float:
+    (p, vp), (q, vq) = pairs[:2]
+    return float(abs(x[p] * x[vq] - x[q] * x[vp]) / max(x[p] ** 2 + x[q] ** 2, 1e-300))
+
+
+def _sense(x: Array, pairs: list[tuple[int, int]]) -> float:
+    (p, vp), (q, vq) = pairs[:2]
+    return float(np.sign(x[p] * x[vq] - x[q] * x[vp])) or 1.0
+
+
+def _swept(start: Array, end: Array, pairs: list[tuple[int, int]]) -> float:
+    (p, _), (q, _) = pairs[:2]
+    return float((_sense(start, pairs) * (np.arctan2(end[q], end[p]) - np.arctan2(start[q], start[p]))) % (2.0 * np.pi))
+
+
+def begun(programme: Programme, plan: Plan) -> Array:
+    """The unknowns of a programme by a plan."""
+    instance, controls, sizes = programme.instance, programme.controls, programme.sizes
+    durations = np.full(programme.phases, plan.scale * sizes.duration / programme.phases)
+    times = programme.times(durations, instance.t0)
+    lasting = times[-1] - times[0]
+    share = (times - times[0]) / lasting
+    start, end = np.array(instance.initial), wanted(instance, times[-1])
+    v = resting(controls)
+    if plan.turned is not None:
+        for cosine, sine in controls.angles.values():
+            v[cosine], v[sine] = np.cos(np.pi * plan.turned), np.sin(np.pi * plan.turned)
+    start, end = _drawn_ends(programme, plan, start, end)
+    free = np.isnan(end)
+    x = start[:, None] + np.where(free, 0.0, end - start)[:, None] * share
+    if plan.coasting:
+        x = _blended(programme, times, share, start, end, v)
+    elif plan.turns is not None:
+        x = _revolving(x, share, start, end, turning(instance, controls), plan.turns)
+    if free.any() and not plan.coasting and plan.turns is None:
+        x = _followed(programme, times, x, free, v)
+    for i, state in enumerate(instance.model.spec.states):
+        if state.positive:
+            x[i] = np.maximum(x[i], 0.01 * sizes.states[i])
+    many = np.repeat(v[:, None], len(times) - 1, 1)
+    if plan.noise:
+        x, many = _bent(programme, x, many, share, plan)
+    parameters = [one.of(instance) for one in programme.free]
+    return programme.packed(x, many, durations, np.array(parameters), instance.t0)
+
+
+def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> tuple[Array, Array]:
+    """Values of states that are free at the start or at the end: drawn, of the sizes of these states."""
+    if not plan.drawn:
+        return start, end
+    start, end, rng, sizes = start.copy(), end.copy(), np.random.default_rng(plan.drawn), programme.sizes.states
+    for one in programme.instance.free:
+        if one.place is Place.INITIAL:
+            value = sizes[one.index] * FREELY * rng.normal()
+            start[one.index] = abs(value) if one.positive else value
+    if np.isnan(end).any() and not np.isnan(end).all():
+        drawn = FREELY * sizes * rng.normal(size=len(end))
+        positive = np.array([state.positive for state in programme.instance.model.spec.states])
+        end = np.where(np.isnan(end), np.where(positive, np.abs(drawn), drawn), end)
+    return start, end
+
+
+def _bent(programme: Programme, x: Array, v: Array, share: Array, plan: Plan) -> tuple[Array, Array]:
+    """States and controls with drawn waves added."""
+    rng, controls, sizes = np.random.default_rng(plan.seed), programme.controls, programme.sizes
+    waves = np.array([np.sin(np.pi * k * share) / k for k in range(1, WAVES + 1)])
+    x = x + plan.noise * sizes.states[:, None] * (rng.normal(size=(len(x), WAVES)) @ waves)
+    span = controls.upper - controls.lower
+    span = np.where(np.isfinite(span), span, 2.0 * sizes.variables)
+    beats = np.array([np.cos(np.pi * k * share[1:]) / k for k in range(1, WAVES + 1)])
+    return x, v + plan.noise * span[:, None] * (rng.normal(size=(len(v), WAVES)) @ beats)
+
+
+def _blended(programme: Programme, times: Array, share: Array, start: Array, end: Array, v: Array) -> Array:
+    """Coasts from the start, and backwards from the end, the one fading into the other."""
+    instance, controls, sizes = programme.instance, programme.controls, programme.sizes
+    line = start[:, None] + np.where(np.isnan(end), 0.0, end - start)[:, None] * share
+    rest = np.where(
+        np.isfinite(controls.lower) & np.isfinite(controls.upper), 0.5 * (controls.lower + controls.upper), 0.0
+    )
+    rest = np.where(np.isfinite(rest), rest, 0.0)
+    fine, places = _finer(times)
+    ahead = followed(instance, controls, fine, start, rest, np.inf)
+    if len(ahead) < len(fine):
+        return line
+    goal = np.where(np.isnan(end), ahead[-1], end)
+    back = followed(instance, controls, fine[::-1], goal, rest, np.inf)
+    if len(back) < len(fine):
+        return line
+    weight = share * share * (3.0 - 2.0 * share)
+    forth, returned = ahead[places].T, back[::-1][places].T
+    both = np.where(np.isnan(end)[:, None], forth, (1.0 - weight) * forth + weight * returned)
+    far = np.abs(both / sizes.states[:, None]).max() > WITHIN
+    return line if far else both
+
+
+def _finer(times: Array, pieces: int = 4) -> tuple[Array, Places]:
+    """Times with others between them, and the places of the former."""
+    inner = np.linspace(0.0, 1.0, pieces, endpoint=False)
+    fine = (times[:-1, None] + np.diff(times)[:, None] * inner).ravel()
+    return np.append(fine, times[-1]), np.arange(len(times)) * pieces
+
+
+def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tuple[int, int]], turns: int) -> Array:
+    """A spiral round the origin; the straight line where an end of it is not given.
+
+    Final velocities that are free are those of a circle.
+    """
+    (p, vp), (q, vq) = pairs[:2]
+    if np.isnan(end[[p, q]]).any():
+        return x
+    sense = _sense(start, pairs)
+    sweep = _swept(start, end, pairs) + 2.0 * np.pi * turns
+    begin, radius = np.arctan2(start[q], start[p]), np.hypot(start[p], start[q])
+    far, first = np.hypot(end[p], end[q]), np.hypot(start[vp], start[vq])
+    last = np.hypot(end[vp], end[vq])
+    speeds = first, first * np.sqrt(radius / max(far, 1e-300)) if np.isnan(last) else last
+    r, angle = radius + (far - radius) * share, begin + sense * sweep * share
+    speed = sense * (speeds[0] + (speeds[1] - speeds[0]) * share)
+    x = x.copy()
+    x[p], x[q], x[vp], x[vq] = r * np.cos(angle), r * np.sin(angle), -speed * np.sin(angle), speed * np.cos(angle)
+    return x
+
+
+def _followed(programme: Programme, times: Array, x: Array, free: Array, v: Array) -> Array:
+    """With the states that are free at the end as the motion has them along the others."""
+    instance, controls, sizes = programme.instance, programme.controls, programme.sizes.states
+    x, y = x.copy(), x[:, 0].copy()
+    for k in range(len(times) - 1):
+        h = times[k + 1] - times[k]
+        rate = flow(instance, controls, times[k], np.where(free, y, x[:, k]), v)[:-1]
+        middle = np.where(free, y + h / 2 * rate, 0.5 * (x[:, k] + x[:, k + 1]))
+        step = h * flow(instance, controls, times[k] + h / 2, middle, v)[:-1]
+        room = 0.5 * sizes + np.abs(y)
+        after = y + np.clip(step, -room, room)
+        known = np.isfinite(after) & (np.abs(after) <= 10.0 * WITHIN * sizes)
+        y = np.where(free, np.where(known, after, y), x[:, k + 1])
+        x[free, k + 1] = y[free]
+    return x
+
+
+def carried(programme: Programme, other: Programme, w: Array) -> Array:
+    """The unknowns of a programme from those of another one, on another mesh."""
+    x, v, durations, free, start = other.unpacked(w)
+    known, times = other.times(durations, start), programme.times(durations, start)
+    states = np.array([np.interp(times, known, row) for row in x])
+    variables = np.array([np.interp(times[1:], known[1:], row) for row in v]).reshape(len(v), len(times) - 1)
+    return programme.packed(states, variables, durations, free, start)

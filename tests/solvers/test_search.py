@@ -1,0 +1,245 @@
+"""The direct search: derivatives against differences, extremals against those of other methods, answers against CasADi.
+
+The costs of strangers' problems are from CasADi with Ipopt, from many starts on two meshes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix, tril
+from sympy import cos, sin, sqrt
+
+import satsym
+from satsym import instance as instances
+from satsym import solvers
+from satsym.instance import Instance
+from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.search import answer, nlp, order, solving, starts
+from satsym.solvers.search.controls import controls_of, rates
+from satsym.solvers.search.durations import first_duration
+from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.sizes import sizes_of
+from satsym.status import Status, Verdict
+from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, symbols_of
+
+SHIPPED = (
+    "soft-return",  # free controls
+    "return-to-orbit",  # a terminal cost or constraints
+    "bryson-denham",  # a path constraint
+    "transfer-fuel",  # the norm of a vector
+    "double-integrator-fuel",  # a magnitude
+    "reorientation",  # a free time
+    "transfer-time",
+    "ends-3-given-time",
+)
+LIMITS = Limits(MOST, np.inf)
+
+
+def programme_of(case: Instance, intervals: int = 12) -> Programme:
+    controls = controls_of(case)
+    assert controls is not None
+    with np.errstate(all="ignore"):
+        duration = first_duration(case, controls)
+        return Programme(case, controls, [np.linspace(0.0, 1.0, intervals + 1)], sizes_of(case, controls, duration))
+
+
+def begun_near(programme: Programme, seed: int) -> np.ndarray:
+    with np.errstate(all="ignore"):
+        w = starts.begun(programme, starts.Plan(noise=0.05, seed=seed))
+    w = w + 1e-2 * np.random.default_rng(seed).normal(size=len(w))
+    return np.clip(w, *programme.bounds)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_derivatives_are_those_of_values(name: str) -> None:
+    programme = programme_of(instances.load(name))
+    rng, h = np.random.default_rng(3), 1e-6
+    w, ahead, multipliers = (
+        begun_near(programme, 1),
+        rng.normal(size=programme.unknowns),
+        rng.normal(size=programme.rows),
+    )
+
+    def jacobian(at: np.ndarray) -> csr_matrix:
+        shape = programme.rows, programme.unknowns
+        return csr_matrix((programme.jacobian(at), programme.jacobian_places), shape=shape)
+
+    def slope(at: np.ndarray) -> np.ndarray:
+        return 0.7 * programme.gradient(at) + jacobian(at).T @ multipliers
+
+    lower = csr_matrix((programme.hessian(w, multipliers, 0.7), programme.hessian_places), shape=(len(w), len(w)))
+    whole = lower + tril(lower, -1).T
+    for exact, function in (
+        (jacobian(w) @ ahead, programme.values),
+        (whole @ ahead, slope),
+        (np.array([programme.gradient(w) @ ahead]), lambda at: np.array([programme.objective(at)])),
+    ):
+        difference = (function(w + h * ahead) - function(w - h * ahead)) / (2.0 * h)
+        assert np.abs(exact - difference).max() <= 1e-6 * max(np.abs(difference).max(), 1e-6)
+
+
+PLANE = (*(Variable(name, name) for name in ("x", "y", "vx", "vy")), Variable("m", "m", positive=True))
+PX, PY, PVX, PVY, PM = symbols_of(PLANE)
+
+
+def thrust(names: tuple[str, str], pushes: tuple, flow: object, sets: dict) -> Problem:
+    controls = tuple(Variable(name, name, kind="angle" if name == "b" else "real") for name in names)
+    ax, ay = pushes
+    moving = FirstOrder(
+        name="plane",
+        title="P",
+        states=PLANE,
+        controls=controls,
+        parameters=(),
+        rates={PX: PVX, PY: PVY, PVX: ax / PM - PX, PVY: ay / PM, PM: -flow},
+    )
+    return Problem(name="thrusting", title="T", model=moving, running_cost=flow, control_sets=sets)
+
+
+U, V, T, B = (Variable(name, name) for name in ("U", "V", "T", "b"))
+(u, v, throttle), (b,) = symbols_of((U, V, T)), symbols_of((Variable("b", "b", kind="angle"),))
+VECTOR = thrust(("U", "V"), (u, v), sqrt(u**2 + v**2) / 3, {"engine": Ball("U", "V")})
+STEERED = thrust(
+    ("T", "b"), (throttle * cos(b), throttle * sin(b)), throttle / 3, {"force": Box("T"), "way": Angle("b")}
+)
+BEGUN = {"x": 1.0, "y": 0.0, "vx": 0.1, "vy": 0.2, "m": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("problem", "control"), [(VECTOR, {"engine": (0.0, 0.8)}), (STEERED, {"T": (0.0, 0.8)})], ids=["norm", "angle"]
+)
+def test_rates_by_nodes_are_rates(problem: Problem, control: dict) -> None:
+    given = {"max_norm": 0.8} if "engine" in control else control
+    case = satsym.Instance.of(problem, initial=BEGUN, final={"x": 0.0, "y": 0.5}, tf=2.0, control=given).case
+    controls = controls_of(case)
+    assert controls is not None
+    assert controls.lifts
+    rng = np.random.default_rng(5)
+    x, many = np.array(case.initial)[:, None] * rng.uniform(0.5, 2.0, (5, 20)), rng.uniform(-0.5, 0.5, (2, 20))
+    t = np.zeros(20)
+    by_nodes = sum(weight * rates(case, t, x, node, ()) for node, weight in controls.nodes(controls.variables(many)))
+    np.testing.assert_allclose(by_nodes, rates(case, t, x, many, ()), atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "error"), [("soft-return", 1e-12), ("return-to-orbit", 1e-12), ("ends-3-given-time", 1e-11)]
+)
+def test_extremals_are_those_of_collocation(name: str, error: float) -> None:
+    case = instances.load(name)
+    known = solvers.solve(case, examined=False)
+    found = order.searched(case, LIMITS)
+    assert found is not None
+    assert found.cost == pytest.approx(known.objective, rel=error, abs=1e-15)
+    assert answer.answered(case, found).lam[:, 0] == pytest.approx(known.lam[:, 0], rel=1e-7, abs=1e-10)
+
+
+def pendulum() -> Problem:
+    states, (force,) = (Variable("x", "x"), Variable("v", "v")), (Variable("u", "u"),)
+    (angle, speed), (torque,) = symbols_of(states), symbols_of((force,))
+    moving = FirstOrder(
+        name="swing",
+        title="S",
+        states=states,
+        controls=(force,),
+        parameters=(),
+        rates={angle: speed, speed: torque - sin(angle) / 2},
+    )
+    return Problem(name="swung", title="S", model=moving, running_cost=torque**2 / 2)
+
+
+def test_a_free_initial_velocity_is_looked_for_far_from_its_guess() -> None:
+    start, end = {"x": 1.3, "v": "free"}, {"x": -1.3, "v": -0.8}
+    found = satsym.solve(satsym.Instance.of(pendulum(), initial=start, final=end, tf=9.0))
+    assert found.status is Status.CONVERGED
+    assert found.objective <= 0.00983
+    given = satsym.Instance.of(pendulum(), initial={"x": 1.3, "v": found.x[1, 0]}, final=end, tf=9.0)
+    alone = solvers.solve(given.case, examined=False)
+    assert alone.objective >= found.objective - 1e-12
+
+
+def three_bodies() -> Problem:
+    states = tuple(Variable(name, name) for name in ("x", "y", "vx", "vy"))
+    controls, mu = (Variable("ax", "ax"), Variable("ay", "ay")), 0.01215
+    (px, py, vx, vy), (ax, ay) = symbols_of(states), symbols_of(controls)
+    near, far = sqrt((px + mu) ** 2 + py**2), sqrt((px - 1 + mu) ** 2 + py**2)
+    along = 2 * vy + px - (1 - mu) * (px + mu) / near**3 - mu * (px - 1 + mu) / far**3 + ax
+    across = -2 * vx + py - (1 - mu) * py / near**3 - mu * py / far**3 + ay
+    moving = FirstOrder(
+        name="bodies",
+        title="B",
+        states=states,
+        controls=controls,
+        parameters=(),
+        rates={px: vx, py: vy, vx: along, vy: across},
+    )
+    return Problem(name="passing", title="P", model=moving, running_cost=(ax**2 + ay**2) / 2)
+
+
+@pytest.mark.slow
+def test_a_passage_between_libration_points_is_the_cheaper_one() -> None:
+    given = instances_of_libration()
+    found = satsym.solve(given)
+    assert found.status is Status.CONVERGED
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    assert found.objective <= 0.04169
+
+
+def instances_of_libration() -> satsym.Instance:
+    start = {"x": 0.835, "y": 0.043, "vx": -0.04, "vy": 0.007}
+    end = {"x": 1.15568, "y": 0.0, "vx": 0.0, "vy": 0.0}
+    return satsym.Instance.of(three_bodies(), initial=start, final=end, tf=2.7)
+
+
+def relative() -> Problem:
+    """Relative motion on a circular orbit by a thrust of a size that is looked for: the least that arrives."""
+    states = tuple(Variable(name, name) for name in ("x", "y", "z", "vx", "vy", "vz"))
+    controls = tuple(Variable(name, name) for name in ("ux", "uy", "uz"))
+    largest = Variable("am", "a", default=0.03, positive=True)
+    (px, py, pz, vx, vy, vz), (ux, uy, uz), (a,) = symbols_of(states), symbols_of(controls), symbols_of((largest,))
+    n = 0.001078007015452326
+    pushed = {vx: 3 * n**2 * px + 2 * n * vy + a * ux, vy: -2 * n * vx + a * uy, vz: -(n**2) * pz + a * uz}
+    moving = FirstOrder(
+        name="relative",
+        title="R",
+        states=states,
+        controls=controls,
+        parameters=(largest,),
+        rates={px: vx, py: vy, pz: vz, **pushed},
+    )
+    sets = {"engine": Ball("ux", "uy", "uz")}
+    return Problem(name="smallest", title="S", model=moving, running_cost=0, terminal_cost=a, control_sets=sets)
+
+
+@pytest.mark.slow
+def test_the_smallest_engine_that_arrives_is_found_with_its_parameter() -> None:
+    start = {"x": 0.0, "y": 0.0, "z": -20.0, "vx": 0.0, "vy": 0.0, "vz": 0.0}
+    end = {"x": 100.0, "y": 0.0, "z": 20.0, "vx": 0.0, "vy": -0.21560140309046522, "vz": 0.0}
+    given = {"parameters": {"am": "free"}, "guess": {"parameter": {"am": 0.002}}, "control": {"max_norm": 1.0}}
+    case = satsym.Instance.of(relative(), initial=start, final=end, tf=800.0, **given).case
+    found = order.searched(case, LIMITS)
+    assert found is not None
+    solution = answer.answered(case, found)
+    assert solution.objective == pytest.approx(8.1526e-4, rel=1e-4)
+    # the motion is linear and its end given: a smaller engine cannot arrive, so that the time it needs is the given one
+    assert solution.instance.parameters[0] == pytest.approx(solution.objective, rel=1e-12)
+
+
+def test_a_search_that_does_not_apply_leaves_what_was_found() -> None:
+    case = instances.load("bryson-denham")
+    unsolved = replace(solvers.solve(case, examined=False), status=Status.NOT_CONVERGED)
+    assert not solving.applies(case)
+    assert solving.instead(unsolved, None, certified=True) is unsolved
+
+
+def test_programmes_end_with_the_work_that_is_allowed() -> None:
+    programme = programme_of(instances.load("reorientation"))
+    limits = Limits(MOST, np.inf, work=3.5 * programme.unknowns)
+    with np.errstate(all="ignore"):
+        start = starts.begun(programme, starts.Plan())
+    found = nlp.solve(programme, start, limits)
+    assert not found.solved
+    assert found.iterations <= 5
