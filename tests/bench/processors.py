@@ -8,19 +8,15 @@ with 1 where anything differs.
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.bench.children import Child, Said, serve, tell
 
 CORES = {"Haswell": ("avx2", "fma"), "Zen": ("avx2", "fma"), "SkylakeX": ("avx512f",), "Prescott": ()}
 """Names of OPENBLAS_CORETYPE, and the flags of a processor that can run such kernels."""
@@ -55,8 +51,6 @@ ANALYSED = (
 )
 REGULATED = ("geo-lqr", "uny-lqr", "uny-lqr-both", "lapan-roll-yaw-lqr")
 
-Said = dict[str, Any]
-
 
 @dataclass(frozen=True)
 class Kernels:
@@ -69,11 +63,8 @@ class Kernels:
 
 def cases() -> dict[str, Callable[[float], Said]]:
     """What is run, by name: functions of the share by which initial values are moved."""
-    shipped = sorted(
-        one.name.removesuffix(".toml") for one in resources.files("satsym.instances").iterdir() if ".toml" in one.name
-    )
     found: dict[str, Callable[[float], Said]] = {}
-    for name in shipped:
+    for name in shipped():
         if name not in LONG:
             found[name] = lambda moved, name=name: _solved(_loaded(name), moved)  # type: ignore[misc]
     for name in ANALYSED:
@@ -86,6 +77,12 @@ def cases() -> dict[str, Callable[[float], Said]]:
         title = f"{order} integrators in {tf:g}"
         found[title] = lambda moved, order=order, tf=tf: _solved(_integrators(order, tf), moved)  # type: ignore[misc]
     return found
+
+
+def shipped() -> list[str]:
+    """The names of the instances that come with satsym."""
+    files = resources.files("satsym.instances").iterdir()
+    return sorted(one.name.removesuffix(".toml") for one in files if one.name.endswith(".toml"))
 
 
 def _loaded(name: str) -> Any:
@@ -126,27 +123,30 @@ def _analysed(what: str, name: str) -> Said:
     return {"status": "; ".join(line.strip() for line in text[:2]), "verdict": "", "objective": math.nan}
 
 
-def child(names: list[str], moved: float) -> None:
-    """Run cases in this process and print what comes of each, a line of JSON each; the kernels first."""
+def answered(asked: list[Any]) -> Said:
+    """What comes of a case, of its name and the share by which initial values are moved; of nothing, the kernels."""
+    from satsym.status import BadInput
+
+    if not asked:
+        return _kernels()
+    try:
+        return cases()[asked[0]](asked[1])
+    except BadInput as error:
+        return {"status": f"refused: {error}", "verdict": "", "objective": math.nan}
+
+
+def _kernels() -> Said:
+    """What OpenBLAS and NumPy say that they use in this process."""
     import numpy as np
     from threadpoolctl import threadpool_info
 
     from satsym.lapack import lapack
-    from satsym.status import BadInput
 
     lapack()
-    known = cases()
     features: Mapping[str, bool] = np._core._multiarray_umath.__cpu_features__  # type: ignore[attr-defined]
     dispatched: list[str] = np._core._multiarray_umath.__cpu_dispatch__  # type: ignore[attr-defined]
     blas = sorted({one["architecture"] for one in threadpool_info() if one.get("internal_api") == "openblas"})
-    print(json.dumps({"blas": blas, "numpy": [name for name in dispatched if features.get(name)]}), flush=True)
-    for name in names:
-        began = time.process_time()
-        try:
-            said = known[name](moved)
-        except BadInput as error:  # what else goes wrong ends the process, and with it the comparison
-            said = {"status": f"BadInput: {error}", "verdict": "", "objective": math.nan}
-        print(json.dumps({"case": name, **said, "seconds": time.process_time() - began}), flush=True)
+    return {"blas": blas, "numpy": [name for name in dispatched if features.get(name)]}
 
 
 def configurations() -> tuple[list[Kernels], list[str]]:
@@ -187,20 +187,25 @@ def _flags() -> set[str]:
 
 def _header(one: Kernels) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The kernels that OpenBLAS and NumPy say they use under these settings."""
-    first = next(_lines(one, []))
-    return tuple(first["blas"]), tuple(first["numpy"])
+    with _child(one) as child:
+        said = child.ask([])
+    if "blas" not in said:
+        raise RuntimeError(f"{one.name}: {said['said']}")
+    return tuple(said["blas"]), tuple(said["numpy"])
 
 
-def _lines(one: Kernels, names: list[str]) -> Iterator[Said]:
-    """What a process says under these settings, line by line."""
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **one.settings}
-    command = [sys.executable, "-m", "tests.bench.processors", "--child", str(one.moved), *names]
-    with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        for line in process.stdout:
-            yield json.loads(line)
-    if process.returncode:
-        raise RuntimeError(f"{one.name}: the process ended with {process.returncode}")
+def _child(one: Kernels) -> Child:
+    return Child("tests.bench.processors", "--child", settings=one.settings)
+
+
+def _answers(one: Kernels, names: list[str]) -> Iterator[Said]:
+    """What a process says of the cases under these settings."""
+    with _child(one) as child:
+        for name in names:
+            said = child.ask([name, one.moved])
+            if "said" in said:  # an error that is the same everywhere says nothing of processors
+                raise RuntimeError(f"{name} ({one.name}): {said['said']}")
+            yield {"case": name, **said}
 
 
 def differs(one: Said, other: Said) -> list[str]:
@@ -221,18 +226,14 @@ def run(names: list[str]) -> int:
     different = 0
     for one in todo:
         seconds = 0.0
-        for number, said in enumerate(_lines(one, names)):
-            if not number:
-                continue
-            if sys.stderr.isatty():
-                print(f"\r\033[K{one.name}: {number} of {len(names)}, {said['case']}", end="", file=sys.stderr)
+        for number, said in enumerate(_answers(one, names), 1):
+            tell(f"{one.name}: {number} of {len(names)}, {said['case']}")
             seconds += said["seconds"]
             first = known.setdefault(said["case"], said)
             for what in differs(first, said):
                 different += 1
                 print(f"{said['case']}: {what} ({todo[0].name}; {one.name})", flush=True)
-        if sys.stderr.isatty():
-            print("\r\033[K", end="", file=sys.stderr)
+        tell("")
         print(f"{one.name}: {len(names)} cases, {seconds:.0f} s", flush=True)
     print(f"{different} differences" if different else "no difference")
     return int(different > 0)
@@ -240,7 +241,7 @@ def run(names: list[str]) -> int:
 
 if __name__ == "__main__":
     asked = sys.argv[1:]
-    if asked[:1] == ["--child"]:
-        child(asked[2:], float(asked[1]))
+    if asked == ["--child"]:
+        serve(answered)
     else:
         sys.exit(run(list(SAMPLE) if asked == ["--sample"] else asked or list(cases())))

@@ -13,7 +13,7 @@ import pytest
 
 from tests.bench.truth import classes, closed, duality, judge, multistart, ours, programs, record, sample, table
 from tests.bench.truth.answer import Answer, Truth
-from tests.bench.truth.case import Case
+from tests.bench.truth.case import OWN, Case
 from tests.bench.truth.judge import Outcome, Wrong
 
 PARTS = 12
@@ -37,7 +37,7 @@ def derived(folder: Path, name: str) -> None:
     from tests.support import derived as shared
 
     target = folder / "models" / f"{name}.py"
-    if not name.startswith(classes.OWN) or target.exists():
+    if not name.startswith(OWN) or target.exists():
         return
     found = next(p for path in (record.HERE / "models").glob("*.py") for p in load(path) if p.name == name)
     target.write_text(module.render(shared.derived(found), "a test"), encoding="utf-8")
@@ -46,9 +46,7 @@ def derived(folder: Path, name: str) -> None:
 def answered(case: Case, folder: Path) -> dict[str, Any]:
     """satsym's answer to a case."""
     derived(folder, case.model)
-    path = folder / "case.toml"
-    path.write_text(case.text(case.model.startswith(classes.OWN)), encoding="utf-8")
-    return ours.answer(case, path)
+    return ours.answer(case, ours.written(case, folder))
 
 
 @pytest.mark.slow

@@ -27,6 +27,9 @@ POLAR_UNITS = {
 """Powers of length and time in the unit of each quantity of the orbits in polar coordinates."""
 POLAR_COST = (2, -3)
 
+OWN = ("chain", "oscillator", "rendezvous", "transfer", "bump", "conjugate", "end", "kept")
+"""How the names of models begin that are derived from ``models/``."""
+
 
 @dataclass(frozen=True)
 class Case:

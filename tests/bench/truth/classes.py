@@ -78,9 +78,6 @@ CLASSES: dict[str, Class] = {
     "end weighed, 1 state": Class(lines.one_within, closed.one_within_bounds, 25),
 }
 
-OWN = ("chain", "oscillator", "rendezvous", "transfer", "bump", "conjugate", "end", "kept")
-"""How the names of models begin that are derived from ``models/``."""
-
 
 def drawn(family: str, number: int) -> Case:
     """One instance, the same at every call."""

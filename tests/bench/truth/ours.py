@@ -3,64 +3,52 @@
 from __future__ import annotations
 
 import math
-import multiprocessing
 import time
 import traceback
-from contextlib import suppress
-from multiprocessing.connection import Connection
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tests.bench.truth.case import Case
+from tests.bench.children import Child, serve
+from tests.bench.truth.case import OWN, Case
 from tests.bench.truth.physics import MODELS
 
 SECONDS, PATIENCE = 600.0, 900.0
-"""satsym's limit, generous because the machine may be busy; and after how long an instance is given up."""
+"""satsym's limit, generous so that an answer shows; and after how long an instance is given up, of the processor."""
 
 
 class Worker:
-    """A process that solves one instance after the other; ended and begun anew when it hangs."""
+    """A process that solves one instance after the other; ended and begun anew when it takes too long."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.process: Any = None
-        self.pipe: Any = None
+        self.child = Child("tests.bench.truth.ours", work=PATIENCE)
 
-    def solve(self, case: Case, own: bool) -> dict[str, Any]:
+    def solve(self, case: Case) -> dict[str, Any]:
         """The row of one instance for the record."""
-        path = self.folder / f"{case.family.replace(' ', '_').replace(',', '').replace(':', '')}-{case.number}.toml"
-        path.write_text(case.text(own, SECONDS), encoding="utf-8")
-        if self.process is None or not self.process.is_alive():
-            context = multiprocessing.get_context("spawn")
-            self.pipe, theirs = context.Pipe()
-            self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
-            self.process.start()
-            theirs.close()
-        begun = time.perf_counter()
-        try:
-            self.pipe.send((case, path))
-            if self.pipe.poll(PATIENCE):
-                row: dict[str, Any] = self.pipe.recv()
-                return row
-        except (EOFError, BrokenPipeError):
-            self.process = None
-            return {"status": "error", "message": "the process ended"}
-        self.process.kill()
-        self.process = None
-        return {"status": "hangs", "message": f"no answer within {PATIENCE:g} s", "wall": time.perf_counter() - begun}
+        row = self.child.ask([asdict(case), str(written(case, self.folder))])
+        if "said" in row:
+            row["message"] = row.pop("said")
+        return row
 
     def end(self) -> None:
         """End the process."""
-        if self.process is not None:
-            self.process.kill()
+        self.child.end()
 
 
-def _serve(pipe: Connection) -> None:
-    with suppress(EOFError, BrokenPipeError):  # the bench was broken off
-        while True:
-            pipe.send(answer(*pipe.recv()))
+def written(case: Case, folder: Path) -> Path:
+    """The instance file of a case, in a folder that has the bench's own models in ``models``."""
+    path = folder / f"{case.family.replace(' ', '_').replace(',', '').replace(':', '')}-{case.number}.toml"
+    path.write_text(case.text(case.model.startswith(OWN), SECONDS), encoding="utf-8")
+    return path
+
+
+def asked(question: list[Any]) -> dict[str, Any]:
+    """The answer to a case and its file, as :class:`Worker` asks."""
+    fields, path = question
+    return answer(Case.of(fields), Path(path))
 
 
 def answer(case: Case, path: Path) -> dict[str, Any]:
@@ -163,3 +151,7 @@ def _outside(case: Case, u: np.ndarray) -> float:
     if case.max_norm is not None:
         worst = max(worst, float(np.linalg.norm(u, axis=0).max()) - case.max_norm)
     return worst / max(float(np.abs(u).max()), 1e-12)
+
+
+if __name__ == "__main__":
+    serve(asked)

@@ -18,6 +18,7 @@ from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from tests.bench.children import tell
 from tests.bench.truth import classes, record, sample, table
 from tests.bench.truth.answer import Answer
 from tests.bench.truth.judge import Outcome, judged
@@ -65,8 +66,7 @@ def _run(pairs: list[tuple[str, int]], truths: record.Record, ours: record.Recor
                 independent(family, number, truths)
             if options.only != "truth" and not (options.keep_right and _right(family, number, truths, ours)):
                 from_satsym(family, number, ours, worker)
-            if sys.stderr.isatty():
-                print(f"\r{count + 1} of {len(pairs)}", end="", file=sys.stderr, flush=True)
+            tell(f"{count + 1} of {len(pairs)}")
     finally:
         worker.end()
 
@@ -100,7 +100,7 @@ def from_satsym(family: str, number: int, ours: record.Record, worker: Worker) -
     text = case.text(False)
     row = ours.get(case.key, text, record.of_satsym())
     if row is None:
-        row = ours.add(case.key, text, record.of_satsym(), worker.solve(case, case.model.startswith(classes.OWN)))
+        row = ours.add(case.key, text, record.of_satsym(), worker.solve(case))
     return row
 
 
