@@ -11,7 +11,7 @@ PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n 2 --dist wor
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-versions test-processors lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch bench-models docs check-pages clean
+.PHONY: help demo test test-whole test-versions test-processors parity lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch bench-models docs check-pages clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -34,6 +34,9 @@ test-versions:  ## try the oldest and the newest versions that pyproject.toml al
 
 test-processors: $(VENV)/installed-dev  ## the same verdicts with other kernels of OpenBLAS and NumPy (takes half an hour)
 	$(BIN)/python -m tests.bench.processors
+
+parity: $(VENV)/installed-dev  ## the same answers as recorded, shipped and random (takes half an hour; ONLY="NAME ..." some, CASES=DIR more)
+	$(BIN)/python -m tests.bench.parity $(if $(CASES),--cases $(CASES)) $(if $(ONLY),--only $(ONLY))
 
 lint: $(VENV)/installed-dev  ## style, types, import floors
 	$(BIN)/ruff check --quiet
