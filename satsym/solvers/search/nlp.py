@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,7 @@ def solve(
     near
         Whether the start is near a solution.
     """
+    os.environ.setdefault("RUST_LOG", "off")  # it tells on the standard error what it does when steps are hard to find
     import pounce  # type: ignore[import-untyped]
 
     low, high = programme.bounds
@@ -90,6 +92,7 @@ def solve(
     problem = pounce.Problem(n=len(low), m=len(lower), problem_obj=watched, lb=low, ub=high, cl=lower, cu=upper)
     options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
     options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}
+    options["feral_min_par_flops"] = 1e30  # one thread: sums in another order would be another answer
     if near:
         options["mu_init"] = 1e-4
     for name, value in options.items():
