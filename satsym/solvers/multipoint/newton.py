@@ -62,7 +62,7 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
             residual, slopes = system(problem, v)
             inverse = splu(slopes)
             step = inverse.solve(residual)
-        except FAILURES:
+        except (*FAILURES, RuntimeError):  # which says that the derivatives are singular
             return None
         whole, length = float(np.abs(step / units).max()), 1.0
         if not np.isfinite(whole):
