@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.sparse import csr_matrix, tril
+from scipy.sparse import csc_matrix, csr_matrix, tril
 from sympy import cos, sin, sqrt
 
 import satsym
@@ -17,6 +17,7 @@ from satsym import instance as instances
 from satsym import solvers
 from satsym.instance import Instance
 from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.multipoint import equations, laws, newton
 from satsym.solvers.search import answer, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
@@ -224,7 +225,6 @@ def test_the_smallest_engine_that_arrives_is_found_with_its_parameter() -> None:
     assert found is not None
     solution = answer.answered(case, found)
     assert solution.objective == pytest.approx(8.1526e-4, rel=1e-4)
-    # the motion is linear and its end given: a smaller engine cannot arrive, so that the time it needs is the given one
     assert solution.instance.parameters[0] == pytest.approx(solution.objective, rel=1e-12)
 
 
@@ -233,6 +233,15 @@ def test_a_search_that_does_not_apply_leaves_what_was_found() -> None:
     unsolved = replace(solvers.solve(case, examined=False), status=Status.NOT_CONVERGED)
     assert not solving.applies(case)
     assert solving.instead(unsolved, None, certified=True) is unsolved
+
+
+def test_singular_derivatives_end_an_attempt(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = instances.load("soft-return")
+    law, n = laws.derived(case, case.control_set.arguments), len(case.initial)
+    problem = equations.Problem(case, (law,), (), (4,), (np.ones(2 * n), 1.0, np.ones(0)))
+    count = problem.layout.count
+    monkeypatch.setattr(newton, "system", lambda *_, **__: (np.ones(count), csc_matrix((count, count))))
+    assert newton.newton(problem, np.zeros(count), LIMITS) is None
 
 
 def test_programmes_end_with_the_work_that_is_allowed() -> None:

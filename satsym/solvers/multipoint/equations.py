@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
 
 STEP = 1e-30
-"""Of complex differences."""
+"""Imaginary step with which derivatives are taken."""
 
 APART, FACTORS = 1e-3, {1: 3.0 / 4.0, 2: -3.0 / 20.0, 3: 1.0 / 60.0}
-"""Of real differences by what is free, as a share of its size, and their factors: of the sixth order."""
+"""Step of central differences of the sixth order by free parameters, as a share of their sizes, and their factors."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Problem:
         return rows, inner.reshape(-1, d).T
 
     def places(self, arc: int) -> Array:
-        """Of its stages within an arc, from 0 to 1, (k, s)."""
+        """Places of the stages within an arc, from 0 to 1, shape (k, s)."""
         k = self.intervals[arc]
         return (np.arange(k)[:, None] + scheme(STAGES).nodes) / k
 

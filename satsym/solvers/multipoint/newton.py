@@ -20,7 +20,7 @@ SOLVED = 1e-11
 """Size of the last step, relative to the sizes of what is unknown."""
 
 SHORTEST, MOST = 1e-3, 40
-"""Of steps, as a share of the whole one; how many there are at most."""
+"""Shortest damped step, as a share of the whole one, and the largest number of steps."""
 
 SETTLED = 1e-11
 """Change of cost, times and initial costates from one mesh to the next that is none, relative to their sizes."""

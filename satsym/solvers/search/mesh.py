@@ -40,7 +40,7 @@ def refined(found: Found) -> tuple[list[Array], float]:
 
 
 def _residuals(found: Found) -> Array:
-    """Of the equations between the points, the largest of each interval."""
+    """The largest residual of the equations between the points, interval by interval."""
     programme = found.programme
     x, v, durations, free, start = programme.unpacked(found.unknown)
     k, d = programme.intervals, DEGREE

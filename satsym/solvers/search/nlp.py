@@ -13,7 +13,7 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.transcription import Places
 
 TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
-"""Of optimality, and what is taken where rounding allows no more."""
+"""Tolerance of the optimality conditions, and the one that is taken where rounding allows no more."""
 
 SOLVED, ACCEPTED = 0, 1
 """What the code says of its end."""
@@ -56,7 +56,7 @@ class _Watched:
         return self.programme.hessian_places
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
-        """Of the Lagrangian."""
+        """Second derivatives of the Lagrangian."""
         return self.programme.hessian(np.asarray(w), np.asarray(multipliers), factor)
 
     def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *_: object) -> bool:

@@ -27,7 +27,7 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 
 INTERVALS, SHORTEST = 40, 8
-"""Of the coarse mesh, and of a phase at least."""
+"""Number of intervals of the coarse mesh, and the least number in a phase."""
 
 STARTS, AGREE, PATIENCE = 48, 3, 24
 """Starts that are tried at most; how many of them must come to the cheapest where no end is drawn; and how many in turn

@@ -47,8 +47,6 @@ class Plan:
         Whether the motion is that of both ends without controls, blended into one another.
     turned
         What angles of controls are at, as a share of half a turn.
-    loose
-        Whether it is first solved without path constraints.
     drawn
         By which random numbers free ends are drawn; 0 where they are not.
     """
@@ -59,7 +57,6 @@ class Plan:
     turns: int | None = None
     coasting: bool = False
     turned: float | None = None
-    loose: bool = False
     drawn: int = 0
 
 
@@ -94,8 +91,6 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
-    if instance.model.spec.path_constraints:
-        found[1:1] = [Plan(loose=True), Plan(loose=True, noise=0.2, seed=7)]
     return found
 
 

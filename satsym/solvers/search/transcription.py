@@ -255,9 +255,8 @@ class Transcription:
         """The rows."""
         y, steps, x = self._local(w)
         n, d = self.points.states, DEGREE
-        inner = np.concatenate([x[:, :1], x[:, 1:]], axis=1)
         index = np.arange(self.intervals)[:, None] * d + np.arange(d + 1)
-        slopes = np.einsum("nkr,rj->nkj", inner[:, index], SLOPES).reshape(n, -1)
+        slopes = np.einsum("nkr,rj->nkj", x[:, index], SLOPES).reshape(n, -1)
         defects = (slopes - steps * self.points.rates(y)[:n]) / self.sizes.states[:, None]
         rows = [defects.T.ravel()]
         if "path" in self.kinds:
