@@ -10,9 +10,11 @@ import sympy as sp
 from satsym.report.latex.document import render
 from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Row, array, display
 from satsym.report.latex.references import cited
+from satsym.report.latex.steps import Context, shown
 from satsym.report.texts import languages, load
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
+from satsym.symbolic.derivation import Equation, Step
 from satsym.symbolic.latex.rewriting import readable
 from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.latex.typeset import Typesetter
@@ -288,3 +290,14 @@ def test_of_a_long_equation_no_page_has_one_line_alone() -> None:
     text = display([Row("long", plain("y"), term * 6)])
     lines = text.split(r"\\")
     assert [r"\displaybreak" in line for line in lines] == [False, True, True, True, False, False]
+
+
+def test_equations_too_long_to_be_shown_may_be_the_first_ones() -> None:
+    derivation, x = shipped("two_body"), sp.Symbol("x", real=True)
+    lengthy = sp.Add(*(sp.sin(k * x) for k in range(1, 200)))
+    names, sides = ("one", "two", "three"), (lengthy, lengthy, x)
+    equations = tuple(Equation(name, sp.Symbol(name), e) for name, e in zip(names, sides, strict=True))
+    step = Step("singular_arcs", "rule", equations, (), ())
+    found = shown(Context(derivation, load("en"), Typesetter(derivation)), step)
+    assert found.first == found.last == "two_body:singular_arcs.three"
+    assert all(rf"\satsymalso{{0}}{{two_body:singular_arcs.{name}}}" in found.body for name in names[:2])

@@ -258,7 +258,7 @@ def _shorter(context: Context, step: Step) -> Shown:
         return _once(rows)
     named = context.texts.listed([f"${row.left_tex}$" for row in left])
     words = context.texts.get("groups", "omitted", listed=named)
-    before = [(row, next(s for s in reversed(rows[: rows.index(row)] or shown) if s in shown)) for row in left]
+    before = [(row, ([s for s in rows[: rows.index(row)] if s in shown] or shown)[-1]) for row in left]
     found = _once(shown)
     return replace(found, body="\n".join([found.body, *_also(shown, before), words]))
 
