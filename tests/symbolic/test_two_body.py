@@ -203,6 +203,21 @@ def test_other_forces_are_not_taken_for_kepler(force: sp.Matrix) -> None:
     assert central_force.recognised(with_force(force)) is None
 
 
+@pytest.mark.parametrize(
+    "force",
+    [
+        -mu * place / place.norm() ** 3 - mu * sp.Matrix([x, y, 3 * z]) / place.norm() ** 5,
+        (-mu / place.norm() ** 3 + sp.exp(-place.dot(place) / (1 + v_x**2))) * place,
+    ],
+    ids=["across", "along"],
+)
+def test_other_forces_are_told_by_numbers(force: sp.Matrix, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Simplifying them may take minutes."""
+    model = with_force(force)
+    monkeypatch.setattr(sp, "simplify", lambda _: pytest.fail("simplified"))
+    assert central_force.recognised(model) is None
+
+
 def test_a_model_that_is_not_keplers_has_none_of_the_steps() -> None:
     """A centre and a force towards a plane: still an energy, and a symmetry about one axis."""
     flattened = -mu * place / place.norm() ** 3 - mu * sp.Matrix([0, 0, z])

@@ -6,14 +6,16 @@ what is found must hold identically.
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
 from typing import Any
 
+import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, total_derivative
-from satsym.symbolic.checks import Point, compare, identity, numeric, partial
+from satsym.symbolic.checks import Point, compare, identity, numeric, partial, random_point
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of
 
@@ -138,13 +140,38 @@ def inertial_state(model: Particle, strength: sp.Expr) -> sp.Matrix:
 def recognised(model: Particle) -> CentralForce | None:
     """The attraction, if the force is one; that it is so identically is for the step to prove."""
     place, force = model.position, uncontrolled_force(model)
+    moving = {n.TIME, *symbols_of(model.states)}
+    if not _looks_central(place, force, moving):
+        return None
     distance = sp.sqrt(sp.simplify(place.dot(place)))
     strength = sp.simplify(-force.dot(place) * distance)
-    moving = {n.TIME, *symbols_of(model.states)}
     if strength.free_symbols & moving or not strength.xreplace(definitions_of(model)).is_positive:
         return None
     across = [sp.simplify(f * distance**3 + strength * c) for f, c in zip(force, place, strict=True)]
     return None if any(across) else CentralForce(strength, distance)
+
+
+def _looks_central(place: sp.Matrix, force: sp.Matrix, moving: set[sp.Symbol]) -> bool:
+    """Whether F = -k r / |r|^3 with one k for all states and times, in numbers.
+
+    Simplifying other forces, to find that they are no attraction, takes sympy up to minutes.
+    """
+    values, size = numeric([*place, *force]), len(place)
+
+    def factor(point: Point) -> tuple[Any, list[Any], list[Any]]:
+        """k, the position and the force."""
+        found = values(point)
+        r, f = found[:size], found[size:]
+        product = sum(a * b for a, b in zip(r, f, strict=True))
+        return -product * mp.sqrt(sum(c**2 for c in r)), r, f
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        elsewhere = {**point, **random_point(moving, random.Random("elsewhere"))}
+        (k, r, f), (other, *_) = factor(point), factor(elsewhere)
+        cubed = mp.sqrt(sum(c**2 for c in r)) ** 3
+        return [k, *(c * cubed for c in f)], [other, *(-k * c for c in r)]
+
+    return compare("attraction by a centre", moving | place.free_symbols | force.free_symbols, sides).passed
 
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
