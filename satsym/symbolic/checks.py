@@ -200,19 +200,20 @@ def _largest(values: Iterable[Any]) -> float:
 
 
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
-    """Check that expressions are identically zero: multiplied out where that is short, in numbers otherwise.
+    """Check that expressions are identically zero."""
+    remainders = [e for e in expressions if not vanishes(claim, e)]
+    return Check(claim, float(len(remainders)), 0.0)
+
+
+def vanishes(claim: str, expression: sp.Expr) -> bool:
+    """Whether an expression is identically zero: multiplied out where that is short, in numbers otherwise.
 
     Numbers decide as well as simplifying does, which takes sympy up to minutes and may lead to no end.
     """
-
-    def zero(e: sp.Expr) -> bool:
-        if terms_of(e) <= PROVABLE and sp.expand(e) == 0:
-            return True
-        value = numeric([e])
-        return compare(claim, e.free_symbols, lambda point: (value(point), [0])).passed
-
-    remainders = [e for e in expressions if not zero(e)]
-    return Check(claim, float(len(remainders)), 0.0)
+    if terms_of(expression) <= PROVABLE and sp.expand(expression) == 0:
+        return True
+    value = numeric([expression])
+    return compare(claim, expression.free_symbols, lambda point: (value(point), [0])).passed
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:

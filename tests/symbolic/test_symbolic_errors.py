@@ -330,6 +330,12 @@ def test_an_indefinite_second_derivative_is_refused(cost: sp.Expr) -> None:
     assert text.startswith("task: H_uu is not positive definite, so H has no minimum in the controls")
 
 
+def test_a_second_derivative_of_decimals_with_hundreds_of_digits_is_definite() -> None:
+    """Sympy's question for its sign overflows."""
+    weight = sp.Float("1.6", 480) * (1 + k**-3)
+    assert "second_derivative" in derive(problem(running_cost=weight * EFFORT))
+
+
 def test_a_weight_has_to_be_declared_positive() -> None:
     assert '; declare positive c: Variable("c", ..., positive=True)' in complaint(
         problem(running_cost=c * u1**2 + u2**2)

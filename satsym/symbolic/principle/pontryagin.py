@@ -11,7 +11,7 @@ from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, shortest, simplified, tidy
-from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, positive
+from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, positive, vanishes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
@@ -83,7 +83,7 @@ def second_derivative(so_far: Derivation) -> Step:
     )
     minors = [(sign(problem) * hessian[:k, :k]).det() for k in range(1, len(controls) + 1)]
     definite = positive(worded("positive minors", problem), h.free_symbols, minors)
-    if not definite.passed or any(sp.simplify(m).is_positive is False for m in minors):
+    if not definite.passed or any(vanishes(worded("positive minors", problem), m) for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu is not {'positive' if sign(problem) > 0 else 'negative'} definite, so H has no "
             f"{problem.convention} in the controls; {unsigned(problem, hessian)}"

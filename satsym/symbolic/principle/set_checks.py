@@ -9,7 +9,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
-from satsym.symbolic.checks import Point, compare, never_below, numeric, positive
+from satsym.symbolic.checks import Point, compare, never_below, numeric, positive, vanishes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError
 from satsym.symbolic.model import symbols_of
@@ -66,7 +66,7 @@ def convex(so_far: Derivation, one: Minimum) -> Any:
     assert one.hessian is not None
     minors = [(sign(problem) * one.hessian[:k, :k]).det() for k in range(1, one.hessian.rows + 1)]
     definite = positive(worded("positive minors", problem), h.free_symbols, minors)
-    if not definite.passed or any(sp.simplify(m).is_positive is False for m in minors):
+    if not definite.passed or any(vanishes(worded("positive minors", problem), m) for m in minors):
         raise DerivationError(
             f"{so_far.name}: H_uu of {one.part.name!r} is not definite, so H has no {problem.convention} in these "
             f"controls; {unsigned(problem, one.hessian)}"
