@@ -59,6 +59,16 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place["scripts"]
 
 
+def test_list_of_packages_names_every_folder_with_modules(repository: Path) -> None:
+    named = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
+    found = {
+        ".".join((Path(target) / path.parent.relative_to(repository / source)).parts)
+        for source, target in SOURCES.items()
+        for path in (repository / source).rglob("*.py")
+    }
+    assert sorted(named) == sorted(found)
+
+
 @pytest.mark.slow
 def test_wheel_has_every_source_and_data_file_and_nothing_else(wheel: Path, repository: Path) -> None:
     expected = {
