@@ -213,7 +213,22 @@ def vanishes(claim: str, expression: sp.Expr) -> bool:
     if terms_of(expression) <= PROVABLE and sp.expand(expression) == 0:
         return True
     value = numeric([expression])
-    return compare(claim, expression.free_symbols, lambda point: (value(point), [0])).passed
+    return agree(claim, expression.free_symbols, lambda point: (value(point), [0]))
+
+
+def agree(
+    seed: str, symbols: Iterable[sp.Symbol], sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]]
+) -> bool:
+    """Whether two routes lead to the same numbers at random points: a question, which no step claims.
+
+    Parameters
+    ----------
+    seed
+        Of the points.
+    symbols, sides
+        As of :func:`compare`.
+    """
+    return compare(seed, symbols, sides).passed
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:

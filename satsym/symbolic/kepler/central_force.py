@@ -15,7 +15,7 @@ import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, total_derivative
-from satsym.symbolic.checks import Point, compare, identity, numeric, partial, random_point
+from satsym.symbolic.checks import Point, agree, compare, identity, numeric, partial, random_point
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of
 
@@ -171,7 +171,7 @@ def _looks_central(place: sp.Matrix, force: sp.Matrix, moving: set[sp.Symbol]) -
         cubed = mp.sqrt(sum(c**2 for c in r)) ** 3
         return [k, *(c * cubed for c in f)], [other, *(-k * c for c in r)]
 
-    return compare("attraction by a centre", moving | place.free_symbols | force.free_symbols, sides).passed
+    return agree("attraction by a centre", moving | place.free_symbols | force.free_symbols, sides)
 
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
