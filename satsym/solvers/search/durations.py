@@ -13,6 +13,10 @@ from satsym.solvers.search.sizes import flow, resting, wanted
 STEPS = 400
 """In which each constant control is followed."""
 
+FIRST, LONGEST, SHORTER = 0.01, 0.1, 0.3
+"""Share of the time of the quickest state that the first step takes, share of a state's way that a step goes at most,
+and by how much a step is shortened that goes further."""
+
 FAR, SMALLEST, LARGEST = 0.9, 1e-3, 1e-2
 """Share of the way that is far enough; between which errors of a step it keeps its length."""
 
@@ -59,7 +63,8 @@ def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goa
     positive = np.array([one.positive for one in instance.model.spec.states])
     first, x, t = np.full(len(start), np.inf), start, instance.t0
     speed = np.abs(flow(instance, controls, t, x, v)[:-1]) / size
-    h = 0.01 / max(float(np.nan_to_num(speed).max()), 1e-12)
+    quick = float(np.nan_to_num(speed).max())
+    h, way = FIRST * (1.0 / quick if quick > 0.0 else time_scale(instance)), np.where(goal > 0.0, goal, np.inf)
     for _ in range(STEPS):
         a = flow(instance, controls, t, x, v)[:-1]
         b = flow(instance, controls, t + h / 2, x + h / 2 * a, v)[:-1]
@@ -68,6 +73,9 @@ def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goa
         after = x + h / 6 * (a + 2 * (b + c) + d)
         if not np.isfinite(after).all() or (after[positive] <= 0.0).any():
             break
+        if (np.abs(after - x) > LONGEST * way).any():
+            h *= SHORTER
+            continue
         error = float(np.abs(after - x - h * b).max() / max(np.abs(after).max(), 1e-300))
         t, x = t + h, after
         arrived = (np.abs(x - start) >= FAR * goal) & (goal > 0.0)

@@ -18,6 +18,9 @@ STEPS = 200
 FAR = 30.0
 """Multiple of the largest given number beyond which it is not followed."""
 
+ROUNDING = 1e-12
+"""Share of its largest rate with which a state at rest seems to move."""
+
 LEVEL = 0.3
 """Share of the sizes of controls at which the cost is looked at."""
 
@@ -117,10 +120,18 @@ def _of_states(instance: Instance, controls: Controls, duration: float, rest: Re
     between = np.where(np.isnan(end), 0.0, np.abs(end - start))
     size = np.maximum(np.abs(start), np.nan_to_num(np.abs(end)))
     size = np.where(span > 0.0, np.maximum(span, between), size)
-    size = np.where(size > 0.0, size, np.ptp(rest.states, axis=0))
+    moved = np.ptp(rest.states, axis=0)
+    size = np.where((size > 0.0) | (moved <= ROUNDING * duration * _largest(instance, controls, start)), size, moved)
     if not (size > 0.0).all():
         size = _through_others(instance, controls, duration, size, rest)
     return np.where(size > 0.0, size, 1.0)
+
+
+def _largest(instance: Instance, controls: Controls, x: Array) -> Array:
+    """The largest rates (n,) of states at any node of the controls: at rest these cancel but for rounding."""
+    nodes = [u for u, _ in controls.nodes(np.zeros((controls.count, 1)))]
+    found = [rates(instance, np.array([instance.t0]), x[:, None], u, instance.parameters)[:-1, 0] for u in nodes]
+    return np.asarray(np.abs(found).max(axis=0))
 
 
 def _through_others(instance: Instance, controls: Controls, duration: float, size: Array, rest: Rest) -> Array:
