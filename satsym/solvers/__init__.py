@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["simulate", "solve"]
 
+QUICK = 150_000
+"""Columns that may be linearised before a direct search is asked."""
+
 Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 
 
@@ -75,22 +78,31 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
         from satsym.solvers import end_limits
 
         return end_limits.solve(instance, progress, partial(_found, examined=False), found)
-    if not instance.free:
-        return _searched(found(instance, progress), progress, examined)
-    from satsym.solvers.unknowns import solving
+    if instance.free:
+        from satsym.solvers.unknowns import solving
 
-    return _searched(solving.solve(instance, progress, _uncertified, found), progress, examined)
+        found = partial(solving.solve, solver=_uncertified, certified=found)
+    if instance.solver.method != methods.AUTO:
+        return found(instance, progress)
+    return _with_search(found, instance, progress, examined)
 
 
-def _searched(solution: Solution, progress: Progress | None, examined: bool) -> Solution:
-    """What was found, or what a direct search finds where that is nothing, or costs more."""
-    if solution.instance.solver.method != methods.AUTO:
-        return solution
+def _with_search(solver: Solver, instance: Instance, progress: Progress | None, examined: bool) -> Solution:
+    """What a solver finds with little work, else what a direct search finds, else what the solver finds with more."""
     from satsym.solvers.search import solving as search
 
-    if not solution.status.answered:
-        return search.instead(solution, progress, examined)
-    return search.cheaper(solution, progress) if examined else solution
+    if not search.applies(instance):
+        return solver(instance, progress)
+    solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)
+    solution = replace(solution, instance=replace(solution.instance, work=instance.work))
+    if solution.status.answered:
+        return search.cheaper(instance, solution) if examined else solution
+    if solution.status not in (Status.NOT_CONVERGED, Status.TIME_LIMIT):
+        return solution
+    found = search.instead(instance, progress, examined)
+    if found is not None:
+        return replace(found, wall_s=found.wall_s + solution.wall_s)
+    return solver(instance, progress) if solution.status is Status.TIME_LIMIT else solution
 
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:

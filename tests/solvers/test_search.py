@@ -6,6 +6,7 @@ The costs of strangers' problems are from CasADi with Ipopt, from many starts on
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from satsym import solvers
 from satsym.instance import Instance
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import answer, nlp, order, solving, starts
+from satsym.solvers.search import answer, levels, nlp, order, reading, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
@@ -131,7 +132,7 @@ def test_rates_by_nodes_are_rates(problem: Problem, control: dict) -> None:
 def test_extremals_are_those_of_collocation(name: str, error: float) -> None:
     case = instances.load(name)
     known = solvers.solve(case, examined=False)
-    found = order.searched(case, LIMITS)
+    found = order.searched(case, LIMITS, partial(reading.exact, case))
     assert found is not None
     assert found.cost == pytest.approx(known.objective, rel=error, abs=1e-15)
     assert answer.answered(case, found).lam[:, 0] == pytest.approx(known.lam[:, 0], rel=1e-7, abs=1e-10)
@@ -221,18 +222,57 @@ def test_the_smallest_engine_that_arrives_is_found_with_its_parameter() -> None:
     end = {"x": 100.0, "y": 0.0, "z": 20.0, "vx": 0.0, "vy": -0.21560140309046522, "vz": 0.0}
     given = {"parameters": {"am": "free"}, "guess": {"parameter": {"am": 0.002}}, "control": {"max_norm": 1.0}}
     case = satsym.Instance.of(relative(), initial=start, final=end, tf=800.0, **given).case
-    found = order.searched(case, LIMITS)
+    found = order.searched(case, LIMITS, partial(reading.exact, case))
     assert found is not None
     solution = answer.answered(case, found)
     assert solution.objective == pytest.approx(8.1526e-4, rel=1e-4)
     assert solution.instance.parameters[0] == pytest.approx(solution.objective, rel=1e-12)
 
 
-def test_a_search_that_does_not_apply_leaves_what_was_found() -> None:
-    case = instances.load("bryson-denham")
-    unsolved = replace(solvers.solve(case, examined=False), status=Status.NOT_CONVERGED)
-    assert not solving.applies(case)
-    assert solving.instead(unsolved, None, certified=True) is unsolved
+def test_arcs_at_bounds_that_are_read_are_those_of_the_switching_solver() -> None:
+    for name, cost, switches in (
+        ("double-integrator-time", 2.0, [1.0]),
+        ("double-integrator-fuel", None, None),  # rest between two bounds
+        ("catalyst", None, None),  # a singular arc
+    ):
+        case = instances.load(name)
+        found = order.searched(case, LIMITS, partial(levels.exact, case))
+        assert found is not None
+        known = solvers.solve(case, examined=False)
+        assert found.objective == pytest.approx(cost or known.objective, rel=1e-12)
+        assert found.switching_times[0] == pytest.approx(switches or known.switching_times[0], rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "cost"), [("bryson-denham", 4.0), ("breakwell", 40.0 / 9.0), ("rayleigh-mixed", None)]
+)
+def test_boundary_arcs_that_are_read_are_those_of_the_solver_of_path_constraints(name: str, cost: float | None) -> None:
+    case = instances.load(name)
+    assert solving.applies(case)
+    found = order.searched(case, LIMITS, partial(solving.exact, case))
+    assert found is not None
+    known = solvers.solve(case, examined=False)
+    assert found.objective == pytest.approx(cost or known.objective, rel=1e-12)
+    assert [one.kind for one in found.events] == [one.kind for one in known.events]
+
+
+def test_a_final_state_that_follows_from_others_only_keeps_its_sign() -> None:
+    programme = replace(programme_of(instances.load("ends-1-given")), loose="r")
+    low, high = (programme.unpacked(bound)[0][:, -1] for bound in programme.bounds)
+    given = programme.instance.final["r"]
+    assert isinstance(given, float)
+    assert 0.0 < low[0] < given < high[0]
+    assert low[1] == high[1]
+
+
+def test_the_first_duration_is_of_the_size_of_the_least() -> None:
+    for name, least in (("double-integrator-time", 2.0), ("lapan-minimum-time", 115.5), ("brachistochrone", 1.80)):
+        case = instances.load(name)
+        controls = controls_of(case)
+        assert controls is not None
+        duration = first_duration(case, controls)
+        assert 0.1 * least < duration < 20.0 * least
+        assert (sizes_of(case, controls, duration).states > 1e-6).all()
 
 
 def test_singular_derivatives_end_an_attempt(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -120,6 +120,14 @@ def cheaper(solution: Solution, deadline: float) -> Solution | None:
     return answered(solution.instance, found, time.perf_counter() - began, PATH)
 
 
+def near(motion: Solution, limits: Limits) -> Solution | None:
+    """The extremal near a motion that keeps to the constraints; ``None`` where there is none."""
+    began, instance = time.perf_counter(), motion.instance
+    program, worth = Program(instance, INTERVALS[0]), motion.objective or 1.0
+    found = next(searched(program, [first(program, motion)], worth, limits, _exactly(program, worth)), None)
+    return answered(instance, found, time.perf_counter() - began, PATH) if isinstance(found, Arcs) else None
+
+
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
     """The cheapest extremal to which regularised paths lead."""
     worth = relaxed.objective if relaxed.status.answered and relaxed.objective else 1.0

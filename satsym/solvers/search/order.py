@@ -3,21 +3,21 @@
 1. Each start of a fixed list (:mod:`~satsym.solvers.search.starts`) is solved on a coarse mesh.
 2. It ends when as many starts as :data:`AGREE` came to the cheapest, or all are tried.
 3. From the cheapest on, what was found is solved on finer meshes until its cost settles.
-4. Its arcs are read after each mesh (:mod:`~satsym.solvers.search.reading`), and the first that Newton's method makes
-   exact are the answer.
+4. Its arcs are read after each mesh (:mod:`~satsym.solvers.search.reading`, :mod:`~satsym.solvers.search.levels`), and
+   the first that Newton's method makes exact are the answer.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
-from satsym.solvers.multipoint.newton import Extremal
-from satsym.solvers.search import nlp, reading, starts
+from satsym.solvers.search import nlp, starts
 from satsym.solvers.search.controls import controls_of
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.mesh import refined
@@ -26,12 +26,17 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 
+Answer = TypeVar("Answer")
+
 INTERVALS, SHORTEST = 40, 8
 """Number of intervals of the coarse mesh, and the least number in a phase."""
 
 STARTS, AGREE, PATIENCE = 48, 3, 24
 """Starts that are tried at most; how many of them must come to the cheapest where no end is drawn; and how many in turn
 may find nothing new where ends are."""
+
+FAILING = 8
+"""Starts in turn after which it ends where none has come to anything."""
 
 FIRST = 0.5
 """Share of the work within which starts are tried."""
@@ -49,23 +54,34 @@ TRIED = 3
 """Of the cheapest, how many are made exact one after the other until one is."""
 
 
-def searched(instance: Instance, limits: Limits, below: float = np.inf, probe: float = np.inf) -> Extremal | None:
+def searched(
+    instance: Instance,
+    limits: Limits,
+    exact: Callable[[Motion, Limits], Answer | None],
+    below: float = np.inf,
+    probe: float = np.inf,
+    loose: str = "",
+) -> Answer | None:
     """The cheapest extremal that is found; ``None`` without one.
 
     Parameters
     ----------
     limits
         Work is counted in unknowns times iterations.
+    exact
+        Makes a motion an exact extremal, where it can.
     below
         A cost; what does not cost less on the coarse mesh is not looked at any further.
     probe
         Work within which the starts must come to more than one motion for more of them to be tried.
+    loose
+        A state whose given end follows from those of the others.
     """
-    for found in _cheapest_first(_tried(instance, limits, probe)):
+    for found in _cheapest_first(_tried(instance, limits, probe, loose)):
         if not found.objective < below:
             return None
         for at in _finer(found, limits):
-            answer = reading.exact(instance, at, limits)
+            answer = exact(at, limits)
             if answer is not None:
                 return answer
             if limits.expired:
@@ -73,7 +89,7 @@ def searched(instance: Instance, limits: Limits, below: float = np.inf, probe: f
     return None
 
 
-def _tried(instance: Instance, limits: Limits, probe: float) -> list[Found]:
+def _tried(instance: Instance, limits: Limits, probe: float, loose: str) -> list[Found]:
     """What starts came to, those that were solved."""
     controls = controls_of(instance)
     if controls is None:
@@ -83,7 +99,7 @@ def _tried(instance: Instance, limits: Limits, probe: float) -> list[Found]:
     found: list[Found] = []
     with np.errstate(all="ignore"):
         duration = first_duration(instance, controls)
-        programme = Programme(instance, controls, meshes, sizes_of(instance, controls, duration))
+        programme = Programme(instance, controls, meshes, sizes_of(instance, controls, duration), loose=loose)
         plans = starts.plans(instance, controls, duration)[:STARTS]
         drawn, known, within = any(plan.drawn for plan in plans), 0, replace(limits, work=min(probe, limits.work))
         for number, plan in enumerate(plans):
@@ -93,6 +109,8 @@ def _tried(instance: Instance, limits: Limits, probe: float) -> list[Found]:
                 within = limits if found else within
             found += [one] if one.solved else []
             least = min((other.objective for other in found), default=0.0)
+            if not found and number + 1 >= FAILING:
+                break
             agreed = sum(_same(other.objective, least) for other in found) >= AGREE
             agreed = number - known >= PATIENCE if drawn else agreed
             if agreed or within.expired or limits.meter.spent > FIRST * limits.work:
@@ -121,7 +139,7 @@ def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
         meshes, _ = refined(found)
         if sum(len(mesh) - 1 for mesh in meshes) == old.intervals:
             return
-        programme = Programme(old.instance, old.controls, meshes, old.sizes, SMOOTHINGS[number])
+        programme = Programme(old.instance, old.controls, meshes, old.sizes, SMOOTHINGS[number], old.loose)
         start = starts.carried(programme, old, found.unknown)
         with np.errstate(all="ignore"):
             one = nlp.solve(programme, start, limits, AGAIN, near=True)

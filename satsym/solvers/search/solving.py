@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
+from functools import partial
 
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.verdict import examined
+from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import MOST, Limits, deadline_of, watched
-from satsym.solvers.search import order
+from satsym.solvers.redundant_ends import Redundant, redundant
+from satsym.solvers.search import boundaries, levels, order, reading
 from satsym.solvers.search.answer import answered
-from satsym.status import Status
+from satsym.solvers.search.motion import Motion
 
-WORK, COMPARED, PROBE = 4_000_000, 2_000_000, 80_000
-"""Unknowns times iterations that a search may take, for an answer and for a cheaper one; and within which it must come
-to more than one motion to go on for a cheaper one."""
+WORK, COMPARED = 4_000_000, 2_000_000
+"""Unknowns times iterations that a search may take, for an answer and for a cheaper one."""
+
+PROBE, AROUND = 160_000, 600_000
+"""The same within which starts must come to more than one motion to go on for a cheaper one, and where there are path
+constraints, which have more sides to pass by."""
 
 CHEAPER = 1e-6
 """Share of its size, or of that of its terms, by which something must be cheaper to be taken."""
@@ -25,52 +32,84 @@ CHEAPER = 1e-6
 def applies(instance: Instance) -> bool:
     """Whether the search knows the kinds of arcs that an instance may have, and whether it may change its start."""
     spec = instance.model.spec
-    plain = not (spec.in_arcs or spec.switching or spec.chattering or instance.end_limits or instance.guess)
+    plain = not (spec.chattering or instance.end_limits or instance.guess)
+    arcs = not (spec.in_arcs and (spec.interior or spec.switching or spec.throttled or instance.free))
     timed = any(one.place is Place.TIME for one in instance.free)
-    return plain and not timed and not instance.continuation
+    return plain and arcs and not timed and not instance.continuation
 
 
-def instead(unsolved: Solution, progress: Progress | None, certified: bool) -> Solution:
-    """The answer of a search in place of none; what was there where the search has none either.
+def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
+    """The extremal that a motion is near, as an answer without a certificate."""
+    spec = instance.model.spec
+    if spec.path_constraints:
+        return boundaries.exact(instance, at, limits)
+    extremal = None if spec.switching else reading.exact(instance, at, limits)
+    if extremal is not None:
+        return answered(instance, extremal)
+    in_levels = (spec.switching or spec.throttled) and not instance.free
+    return levels.exact(instance, at, limits) if in_levels else None
+
+
+def _found(instance: Instance, limits: Limits, below: float = math.inf, probe: float = math.inf) -> Solution | None:
+    """What the search finds, without a final state that follows from the others."""
+    less = redundant(instance)
+    if less is None:
+        return order.searched(instance, limits, partial(exact, instance), below, probe)
+    found = order.searched(instance, limits, partial(_met, less), below, probe, less.state)
+    return None if found is None else replace(found, message=f"{found.message}; {less.note}")
+
+
+def _met(less: Redundant, at: Motion, limits: Limits) -> Solution | None:
+    """The extremal that a motion is near, if it ends as is asked."""
+    found = exact(less.instance, at, limits)
+    return found if found is not None and less.met(found) else None
+
+
+def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
+    """The answer of a search; ``None`` without one.
 
     Parameters
     ----------
     certified
         Whether it is examined.
     """
-    instance, began = unsolved.instance, time.perf_counter()
-    if unsolved.status is not Status.NOT_CONVERGED or not applies(instance):
-        return unsolved
+    began = time.perf_counter()
     limits, history = watched(instance, progress)
-    extremal = order.searched(instance, replace(limits, work=WORK))
-    if extremal is None:
-        return unsolved
-    found = answered(instance, extremal)
+    found = _found(instance, replace(limits, work=WORK))
+    if found is None:
+        return None
     certificate = examined(found, limits.deadline)[0] if certified else None
-    lasted = unsolved.wall_s + time.perf_counter() - began
-    return replace(found, certificate=certificate, history=tuple(history), wall_s=lasted)
+    return replace(found, certificate=certificate, history=tuple(history), wall_s=time.perf_counter() - began)
 
 
 def _doubtful(solution: Solution) -> bool:
-    """Whether competitors say little of an answer: ends are free, or some of them led to nothing."""
+    """Whether competitors say little of an answer, for free ends, path constraints or starts that led nowhere."""
     certificate, instance = solution.certificate, solution.instance
-    if not solution.status.answered or certificate is None:
+    if certificate is None:
         return False
     partly = 0 < len(instance.final) < len(instance.initial)
-    return bool(instance.free) or partly or any(kind.unanswered for kind in certificate.competitors)
+    parted = bool(instance.model.spec.path_constraints) and not convex(instance)
+    return bool(instance.free) or partly or parted or any(kind.unanswered for kind in certificate.competitors)
 
 
-def cheaper(solution: Solution, progress: Progress | None) -> Solution:
-    """An answer, or another one that the search finds and that costs less."""
-    instance, began = solution.instance, time.perf_counter()
+def cheaper(stated: Instance, solution: Solution) -> Solution:
+    """An answer, or another one that the search finds and that costs less.
+
+    Parameters
+    ----------
+    stated
+        What was asked: the answer's own instance may lack a final state that follows from others.
+    """
+    began = time.perf_counter()
+    instance = solution.instance if stated.free else stated
     if instance.model.spec.linear_quadratic or not applies(instance) or not _doubtful(solution):
         return solution
     limits = Limits(MOST, deadline_of(instance), work=COMPARED)
     least = solution.objective - CHEAPER * abs(solution.objective)
-    extremal = order.searched(instance, limits, below=least, probe=PROBE)
-    if extremal is None or not extremal.cost < least:
+    probe = AROUND if instance.model.spec.path_constraints else PROBE
+    found = _found(instance, limits, least, probe)
+    if found is None or not found.objective < least:
         return solution
-    found = answered(instance, extremal)
     message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
     certificate = examined(found, limits.deadline)[0]
     lasted = solution.wall_s + time.perf_counter() - began

@@ -31,6 +31,9 @@ RADAU = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0]
 SHORTEST, LONGEST = 1e-3, 100.0
 """Shares of the first guess between which a free duration is looked for."""
 
+ROUGHLY = 0.5
+"""Share of its size by which a final state that follows from others may be off."""
+
 FREE = np.inf
 
 Places: TypeAlias = NDArray[np.intp]
@@ -90,6 +93,8 @@ class Transcription:
         Edges of the intervals of each phase, from 0 to 1.
     smoothing
         By how much the squared norm of a control is less than the square of the variable that bounds it.
+    loose
+        A state whose given end follows from those of the others: it is asked for roughly, which leaves only its sign.
     """
 
     instance: Instance
@@ -97,6 +102,7 @@ class Transcription:
     meshes: Sequence[Array]
     sizes: Sizes
     smoothing: float = 1e-3
+    loose: str = ""
     kinds: dict[str, Rows] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -231,7 +237,8 @@ class Transcription:
         for i, name in enumerate(spec.state_names):
             value = instance.final.get(name)
             if isinstance(value, float | int):
-                low[i, -1] = high[i, -1] = value
+                room = ROUGHLY * abs(value) if name == self.loose else 0.0
+                low[i, -1], high[i, -1] = value - room, value + room
             if name in instance.ranges:
                 low[i, -1], high[i, -1] = instance.ranges[name]
         v_low, v_high = (np.repeat(row[:, None], points, 1) for row in (self.controls.lower, self.controls.upper))

@@ -60,6 +60,7 @@ class Origin(Enum):
     GIVEN = "exact arcs in a given time"
     PATH = "a regularised path"
     EASIER = "exact arcs of an easier problem"
+    SEARCH = "a direct search"
 
 
 @dataclass(frozen=True, eq=False)
