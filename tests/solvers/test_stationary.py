@@ -309,6 +309,13 @@ def test_slopes_that_differ_by_their_letters_have_one_class():
     assert root_of(x, x**3 + w * x - q, (w, q)) is not root_of(x, x**3 + w * x + q, (w, q))
 
 
+def test_a_slope_keeps_its_class_however_many_others_there_are():
+    found = root_of(x, x**3 + w * x - q, (w, q))
+    kept = [root_of(x, x**3 + k * w * x - q, (w, q)) for k in range(2, 400)]
+    assert len({*kept, found}) == 399
+    assert root_of(x, x**3 + w * x - q, (w, q)) is found
+
+
 def made(name: str, states: tuple[Variable, ...], controls: tuple[str, ...], rates: dict[Expr, Expr]) -> FirstOrder:
     """A motion without parameters."""
     own = tuple(Variable(u, u) for u in controls)

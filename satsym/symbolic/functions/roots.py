@@ -8,14 +8,20 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import Any, ClassVar
+from weakref import WeakValueDictionary
 
 import mpmath as mp
 import sympy as sp
 
 MOST = 400
 """Steps with 30 digits."""
+
+_classes: WeakValueDictionary[tuple[sp.Expr, tuple[sp.Symbol, ...]], type[Root]] = WeakValueDictionary()
+"""Those of slopes, by these and their letters.
+
+Each stays for as long as anything uses it: of two classes with one slope, expressions would differ that are the same.
+"""
 
 
 class Root(sp.Function):
@@ -149,12 +155,13 @@ class Bearing(sp.Function):
 def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
     """The class of the minimisers of convex functions with this slope."""
     plain = {s: sp.Symbol(f"c{k}", real=True) for k, s in enumerate(letters)} | {unknown: sp.Symbol("v", real=True)}
-    return _class_of(slope.xreplace(plain), plain[unknown], tuple(plain[s] for s in letters))
+    key = slope.xreplace(plain), tuple(plain[s] for s in letters)
+    found = _classes.get(key)
+    return _classes.setdefault(key, _class_of(key[0], plain[unknown], key[1])) if found is None else found
 
 
-@lru_cache(maxsize=256)
 def _class_of(slope: sp.Expr, unknown: sp.Symbol, letters: tuple[sp.Symbol, ...]) -> type[Root]:
-    """One class for all slopes that differ by their letters alone: its name is made of the slope."""
+    """A class for all slopes that differ by their letters alone: its name is made of the slope."""
     mark = hashlib.sha256(sp.srepr(slope).encode()).hexdigest()[:10]
     function = sp.lambdify([unknown, *letters], [slope, sp.diff(slope, unknown)], modules="mpmath")
 
