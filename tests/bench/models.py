@@ -64,7 +64,7 @@ class Outcome:
     Attributes
     ----------
     stage
-        The last one that was begun, ``"loaded"`` at the end of all.
+        The last one that was begun, ``"loaded"`` at the end of all; ``"slips"`` where those could not be planted.
     refusal
         Why it went no further.
     in_steps, in_texts, in_modules
@@ -116,7 +116,10 @@ def attempt(seed: int, planted: int) -> Outcome:
             found.refusal = f"{type(error).__name__}: {error}"
         found.seconds = time.process_time() - began
         if not found.bad:
-            _plant(found, kept[-1], made[f"{subject.name}.py"], folder, planted)
+            try:
+                _plant(found, kept[-1], made[f"{subject.name}.py"], folder, planted)
+            except Exception as error:
+                found.stage, found.refusal = "slips", f"{type(error).__name__}: {error}"
     return found
 
 
@@ -126,8 +129,9 @@ def _plant(found: Outcome, derivation: Derivation, text: str, folder: Path, coun
         if (slip := slips.in_step(derivation, rng)) is not None:
             found.in_steps.append(slip)
         if (changed := slips.in_text(derivation, text, rng)) is not None:
+            seen = slips.in_module(changed[1], f"changed{k}", folder)
             found.in_texts.append(changed[0])
-            found.in_modules.append(slips.in_module(changed[1], f"changed{k}", folder))
+            found.in_modules.append(seen)
 
 
 def _alone(seed: int, planted: int, end: int) -> None:
