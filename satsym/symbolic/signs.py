@@ -1,0 +1,40 @@
+"""What sympy finds out of itself about the sign of a sum, kept from what takes it hours.
+
+Wherever zero times something is written, sympy asks whether that is finite, thus whether what it divides by may vanish.
+For a polynomial in one symbol of known sign it then takes all roots of the derivative, by way of the prime factors of
+its coefficients. Those of decimals have hundreds of digits.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy.core import exprtools
+
+LARGEST = 2**64
+"""Coefficient of a polynomial, in whole numbers, whose roots are asked for."""
+
+_sign = exprtools._monotonic_sign
+
+
+def keep_short() -> None:
+    """Let sympy answer from now on that it does not know the signs of polynomials with long coefficients.
+
+    That is an answer it gives to most sums; nothing may rely on more.
+    """
+    exprtools._monotonic_sign = _sign_or_none
+
+
+def _sign_or_none(expression: sp.Expr) -> sp.Expr | None:
+    return None if _has_long_coefficients(expression) else _sign(expression)
+
+
+def _has_long_coefficients(expression: sp.Expr) -> bool:
+    """Whether this is a polynomial in one symbol, of degree three or more, with long coefficients."""
+    free = expression.free_symbols
+    if not expression.is_Add or len(free) != 1 or not expression.is_polynomial(*free):
+        return False
+    polynomial = sp.Poly(expression, *free)
+    if polynomial.degree() < 3 or expression.has(sp.Float):
+        return polynomial.degree() >= 3
+    exact = polynomial.domain.is_ZZ or polynomial.domain.is_QQ
+    return exact and polynomial.clear_denoms(convert=True)[1].max_norm() > LARGEST
