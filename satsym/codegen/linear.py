@@ -8,7 +8,7 @@ from functools import lru_cache
 import sympy as sp
 
 from satsym.codegen.functions import Function, symbols
-from satsym.symbolic.algebra import definitions_of, vanishes
+from satsym.symbolic.algebra import definitions_of, simplify, vanishes
 from satsym.symbolic.analysis import matrix_exponential, routh, spectrum
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.linear.matrices import analysable, coefficients_of, system_of
@@ -67,7 +67,7 @@ def _constant(derivation: Derivation) -> list[Function]:
         found.append(_polynomial("routh_column", summary, "p", array.column))
     if of.closed_form and not of.assumed:
         values = [e.value for e in of.eigenvalues for _ in range(e.algebraic)]
-        parts = [sp.simplify(part) for value in values for part in value.as_real_imag()]
+        parts = [simplify(part) for value in values for part in value.as_real_imag()]
         exponential = matrix_exponential(of)
         assert exponential is not None
         n = len(system.states)

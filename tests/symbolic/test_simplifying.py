@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, terms_of, tidy, vanishes
+from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, simplify, terms_of, tidy, vanishes
 from satsym.symbolic.checks import identity, numeric, points
 from satsym.symbolic.decimals import DIGITS, as_decimals, as_fractions
 from satsym.symbolic.linear.matrices import right_half_plane
@@ -156,3 +156,25 @@ def test_one_hyperbolic_function_is_a_letter_to_sympy() -> None:
     assert vanishes(sp.cosh(q) ** 2 - sp.sinh(q) ** 2 - 1)
     assert vanishes(sp.sinh(q) - h * sp.cosh(q))
     assert vanishes(sp.cosh(q) - (sp.exp(q) + sp.exp(-q)) / 2)
+
+
+def test_sympy_simplifies_letters_in_place_of_decimals(monkeypatch: pytest.MonkeyPatch) -> None:
+    third, other = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100, sp.Float("5.205", DIGITS)
+    expression = third * x / (1 + sin(q) ** 2) + third / 2 * x * cos(q) ** 2 + third / 2 * x * sin(q) ** 2
+    asked, ask = [], sp.simplify
+    monkeypatch.setattr(sp, "simplify", lambda e: asked.append(e) or ask(e))
+    found = simplify(expression - other * y)
+    assert not asked[0].atoms(sp.Float)
+    assert len(asked[0].free_symbols) == len({x, y, q}) + 2  # a half is no other letter
+    assert not found.has(cos)
+    sides = numeric([found, expression - other * y])
+    with mp.workdps(30):
+        assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "letters"))
+
+
+@pytest.mark.parametrize("difference", ["0.3", "0.30000000000000001"])
+def test_decimals_that_cancel_are_not_taken_apart(difference: str) -> None:
+    one, two, three = (sp.Float(text, DIGITS) for text in ("0.1", "0.2", difference))
+    expression = x * (one + two * cos(q) ** 2) + two * x * sin(q) ** 2 - three * x
+    assert vanishes(as_fractions(expression)) == (difference == "0.3")
+    assert (abs(simplify(expression).xreplace({x: sp.Integer(1)})) < 1e-30) == (difference == "0.3")

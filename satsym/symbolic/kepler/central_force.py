@@ -14,7 +14,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of, total_derivative
+from satsym.symbolic.algebra import definitions_of, simplify, total_derivative
 from satsym.symbolic.checks import Point, agree, compare, identity, numeric, partial, random_point
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of
@@ -83,8 +83,8 @@ def gravity_gradient(so_far: Derivation) -> Step | None:
     if len(place) < 2 or not (still.is_zero_matrix and carried.is_Identity and damping.is_zero_matrix):
         return None
     distance = so_far.equation("central_attraction.distance").rhs
-    outer = sp.simplify(gradient[0, 1] / (place[0] * place[1]))
-    rest = sp.simplify(gradient[0, 0] - outer * place[0] ** 2)
+    outer = simplify(gradient[0, 1] / (place[0] * place[1]))
+    rest = simplify(gradient[0, 0] - outer * place[0] ** 2)
     by_distance = [e.xreplace({distance**2: n.DISTANCE**2}) for e in (outer, rest)]
     if any(e.has(*place) for e in by_distance):
         return None
@@ -143,11 +143,11 @@ def recognised(model: Particle) -> CentralForce | None:
     moving = {n.TIME, *symbols_of(model.states)}
     if not _looks_central(place, force, moving):
         return None
-    distance = sp.sqrt(sp.simplify(place.dot(place)))
-    strength = sp.simplify(-force.dot(place) * distance)
+    distance = sp.sqrt(simplify(place.dot(place)))
+    strength = simplify(-force.dot(place) * distance)
     if strength.free_symbols & moving or not strength.xreplace(definitions_of(model)).is_positive:
         return None
-    across = [sp.simplify(f * distance**3 + strength * c) for f, c in zip(force, place, strict=True)]
+    across = [simplify(f * distance**3 + strength * c) for f, c in zip(force, place, strict=True)]
     return None if any(across) else CentralForce(strength, distance)
 
 

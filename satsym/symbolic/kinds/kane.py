@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.physics.mechanics import KanesMethod, ReferenceFrame, dynamicsymbols
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import shortest, simplified
+from satsym.symbolic.algebra import shortest, simplified, simplify
 from satsym.symbolic.chain import named_parts, parts_of
 from satsym.symbolic.checks import Point, compare, identity, numeric_along, slopes
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
@@ -176,9 +176,7 @@ def invariant_motions(so_far: Derivation) -> Step | None:
     left = [equations[f"force_{i}"] - equations[f"bias_{i}"] for i in still]
     left += [equations.get(f"mass_{max(i, k)}_{min(i, k)}", sp.Integer(0)) for i in still for k in moving]
     left += [sp.sympify(r).xreplace(known) for q, r in model.coordinates.items() if q in zero]
-    pushing = sorted(
-        set().union(*(sp.simplify(e).free_symbols for e in left)) & set(symbols_of(model.controls)), key=str
-    )
+    pushing = sorted(set().union(*(simplify(e).free_symbols for e in left)) & set(symbols_of(model.controls)), key=str)
     proof = identity("stay zero", [e.xreplace(dict.fromkeys(pushing, sp.Integer(0))) for e in left])
     rates = tuple(Equation(s.name, n.rate_of(s), sp.Integer(0)) for s in model.vanishing)
     others = sp.Tuple(*(u for u in symbols_of(model.controls) if u not in pushing))

@@ -15,7 +15,7 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import constants_of, definitions_of, simplified, tidy, total_derivative, vanishes
+from satsym.symbolic.algebra import constants_of, definitions_of, simplified, simplify, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension
@@ -126,7 +126,7 @@ def reference_condition(so_far: Derivation) -> Step | None:
     """The values of named constants with which the reference solves the equations, and no other ones do."""
     model = stated_as(Linearised, so_far)
     constants = definitions_of(model)
-    defects = [sp.simplify(d) for d in _defects(so_far)]
+    defects = [simplify(d) for d in _defects(so_far)]
     unknown = sorted(set(constants) & set().union(*(d.free_symbols for d in defects)), key=lambda s: s.name)
     if not unknown:
         return None
@@ -198,9 +198,7 @@ def original_states(so_far: Derivation) -> Step:
         solutions = []
     zero, about = dict.fromkeys(stated, sp.Integer(0)), _about(model)
     fitting = [
-        s
-        for s in solutions
-        if set(s) == set(old) and all(sp.simplify(s[o].xreplace(zero) - about[o]) == 0 for o in old)
+        s for s in solutions if set(s) == set(old) and all(simplify(s[o].xreplace(zero) - about[o]) == 0 for o in old)
     ]
     if len(fitting) != 1:
         raise DerivationError(f"{model.name}: the deviations cannot be solved for the variables of {model.of.name}")

@@ -10,7 +10,7 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import constants_of
+from satsym.symbolic.algebra import constants_of, simplify
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.equilibria.rest import Rest
@@ -114,7 +114,7 @@ class Multibody(Bodies):
         off = dict.fromkeys(symbols_of(self.controls), sp.Integer(0))
         torque = sp.Matrix([known[f"force_{k}"] - known[f"bias_{k}"] for k in (1, 2, 3)]).xreplace(off)
         resting, load = sp.linear_eq_to_matrix(list(self.coordinates.values()), self.speeds)
-        turns = dict(zip(self.speeds, map(sp.simplify, resting.LUsolve(load)), strict=True))
+        turns = dict(zip(self.speeds, map(simplify, resting.LUsolve(load)), strict=True))
         varied = next(s for s in symbols_of(self.parameters) if s.name == self.varied)
         return Rest(inertia, torque, turns, self.attitude, varied)
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from satsym.symbolic.algebra import gradient, tidy
+from satsym.symbolic.algebra import gradient, simplify, tidy
 from satsym.symbolic.checks import compare, numeric
 from satsym.symbolic.model import Particle
 
@@ -32,7 +32,7 @@ def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | 
     """
     total = sp.Integer(0)
     for force in model.forces.values():
-        along = {q: sp.simplify(force.xreplace(dict(coast)).dot(sp.diff(model.position, q))) for q in model.coordinates}
+        along = {q: simplify(force.xreplace(dict(coast)).dot(sp.diff(model.position, q))) for q in model.coordinates}
         if any(component.has(*model.coordinates.values()) for component in along.values()):
             return None
         found = _of(along)
@@ -48,7 +48,7 @@ def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
     positive = {q: sp.Dummy(q.name, positive=True) for q in generalised}
     found = sp.Integer(0)
     for q, force in generalised.items():
-        rest = sp.simplify(force.xreplace(positive) + sp.diff(found, positive[q]))
+        rest = simplify(force.xreplace(positive) + sp.diff(found, positive[q]))
         part = _antiderivative(rest, positive[q])
         if part is None:
             return None
@@ -66,7 +66,7 @@ def _antiderivative(function: sp.Expr, by: sp.Symbol) -> sp.Expr | None:
     inner = {argument for part in parts for argument in part.args if argument.is_Add and argument.has(by)}
     for w in (*sorted(inner, key=sp.default_sort_key), by):
         new = sp.Dummy("w", positive=True)
-        quotient = sp.simplify(function / sp.diff(w, by)).subs(w, new)
+        quotient = simplify(function / sp.diff(w, by)).subs(w, new)
         if not quotient.has(by):
             outer = sp.integrate(quotient, new)
             return None if outer.has(sp.Integral) else outer.xreplace({new: w})

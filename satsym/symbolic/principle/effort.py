@@ -13,7 +13,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.algebra import definitions_of, simplify
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
@@ -77,12 +77,12 @@ def minimum_effort(so_far: Derivation) -> Step | None:
     gramian = (power * b * b.T * power.T).applyfunc(lambda e: sp.integrate(sp.expand(e), (t, 0, end)))
     start = sp.Matrix([n.initial(x) for x in states])
     pull = gramian.LUsolve(_flow(a, end) * start)
-    law = sp.expand(sp.simplify((-b.T * power.T * pull)[0]))
+    law = sp.expand(simplify((-b.T * power.T * pull)[0]))
     later = sp.Dummy("z")
     path = (_flow(a, t) * start + _integral(_flow(a, t - later) * b * law.xreplace({t: later}), later)).applyfunc(
         lambda e: sp.collect(sp.expand(e), t, sp.factor)
     )
-    spent = sp.factor(sp.simplify(weight * sp.integrate(sp.expand(law**2), (t, 0, end))))
+    spent = sp.factor(simplify(weight * sp.integrate(sp.expand(law**2), (t, 0, end))))
     rest = dict.fromkeys(start[1:], sp.Integer(0))
     from_rest = sp.factor(law.xreplace(rest))
     peak = sp.Abs(from_rest.subs(t, 0))
@@ -91,7 +91,7 @@ def minimum_effort(so_far: Derivation) -> Step | None:
         *(Equation(x.name, x, value) for x, value in zip(states, path, strict=True)),
         Equation("cost", pn.MINIMUM_COST, spent),
         Equation("from_rest", n.answer_of(control), from_rest),
-        Equation("peak", pn.peak_of(control), sp.simplify(peak)),
+        Equation("peak", pn.peak_of(control), simplify(peak)),
         Equation("cost_from_rest", pn.COST_FROM_REST, sp.factor(spent.xreplace(rest))),
     ]
     value, slopes = numeric([*path, law]), a * path + b * law

@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, shortest, simplified, tidy
+from satsym.symbolic.algebra import gradient, shortest, simplified, simplify, tidy
 from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, positive, vanishes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
@@ -210,7 +210,7 @@ def _problem(so_far: Derivation) -> Problem:
 
 def _hessian(so_far: Derivation) -> sp.Matrix:
     controls = symbols_of(so_far.model.controls)
-    return sp.hessian(so_far.equation("hamiltonian.H").rhs, controls).applyfunc(sp.simplify)
+    return sp.hessian(so_far.equation("hamiltonian.H").rhs, controls).applyfunc(simplify)
 
 
 def _linear_system(

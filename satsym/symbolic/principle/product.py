@@ -16,6 +16,7 @@ import sympy as sp
 
 from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import simplify
 from satsym.symbolic.chain import named_parts
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
@@ -57,27 +58,27 @@ def applies(so_far: Derivation) -> bool:
         return True
     controls = symbols_of(problem.model.controls)
     kept = [sp.diff(g, u) for g in problem.path_constraints.values() for u in controls]
-    if any(sp.simplify(sp.diff(slope, u)) != 0 for slope in kept for u in controls if slope.has(u)):
+    if any(simplify(sp.diff(slope, u)) != 0 for slope in kept for u in controls if slope.has(u)):
         return True  # on the boundary of such a constraint no law is in closed form
     stated = [with_norms(e, parts_of(problem)) for e in (problem.running_cost, *so_far.rhs("first_order"))]
     if problem.control_set != "ball":
         if any(e.has(sp.Abs) for e in stated):
             return False
         cost, *rates = stated
-        if problem.control_set == "box" and any(sp.simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
+        if problem.control_set == "box" and any(simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
             return True  # the costates decide whether H is convex
         if problem.control_set == "box" and any(_falls(so_far, cost, u) for u in controls):
             return True  # the better end is the minimiser
         slopes = [sp.diff(e, u) for e in stated for u in controls]
-        return any(sp.simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
+        return any(simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
     if len(controls) == 1:
         return False
-    return not any(sp.simplify(sp.diff(e, u, v)) != 0 for e in stated for u in controls for v in controls)
+    return not any(simplify(sp.diff(e, u, v)) != 0 for e in stated for u in controls for v in controls)
 
 
 def _falls(so_far: Derivation, cost: sp.Expr, u: sp.Symbol) -> bool:
     """Whether a cost bends downwards by a control, always or in some states."""
-    curvature = sp.simplify(sp.diff(cost, u, 2))
+    curvature = simplify(sp.diff(cost, u, 2))
     return bool(curvature.is_negative) or _either_sign(so_far, curvature, symbols_of(so_far.model.states))
 
 
@@ -95,7 +96,7 @@ def needs_its_sets(so_far: Derivation) -> bool:
     if problem.control_set != "box" or applies(so_far):
         return applies(so_far)
     parameters, cost = symbols_of(so_far.model.parameters), problem.running_cost
-    bends = (sp.simplify(sp.diff(cost, u, 2)) for u in symbols_of(so_far.model.controls))
+    bends = (simplify(sp.diff(cost, u, 2)) for u in symbols_of(so_far.model.controls))
     return any(_either_sign(so_far, bend, parameters) for bend in bends)
 
 
@@ -123,7 +124,7 @@ def _linear(so_far: Derivation, stated: Problem) -> set[str]:
     for part in parts_of(stated):
         for u in part.symbols if part.kind == "box" else ():
             slopes = [sp.diff(e, u) for e in given]
-            if all(sp.simplify(sp.diff(slope, v)) == 0 for slope in slopes for v in part.symbols if slope.has(v)):
+            if all(simplify(sp.diff(slope, v)) == 0 for slope in slopes for v in part.symbols if slope.has(v)):
                 found.add(u.name)
     return found
 

@@ -16,7 +16,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.agreement import DIGITS, equal, finite
-from satsym.symbolic.algebra import tidy
+from satsym.symbolic.algebra import simplify, tidy
 from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.functions.minimisers import Clip
@@ -88,7 +88,7 @@ def with_angle(
     rest, *pair = circle
     moved = sp.Add(*(term for term in sp.Add.make_args(sp.expand(rest)) if term.has(u)))
     (cosine, one), (sine, other) = (sp.factor(e).as_independent(u, as_Add=False) for e in pair)
-    ratio = sp.simplify(other / one)
+    ratio = simplify(other / one)
     if ratio.has(u):
         return None
     sine *= ratio
@@ -144,7 +144,7 @@ def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
     found: dict[sp.Expr, sp.Expr] = {}
     for factor, function in parts:
         found[function] = found.get(function, sp.Integer(0)) + factor
-    return {function: tidy(factor) for function, factor in found.items() if sp.simplify(factor) != 0}
+    return {function: tidy(factor) for function, factor in found.items() if simplify(factor) != 0}
 
 
 def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
@@ -158,7 +158,7 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
     except NotImplementedError:
         return None
     there = numeric([function])
-    for solution in (sp.simplify(found) / scale for found in solutions):
+    for solution in (simplify(found) / scale for found in solutions):
         if solution.has(sp.I) or not all(isinstance(f, PRINTED) for f in solution.atoms(sp.Function)):
             continue
         back = numeric([solution])
@@ -195,7 +195,7 @@ def _at(
     """Where the slope ``factor f(u) + constant`` vanishes, and its derivative there."""
     value = sp.Dummy("value", real=True)
     at = tidy(-constant / factor)
-    curvature = sp.simplify(derivative.xreplace({u: inverse(value)}))
+    curvature = simplify(derivative.xreplace({u: inverse(value)}))
     return inverse(at), factor * curvature.xreplace({value: at})
 
 

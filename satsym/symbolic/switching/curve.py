@@ -10,7 +10,7 @@ from __future__ import annotations
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.algebra import definitions_of, simplify
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.functions.minimisers import Switch
 from satsym.symbolic.model import symbols_of
@@ -42,7 +42,7 @@ def switching_curve(so_far: Derivation) -> Step | None:
     mean, half = (sp.expand(rising + falling) / 2, sp.expand(falling - rising) / 2)
     slower = (v + v_f) * ((1 / high + 1 / low) * (v - v_f) - (1 / high - 1 / low) * sp.Abs(v - v_f))
     curve = chain.slope / (4 * chain.gain) * slower
-    assert sp.simplify(mean + half * sp.sign(v - v_f) - curve.replace(sp.Abs, lambda e: e * sp.sign(e))) == 0
+    assert simplify(mean + half * sp.sign(v - v_f) - curve.replace(sp.Abs, lambda e: e * sp.sign(e))) == 0
     side = sp.sign(s.BEYOND) + (1 - sp.sign(s.BEYOND) ** 2) * sp.sign(v - v_f)
     stated = Switch(s.SIDE, sp.Integer(0), low, high)
     law = stated.xreplace({s.SIDE: side})
@@ -106,7 +106,7 @@ def _arc(chain: Chain, bound: sp.Symbol) -> sp.Expr:
     before = sp.Dummy("before", real=True)
     position, rate = _moved(chain, bound, before, chain.target)
     (moment,) = sp.solve(rate - chain.rate, before)
-    return sp.factor(sp.simplify(position.xreplace({before: moment}) - chain.target[0]))
+    return sp.factor(simplify(position.xreplace({before: moment}) - chain.target[0]))
 
 
 def _between_rests(chain: Chain) -> tuple[sp.Expr, sp.Expr]:

@@ -13,6 +13,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import simplify
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds.closed_loop import names as cn
@@ -60,7 +61,7 @@ def extremes(so_far: Derivation) -> Step:
     turns = _zeros(control, damping)
     if not len(first) == len(highest) == len(turns) == 1:
         raise DerivationError(f"{model.name}: the step response has no single crossing, maximum and change of sign")
-    overshoot = sp.simplify(followed.xreplace({SECONDS: highest[0]}) / command - 1)
+    overshoot = simplify(followed.xreplace({SECONDS: highest[0]}) / command - 1)
     before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
     pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
     signs = numeric(pieces)({symbol: mp.mpf(1) for piece in pieces for symbol in piece.free_symbols})
@@ -73,8 +74,8 @@ def extremes(so_far: Derivation) -> Step:
         Equation("first_reached", cn.FIRST_REACHED, first[0]),
         Equation("highest_at", cn.HIGHEST_AT, highest[0]),
         Equation("overshoot", cn.OVERSHOOT, overshoot),
-        *(Equation(f"initial_{x.name}", n.initial(x), sp.simplify(value)) for x, value in starts.items()),
-        *(Equation(f"final_{x.name}", cn.final_of(x), sp.simplify(value)) for x, value in ends.items()),
+        *(Equation(f"initial_{x.name}", n.initial(x), simplify(value)) for x, value in starts.items()),
+        *(Equation(f"final_{x.name}", cn.final_of(x), simplify(value)) for x, value in ends.items()),
         Equation("total_impulse", cn.TOTAL_IMPULSE, total),
         Equation("smooth_square", cn.SMOOTH_SQUARE, squared),
     ]
@@ -128,7 +129,7 @@ def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 def _zeros(answer: sp.Expr, damping: sp.Symbol) -> list[sp.Expr]:
     """Zeros of e^(-E t) times a polynomial in time."""
     polynomial = sp.Poly(sp.expand(sp.expand(answer) * sp.exp(damping * SECONDS)), SECONDS)
-    return [sp.simplify(root) for root in sp.roots(polynomial)]
+    return [simplify(root) for root in sp.roots(polynomial)]
 
 
 def _integral(answer: sp.Expr) -> sp.Expr:

@@ -8,7 +8,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import tidy
+from satsym.symbolic.algebra import simplify, tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds.closed_loop import names as cn
@@ -22,7 +22,7 @@ def linearised_about_rest(so_far: Derivation) -> Step:
     states, control = symbols_of(model.states), control_of(model)
     rates = so_far.rhs("original_equations")
     rest = dict.fromkeys((*states, control), sp.Integer(0))
-    if any(sp.simplify(e) != 0 for e in rates.xreplace(rest)):
+    if any(simplify(e) != 0 for e in rates.xreplace(rest)):
         raise DerivationError(f"{model.name}: rest is not a motion of {model.of.name}")
     linear = rates.jacobian([*states, control]).xreplace(rest) * sp.Matrix([*states, control])
     equations = tuple(Equation(x.name, n.rate_of(x), tidy(f)) for x, f in zip(states, linear, strict=True))
@@ -83,13 +83,13 @@ def poles_and_zeros(so_far: Derivation) -> Step:
     model = loop_of(so_far)
     numerator, denominator = sp.fraction(so_far.equation(f"transfer_function.{model.follows.name}").rhs)
     lead = sp.Poly(denominator, s).LC()
-    polynomial = sp.Add(*(sp.simplify(c / lead) * s**k for (k,), c in sp.Poly(denominator, s).terms()))
+    polynomial = sp.Add(*(simplify(c / lead) * s**k for (k,), c in sp.Poly(denominator, s).terms()))
     poles, zeros = (sorted(sp.roots(sp.Poly(e, s)), key=str) for e in (denominator, numerator))
     if not 0 < len(poles) <= 2:
         raise DerivationError(f"{model.name}: the loop must be of second order to be critically damped")
     equations = [Equation("characteristic_polynomial", cn.POLYNOMIAL, polynomial)]
-    equations += [Equation(f"pole_{k}", cn.pole(k), tidy(sp.simplify(p))) for k, p in enumerate(poles, 1)]
-    equations += [Equation(f"zero_{k}", cn.zero(k), sp.simplify(z)) for k, z in enumerate(zeros, 1)]
+    equations += [Equation(f"pole_{k}", cn.pole(k), tidy(simplify(p))) for k, p in enumerate(poles, 1)]
+    equations += [Equation(f"zero_{k}", cn.zero(k), simplify(z)) for k, z in enumerate(zeros, 1)]
     vanish = [denominator.xreplace({s: p}) for p in poles] + [numerator.xreplace({s: z}) for z in zeros]
     proof = identity("roots of both polynomials", vanish)
     return Step("poles_and_zeros", "roots", tuple(equations), ("transfer_function",), (proof,))
@@ -136,7 +136,7 @@ def first_order(so_far: Derivation) -> Step:
     found = sp.solve(later.xreplace({COMMAND: command}) - control, control)
     if len(found) != 1:
         raise DerivationError(f"{model.name}: the law does not determine the control")
-    closed = {x: tidy(sp.simplify(rate.xreplace({control: found[0]}))) for x, rate in rates.items()}
+    closed = {x: tidy(simplify(rate.xreplace({control: found[0]}))) for x, rate in rates.items()}
     equations = tuple(Equation(x.name, n.rate_of(x), closed[x]) for x in states)
     answers = {x: so_far.equation(f"step_response.{x.name}").rhs for x in states}
     proof = identity(

@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic.algebra import simplified, tidy, total_derivative
+from satsym.symbolic.algebra import simplified, simplify, tidy, total_derivative
 from satsym.symbolic.checks import Check, Point, identity, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
@@ -49,7 +49,7 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
         return replace(stationary_controls.mixed(so_far, stated, STEP), conclusions=remarks(so_far, stated))
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     equations, checks = list[Equation](), []
-    slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(sp.simplify)
+    slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(simplify)
     hats = free_law(so_far)
     for name, g in stated.items():
         found = Constraint(name, (g,))

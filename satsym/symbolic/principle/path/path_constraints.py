@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, shortest, simplified, tidy, total_derivative
+from satsym.symbolic.algebra import gradient, shortest, simplified, simplify, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
@@ -71,7 +71,7 @@ def boundary_control(so_far: Derivation) -> Step | None:
     problem, controls = problem_of(so_far), symbols_of(so_far.model.controls)
     h, equations, checks = so_far.equation("hamiltonian.H").rhs, list[Equation](), []
     free = sp.Matrix([so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls])
-    weight = sp.hessian(h, controls).applyfunc(sp.simplify)
+    weight = sp.hessian(h, controls).applyfunc(simplify)
     for found in constraints(so_far):
         effect, rest = affine(so_far, found, controls)
         turned = weight.LUsolve(effect)
@@ -161,7 +161,7 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         if found.order == 1:
             moved, stays = _moved_by_jump(so_far, found, before)
             kept += stays
-            if all(sp.simplify(m) == 0 for m in moved):
+            if all(simplify(m) == 0 for m in moved):
                 raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
             equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
             continue
@@ -199,7 +199,7 @@ def _moved_by_jump(
         deciding = _vanishing(so_far, found)[:1] if switching(so_far) else free_law(so_far).values()
         return [], [value.xreplace(before) - value for value in deciding]
     vanishing = _vanishing(so_far, found)[0]
-    moved = sp.simplify((vanishing.xreplace(before) - vanishing) / zeta)
+    moved = simplify((vanishing.xreplace(before) - vanishing) / zeta)
     return [moved], [sp.diff(moved, zeta)]
 
 
@@ -235,7 +235,7 @@ def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: 
     """Whether no control enters any rate: further ones say nothing new once there are as many as states."""
     for _ in motion:
         rate = total_derivative(rate, motion)
-        if sp.simplify(rate).free_symbols & controls:
+        if simplify(rate).free_symbols & controls:
             return False
     return True
 
@@ -318,7 +318,7 @@ def rates_of_controls(so_far: Derivation, moving: Mapping[sp.Symbol, sp.Expr]) -
     """At what rate controls move at which H_u vanishes, with states and costates: H_uu u' = -d/dt H_u without them."""
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     drift = sp.Matrix([total_derivative(slope, moving) for slope in gradient(h, controls)])
-    rates = -sp.hessian(h, controls).applyfunc(sp.simplify).LUsolve(drift)
+    rates = -sp.hessian(h, controls).applyfunc(simplify).LUsolve(drift)
     return {u: tidy(simplified(rate)) for u, rate in zip(controls, rates, strict=True)}
 
 
