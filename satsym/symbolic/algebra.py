@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
 from functools import lru_cache, reduce
 
 import sympy as sp
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
-from satsym.symbolic.decimals import CERTAIN
+from satsym.symbolic.decimals import with_letters
 from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import Model, symbols_of, t
 
@@ -97,31 +96,7 @@ def simplify(expression: sp.Expr) -> sp.Expr:
     """
     if not expression.has(sp.Float) or not _differs_from_zero(expression):
         return sp.simplify(expression)
-    letters, decimals = _lettered(expression.atoms(sp.Float))
-    return sp.simplify(expression.xreplace(letters)).xreplace(decimals)
-
-
-def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], dict[sp.Symbol, sp.Float]]:
-    """Letters for decimals, and these; small multiples of one, or of a small part of it, share its letter."""
-    letters: dict[sp.Float, sp.Expr] = {}
-    meant: dict[sp.Symbol, sp.Float] = {}
-    for decimal in sorted(decimals, key=lambda d: (abs(d), d)):
-        multiples = ((letter, _small_ratio(decimal / of)) for letter, of in meant.items())
-        found = next((letter * ratio for letter, ratio in multiples if ratio is not None), None)
-        if found is None:
-            letter = sp.Dummy(f"d{len(meant)}", positive=True)
-            meant[letter] = abs(decimal)
-            found = letter if decimal > 0 else -letter
-        letters[decimal] = found
-    return letters, meant
-
-
-def _small_ratio(quotient: sp.Float) -> sp.Rational | None:
-    """The fraction of small numbers that a quotient of decimals is, but for rounding."""
-    exact = Fraction(*map(int, sp.Rational(quotient).as_numer_denom()))
-    near = exact.limit_denominator(STEEP)
-    close = 0 < abs(near.numerator) <= STEEP and abs(exact - near) <= abs(exact) / 10**CERTAIN
-    return sp.Rational(near.numerator, near.denominator) if close else None
+    return with_letters(sp.simplify, expression)
 
 
 def shortened(expression: sp.Expr) -> sp.Expr:

@@ -5,8 +5,9 @@ Sympy keeps 15 digits of a float; multiplied out, and in exponentials and roots,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
 from typing import Any, TypeVar
 
 import sympy as sp
@@ -22,6 +23,9 @@ DIGITS = 2 * MOST
 
 CERTAIN = 400
 """Of these, how many are right after a few multiplications."""
+
+SMALL = 20
+"""Numbers in the ratio of two decimals that are multiples of one."""
 
 
 def lengthened(stated: T) -> T:
@@ -48,6 +52,38 @@ def as_decimals(expression: sp.Expr) -> sp.Expr:
     if expression.is_Pow:
         return sp.Pow(as_decimals(expression.base), expression.exp)
     return expression.func(*map(as_decimals, expression.args))
+
+
+def with_letters(function: Callable[[sp.Expr], sp.Expr], expression: sp.Expr) -> sp.Expr:
+    """What a function of sympy makes of an expression, given letters for its decimals.
+
+    Polynomials with decimals have to sympy whole numbers with all their digits, whose factors it may seek for hours.
+    """
+    letters, decimals = _lettered(expression.atoms(sp.Float))
+    return function(expression.xreplace(letters)).xreplace(decimals)
+
+
+def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], dict[sp.Symbol, sp.Float]]:
+    """Letters for decimals, and these; small multiples of one, or of a small part of it, share its letter."""
+    letters: dict[sp.Float, sp.Expr] = {}
+    meant: dict[sp.Symbol, sp.Float] = {}
+    for decimal in sorted(decimals, key=lambda d: (abs(d), d)):
+        multiples = ((letter, _small_ratio(decimal / of)) for letter, of in meant.items())
+        found = next((letter * ratio for letter, ratio in multiples if ratio is not None), None)
+        if found is None:
+            letter = sp.Dummy(f"d{len(meant)}", positive=True)
+            meant[letter] = abs(decimal)
+            found = letter if decimal > 0 else -letter
+        letters[decimal] = found
+    return letters, meant
+
+
+def _small_ratio(quotient: sp.Float) -> sp.Rational | None:
+    """The fraction of small numbers that a quotient of decimals is, but for rounding."""
+    exact = Fraction(*map(int, sp.Rational(quotient).as_numer_denom()))
+    near = exact.limit_denominator(SMALL)
+    close = 0 < abs(near.numerator) <= SMALL and abs(exact - near) <= abs(exact) / 10**CERTAIN
+    return sp.Rational(near.numerator, near.denominator) if close else None
 
 
 def everywhere(stated: T, changing: Callable[[Any], Any]) -> T:

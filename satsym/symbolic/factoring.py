@@ -7,11 +7,19 @@ from __future__ import annotations
 
 import sympy as sp
 
+from satsym.symbolic.decimals import with_letters
+
+
+def as_factors(expression: sp.Expr) -> sp.Expr:
+    """As by sympy's factor, which is given letters for decimals."""
+    return with_letters(sp.factor, expression) if expression.has(sp.Float) else sp.factor(expression)
+
 
 def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
     """Write an expression as a quotient of products of irreducible polynomials with rational coefficients.
 
-    Functions, roots and symbols count as independent. What has decimals or complex numbers is left to sympy.
+    Functions, roots and symbols count as independent. What has decimals, for which letters stand, or complex numbers is
+    left to sympy.
 
     Parameters
     ----------
@@ -20,7 +28,7 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
     """
     expression = sp.sympify(expression)
     if expression.has(sp.Float, sp.I, sp.Order, sp.Derivative, sp.Integral):
-        return sp.factor(expression)
+        return as_factors(expression)
     coefficient, factors = sp.Integer(1), []
     for part in sp.Mul.make_args(sp.together(expression) if fraction is None else fraction):
         base, exponent = part.args if part.is_Pow else (part, sp.Integer(1))
@@ -35,7 +43,7 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
         elif exponent.is_Rational:
             factors += _roots(base, exponent)
         else:
-            return sp.factor(expression)
+            return as_factors(expression)
     number, product = sp.Mul(*factors).as_coeff_Mul()
     coefficient *= number
     # sympy would multiply each term of a sum by the number

@@ -7,7 +7,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from satsym.symbolic.factoring import factored
+from satsym.symbolic.decimals import DIGITS
+from satsym.symbolic.factoring import as_factors, factored
 
 x, y, z = sp.symbols("x y z", real=True)
 k = sp.Symbol("k", positive=True)
@@ -32,7 +33,6 @@ def test_a_product_that_was_multiplied_out_is_found_again_as_sympy_writes_it(fac
         (2 * x * (x + 3 * y) + y * (y - 2 * x)) * sp.exp(-k * (z - 1)) / k**3,
         (x**2 - y**2) ** 2 / (x**2 + 2 * x * y + y**2),
         sp.sqrt(x**2 + 2 * x * y + y**2 + 1) * (x**2 - 1),
-        1.5 * x**2 - 3 * x,
         sp.Integer(0),
         sp.Rational(2, 3),
         (x**2 + 1) / (x + sp.I),
@@ -46,3 +46,19 @@ def test_forms_are_those_of_sympy(expression: sp.Expr):
 def test_the_factors_of_a_long_product_are_found():
     product = (x + 2 * y - z) * (x * y - k) ** 2 * (x**2 + y * z + 1) / (x - k)
     assert factored(sp.together(sp.expand(product))) == product
+
+
+def test_decimals_are_letters_in_what_sympy_factors(monkeypatch: pytest.MonkeyPatch):
+    share = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100
+    asked, ask = [], sp.factor
+    monkeypatch.setattr(sp, "factor", lambda e: asked.append(e) or ask(e))
+    cases = [
+        (share * x**2 - share * y**2, (x - y) * (x + y)),
+        (3 * share * x * y - share / 2 * y, y * (6 * x - 1)),
+        (1.5 * x**2 - 3 * x, x * (1.5 * x - 3)),
+    ]
+    for expression, factors in cases:
+        for found in (as_factors(expression), factored(expression)):
+            assert found.as_coeff_Mul()[1] == factors
+            assert sp.expand(found) == expression
+    assert not any(e.has(sp.Float) for e in asked)

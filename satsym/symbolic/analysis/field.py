@@ -15,6 +15,8 @@ import sympy as sp
 from sympy.polys.constructor import construct_domain
 from sympy.polys.matrices import DomainMatrix
 
+from satsym.symbolic.factoring import as_factors
+
 
 class NotExact(ValueError):
     """Entries that exact linear algebra does not reach; the message says which."""
@@ -94,7 +96,7 @@ def shortest(expression: sp.Expr) -> sp.Expr:
     if expression.is_Atom:
         return expression
     whole = sp.cancel(expression) if expression.is_rational_function() else expression
-    candidates = [whole, sp.expand(whole), sp.factor(whole)]
+    candidates = [whole, sp.expand(whole), as_factors(whole)]
     return min(candidates, key=lambda e: (sp.count_ops(e), sp.default_sort_key(e)))
 
 

@@ -7,6 +7,8 @@ from itertools import combinations
 
 import sympy as sp
 
+from satsym.symbolic.factoring import as_factors
+
 
 def readable(expression: sp.Expr) -> sp.Expr:
     """The expression with a sin^2 + a cos^2 as a, squares of sums as such, and exponentials multiplied out."""
@@ -60,7 +62,7 @@ def _one_exponential(product: sp.Expr) -> sp.Expr:
     powers = [f for f in product.args if isinstance(f, sp.exp)]
     rest = [f for f in product.args if not isinstance(f, sp.exp)]
     if len(powers) > 1:
-        product = sp.Mul(*rest, sp.exp(sp.factor(sp.Add(*(p.args[0] for p in powers)))))
+        product = sp.Mul(*rest, sp.exp(as_factors(sp.Add(*(p.args[0] for p in powers)))))
     sums = [f for f in rest if f.is_Add and any(t.has(sp.exp) for t in f.args)]
     if not powers or len(sums) != 1:
         return product

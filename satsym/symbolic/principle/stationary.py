@@ -19,6 +19,7 @@ from satsym.agreement import DIGITS, equal, finite
 from satsym.symbolic.algebra import simplify, tidy
 from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.factoring import as_factors
 from satsym.symbolic.functions.minimisers import Clip
 from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
 from satsym.symbolic.principle.circle import by_circle
@@ -87,7 +88,7 @@ def with_angle(
         return None
     rest, *pair = circle
     moved = sp.Add(*(term for term in sp.Add.make_args(sp.expand(rest)) if term.has(u)))
-    (cosine, one), (sine, other) = (sp.factor(e).as_independent(u, as_Add=False) for e in pair)
+    (cosine, one), (sine, other) = (as_factors(e).as_independent(u, as_Add=False) for e in pair)
     ratio = simplify(other / one)
     if ratio.has(u):
         return None

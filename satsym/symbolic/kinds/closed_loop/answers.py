@@ -16,6 +16,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import simplify
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.factoring import as_factors
 from satsym.symbolic.kinds.closed_loop import names as cn
 from satsym.symbolic.kinds.closed_loop.names import SECONDS, control_of, loop_of, s
 from satsym.symbolic.model import symbols_of
@@ -65,9 +66,9 @@ def extremes(so_far: Derivation) -> Step:
     before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
     pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
     signs = numeric(pieces)({symbol: mp.mpf(1) for piece in pieces for symbol in piece.free_symbols})
-    total = sp.factor(sp.Add(*(piece * (1 if sign > 0 else -1) for piece, sign in zip(pieces, signs, strict=True))))
+    total = as_factors(sp.Add(*(piece * (1 if sign > 0 else -1) for piece, sign in zip(pieces, signs, strict=True))))
     square = _integral(sp.expand(control**2))
-    squared = sp.factor(_in_the_end(square, damping) - square.subs(SECONDS, 0))
+    squared = as_factors(_in_the_end(square, damping) - square.subs(SECONDS, 0))
     ends = {x: _in_the_end(value, damping) for x, value in answers.items()}
     starts = {x: value.subs(SECONDS, 0) for x, value in answers.items()}
     equations = [
@@ -116,14 +117,14 @@ def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     if quotient.degree() > 0:
         raise DerivationError(f"{model.name}: {symbol.name} answers to a step with worse than an impulse")
     value = sp.Integer(0)
-    for part in sp.Add.make_args(sp.apart(sp.factor((rest / denominator).as_expr()), s)):
+    for part in sp.Add.make_args(sp.apart(as_factors((rest / denominator).as_expr()), s)):
         above, below = sp.fraction(sp.together(part))
         ((root, order),) = sp.roots(sp.Poly(below, s)).items() if below.has(s) else ((sp.Integer(0), 0),)
         if order:
             lead = sp.Poly(below, s).LC()
             value += above / lead * SECONDS ** (order - 1) / sp.factorial(order - 1) * sp.exp(root * SECONDS)
     (damping,) = symbols_of((model.damping,))
-    return sp.factor(quotient.as_expr()), sp.collect(sp.expand(value), sp.exp(-damping * SECONDS), sp.factor)
+    return as_factors(quotient.as_expr()), sp.collect(sp.expand(value), sp.exp(-damping * SECONDS), as_factors)
 
 
 def _zeros(answer: sp.Expr, damping: sp.Symbol) -> list[sp.Expr]:
@@ -138,7 +139,7 @@ def _integral(answer: sp.Expr) -> sp.Expr:
 
 def _in_the_end(answer: sp.Expr, damping: sp.Symbol) -> sp.Expr:
     """What is left of an answer when all that decays has decayed."""
-    return sp.factor(
+    return as_factors(
         sp.expand(answer).replace(lambda e: isinstance(e, sp.exp) and e.has(damping), lambda _: sp.Integer(0))
     )
 
