@@ -32,6 +32,8 @@ def lengthened(stated: T) -> T:
     """A problem or a model whose decimals are what is written, exactly; itself where it has none."""
 
     def exact(e: Any) -> Any:
+        if isinstance(e, float):
+            return sp.Float(repr(e), DIGITS)
         decimals = {number: sp.Float(repr(float(number)), DIGITS) for number in e.atoms(sp.Float)}
         return e.xreplace(decimals) if decimals else e
 
@@ -99,7 +101,7 @@ def everywhere(stated: T, changing: Callable[[Any], Any]) -> T:
 
 
 def _everywhere(stated: Any, changing: Callable[[Any], Any]) -> Any:
-    if isinstance(stated, sp.Basic | sp.MatrixBase):
+    if isinstance(stated, sp.Basic | sp.MatrixBase | float):
         return changing(stated)
     parts = _parts(stated)
     changed = {key: new for key, part in parts.items() if (new := _everywhere(part, changing)) is not part}

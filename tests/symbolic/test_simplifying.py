@@ -9,9 +9,10 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
+from satsym.symbolic import FirstOrder, Problem, Variable
 from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, simplify, terms_of, tidy, vanishes
 from satsym.symbolic.checks import identity, numeric, points
-from satsym.symbolic.decimals import DIGITS, as_decimals, as_fractions
+from satsym.symbolic.decimals import DIGITS, as_decimals, as_fractions, lengthened
 from satsym.symbolic.linear.matrices import right_half_plane
 from tests.support.distance import deviation
 
@@ -178,3 +179,12 @@ def test_decimals_that_cancel_are_not_taken_apart(difference: str) -> None:
     expression = x * (one + two * cos(q) ** 2) + two * x * sin(q) ** 2 - three * x
     assert vanishes(as_fractions(expression)) == (difference == "0.3")
     assert (abs(simplify(expression).xreplace({x: sp.Integer(1)})) < 1e-30) == (difference == "0.3")
+
+
+def test_a_decimal_alone_is_what_is_written() -> None:
+    """Were it a float of Python, six times of it would be rounded where sixths of steps are taken."""
+    model = FirstOrder(name="m", title="", states=(Variable("x", "x"),), controls=(), parameters=(), rates={q: 0.1})
+    stated = Problem(name="p", title="", model=model, running_cost=0.1, terminal_cost=q + 0.25)
+    found = lengthened(stated)
+    assert found.running_cost == found.model.rates[q] == sp.Float("0.1", DIGITS)
+    assert 6 * found.running_cost == sp.Float("0.6", DIGITS)
