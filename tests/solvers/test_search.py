@@ -275,6 +275,16 @@ def test_the_first_duration_is_of_the_size_of_the_least() -> None:
         assert (sizes_of(case, controls, duration).states > 1e-6).all()
 
 
+def test_what_fails_its_certificate_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = instances.load("double-integrator-time")
+    found = solving.instead(case, None, certified=True)
+    assert found is not None
+    assert found.certificate is not None
+    failed = replace(found.certificate, checks=(), verdict=Verdict.FAILED)
+    monkeypatch.setattr(solving, "examined", lambda *_: (failed, None))
+    assert solving.instead(case, None, certified=True) is None
+
+
 def test_singular_derivatives_end_an_attempt(monkeypatch: pytest.MonkeyPatch) -> None:
     case = instances.load("soft-return")
     law, n = laws.derived(case, case.control_set.arguments), len(case.initial)

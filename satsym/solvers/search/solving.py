@@ -17,6 +17,7 @@ from satsym.solvers.redundant_ends import Redundant, redundant
 from satsym.solvers.search import boundaries, levels, order, reading
 from satsym.solvers.search.answer import answered
 from satsym.solvers.search.motion import Motion
+from satsym.status import Verdict
 
 WORK, COMPARED = 4_000_000, 2_000_000
 """Unknowns times iterations that a search may take, for an answer and for a cheaper one."""
@@ -66,7 +67,7 @@ def _met(less: Redundant, at: Motion, limits: Limits) -> Solution | None:
 
 
 def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
-    """The answer of a search; ``None`` without one.
+    """The answer of a search; ``None`` without one, or where the certificate of what it found fails.
 
     Parameters
     ----------
@@ -79,6 +80,8 @@ def instead(instance: Instance, progress: Progress | None, certified: bool) -> S
     if found is None:
         return None
     certificate = examined(found, limits.deadline)[0] if certified else None
+    if certificate is not None and certificate.verdict is Verdict.FAILED:
+        return None
     return replace(found, certificate=certificate, history=tuple(history), wall_s=time.perf_counter() - began)
 
 
@@ -112,5 +115,7 @@ def cheaper(stated: Instance, solution: Solution) -> Solution:
         return solution
     message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
     certificate = examined(found, limits.deadline)[0]
+    if certificate is None or certificate.verdict is Verdict.FAILED:
+        return solution
     lasted = solution.wall_s + time.perf_counter() - began
     return replace(found, message=message, certificate=certificate, history=solution.history, wall_s=lasted)

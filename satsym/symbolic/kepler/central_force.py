@@ -171,7 +171,7 @@ def _looks_central(place: sp.Matrix, force: sp.Matrix, moving: set[sp.Symbol]) -
         cubed = mp.sqrt(sum(c**2 for c in r)) ** 3
         return [k, *(c * cubed for c in f)], [other, *(-k * c for c in r)]
 
-    return agree("attraction by a centre", moving | place.free_symbols | force.free_symbols, sides)
+    return agree("one strength", moving | place.free_symbols | force.free_symbols, sides)
 
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
