@@ -23,8 +23,8 @@ WORK, COMPARED = 4_000_000, 2_000_000
 """Unknowns times iterations that a search may take, for an answer and for a cheaper one."""
 
 PROBE, AROUND = 160_000, 600_000
-"""The same within which starts must come to more than one motion to go on for a cheaper one, and where there are path
-constraints, which have more sides to pass by."""
+"""Unknowns times iterations within which the starts must come to more than one motion for a search for a cheaper
+answer to go on. It is more where there are path constraints, because motions may pass these on several sides."""
 
 CHEAPER = 1e-6
 """Share of its size, or of that of its terms, by which something must be cheaper to be taken."""

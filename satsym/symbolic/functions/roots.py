@@ -18,7 +18,7 @@ MOST = 400
 """Steps with 30 digits."""
 
 _classes: WeakValueDictionary[tuple[sp.Expr, tuple[sp.Symbol, ...]], type[Root]] = WeakValueDictionary()
-"""Those of slopes, by these and their letters.
+"""Classes of roots, by the slope that vanishes there and its letters.
 
 Each stays for as long as anything uses it: of two classes with one slope, expressions would differ that are the same.
 """
