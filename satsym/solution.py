@@ -75,10 +75,7 @@ class Kind(str, Enum):
 
     NEIGHBOURS = "neighbours"
     REVOLUTIONS = "revolutions"
-    SIGNS = "sign structure"
-    SATURATION = "saturation structure"
     DURATIONS = "duration"
-    EARLIER = "earlier arrival"
     STARTS = "seeded starts"
     ARCS = "structure of boundary arcs"
     TIMES = "other times of points on the way"

@@ -24,15 +24,16 @@ from satsym.agreement import DIGITS, Sides, disagreement
 from satsym.agreement import LIMIT as EQUAL
 from satsym.arrays import Array
 from satsym.codegen import digits
+from satsym.codegen.arguments import Arguments, drawn, limiting, symbols_at
 from satsym.codegen.block import used
-from satsym.codegen.functions import ARGUMENTS, Function, Symbols
+from satsym.codegen.functions import Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.codegen.printers import WRITTEN
 from satsym.kernels import Kernels, plain
 from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.spec import ProblemSpec
-from satsym.symbolic.checks import drawn_from, numeric_along, random_number
+from satsym.symbolic.checks import drawn_from, numeric_along
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
@@ -80,7 +81,9 @@ LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing 
 ROUNDING = 1e-14
 """Share of the arguments by which rounding may seem to move them: some tens of the last place."""
 
-Arguments = dict[str, Any]
+NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
+"""Of functions outside their domain: roots of negative numbers are complex, which functions of floats do not take."""
+
 Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
 
 
@@ -108,6 +111,9 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
         of = _Of(derivation.name, function, exact[k], known)
         for place, values in zip(places[:FEW], expected, strict=False):
             _same_text(of, text, place, values[k])
+        for place in limiting(kernels.spec, function, places[0]):
+            if (there := _moderate_values(of, place)) is not None:
+                _same_text(of, text, place, there)
         _same_values(of, kernels, text, places, [each[k] for each in expected])
     names = {f.name for f in found}
     for name, (argument, by, factor) in DERIVATIVES.items():
@@ -134,11 +140,11 @@ def _places(
     known = code_of(derivation).symbols
     places, expected = [], []
     for attempt in range(TRIES):
-        place = _arguments(known, kernels.spec, rng)
+        place = drawn(known, kernels.spec, rng)
         if attempt % 2:  # e^(At) of a fast motion has no floats at times of size one
             place["t"] *= 10.0 ** -(attempt // EARLIER)
-        with mp.workdps(DIGITS), suppress(ArithmeticError, ValueError):
-            values = [e(_point(f, known, place)) for f, e in zip(found, exact, strict=True)]
+        with mp.workdps(DIGITS), suppress(*NO_NUMBERS):
+            values = [e(symbols_at(f, known, place)) for f, e in zip(found, exact, strict=True)]
             for function in found:
                 getattr(kernels, function.name)(*(place[a] for a in function.arguments))
             if all(moderate(each) and not any(map(mp.im, each)) for each in values):
@@ -151,24 +157,13 @@ def _places(
     )
 
 
-def _point(function: Function, known: Symbols, place: Arguments, by: float = 0.0) -> dict[sp.Symbol, Any]:
-    """What the symbols of a function's arguments stand for; moved by a share of themselves, up and down in turn."""
-    values = {s: v for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True)}
-    return {s: mp.mpf(float(v)) * (1 + by * (-1) ** k) for k, (s, v) in enumerate(values.items())}
-
-
-def _arguments(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
-    """Random arguments; bounds that are met by some controls and not by others."""
-
-    def draw(symbol: Any) -> float:
-        return random_number(symbol, rng)
-
-    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
-    bounds = [-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"])]
-    for ring in spec.rings:
-        bounds[ring[0]], bounds[ring[1]] = sorted(bounds[i] for i in ring)
-    place["bounds"] = tuple(bounds)
-    return place | {"t": draw(known.t)}
+def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
+    """The numbers of a function's expression at a place, if there are such."""
+    with mp.workdps(DIGITS), suppress(*NO_NUMBERS):
+        values = of.exact(symbols_at(of.function, of.known, place))
+        if moderate(values) and not any(map(mp.im, values)):
+            return values
+    return None
 
 
 def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> None:
@@ -177,7 +172,7 @@ def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, v
 
     @cache
     def expected(count: int) -> list[Any]:
-        return [mp.re(v) for v in (values if count == DIGITS else of.exact(_point(function, of.known, place)))]
+        return [mp.re(v) for v in (values if count == DIGITS else of.exact(symbols_at(function, of.known, place)))]
 
     def sides(form: str, count: int) -> Sides:
         with mp.workdps(count):
@@ -230,7 +225,7 @@ def _same_values(
 def _rounding(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> Array:
     """What rounding may do to values: of their arguments, and of each operation."""
     with mp.workdps(DIGITS):
-        aside = of.exact(_point(of.function, of.known, place, ROUNDING))
+        aside = of.exact(symbols_at(of.function, of.known, place, ROUNDING))
     moved = np.array([float(abs(v - a)) for v, a in zip(values, aside, strict=True)])
     with mp.workprec(PRECISION), suppress(ArithmeticError, TypeError):
         found = text[of.function.name](*(_exactly(place[a]) for a in of.function.arguments))
@@ -303,10 +298,11 @@ def _same_loops(
     begin = np.abs(place["x"])
     for power in range(0, SHORTEST, 2):  # longer steps may leave the domain, or what the digits tell
         times = place["t"] + 10.0**-power * np.cumsum(STEPS)
-        with suppress(ArithmeticError, ValueError):
+        with suppress(*NO_NUMBERS):
             exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, place["p"])
-            moved = np.abs(np.hstack([exact, exact_mid])).max(axis=1) <= FARTHEST * (1.0 + begin)
-            if moved.all() and moderate([cost]):
+            along = np.hstack([exact, exact_mid])
+            moved = np.abs(along).max(axis=1) <= FARTHEST * (1.0 + begin)
+            if moved.all() and moderate([cost]) and np.isrealobj(along):
                 break
     else:
         raise DerivationError(f"{derivation.name}: no step, however short, is possible at random points; {LIE}")

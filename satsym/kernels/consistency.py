@@ -60,6 +60,8 @@ class Contradiction:
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
     """The largest contradiction between the functions of a module at places; ``None`` where none is in their domain.
 
+    Where none is, but the form on floats has numbers that the one on arrays has not, that is the contradiction.
+
     Parameters
     ----------
     at
@@ -70,21 +72,25 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
     with np.errstate(all="ignore"):
         evaluation = Evaluation(kernels, with_copies(at, seed))
         finite = _finite(evaluation)
-        if not finite.all():
+        nowhere = not finite.any()
+        if not finite.all() and not nowhere:
             at = {a: tuple(v[finite] for v in row) if a in TUPLES else row[..., finite] for a, row in at.items()}
             evaluation = Evaluation(kernels, with_copies(at, seed))
-        if not finite.any():
-            return None
-        together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
-        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(together, size)]
-        rowwise = sorted([*_both_forms(evaluation), *_loops(kernels, at)], key=_columns)
+        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = []
+        rowwise = [*_both_forms(evaluation)]
+        if not nowhere:
+            together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
+            groups.append((together, size))
+            rowwise += _loops(kernels, at)
+        rowwise.sort(key=_columns)
         groups += [(list(alike), _largest) for _, alike in groupby(rowwise, _columns)]
         found = [
             Contradiction(each.function, each.claim, deviation)
             for group, scale in groups
             for each, deviation in zip(group, deviations(group, scale), strict=True)
         ]
-    return max(found, key=lambda each: each.deviation)
+    largest = max(found, key=lambda each: each.deviation, default=None)
+    return None if nowhere and not (largest and largest.deviation > LIMIT) else largest
 
 
 def _finite(of: Evaluation) -> NDArray[np.bool_]:

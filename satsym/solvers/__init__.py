@@ -89,19 +89,21 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
 
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None, examined: bool) -> Solution:
     """What a solver finds with little work, else what a direct search finds, else what the solver finds with more."""
+    from satsym.solvers import by_search
     from satsym.solvers.search import solving as search
 
-    if not search.applies(instance):
+    if not search.applies(instance) or (search.begins(instance.model.spec) and not instance.free):
         return solver(instance, progress)
     solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)
     solution = replace(solution, instance=replace(solution.instance, work=instance.work))
     if solution.status.answered:
-        return search.cheaper(instance, solution) if examined else solution
+        return by_search.cheaper(instance, solution) if examined else solution
     if solution.status not in (Status.NOT_CONVERGED, Status.TIME_LIMIT):
         return solution
-    found = search.instead(instance, progress, examined)
+    found = by_search.instead(instance, progress, examined)
     if found is not None:
-        return replace(found, wall_s=found.wall_s + solution.wall_s)
+        found = replace(found, wall_s=found.wall_s + solution.wall_s)
+        return by_search.cheaper(instance, found) if examined else found
     return solver(instance, progress) if solution.status is Status.TIME_LIMIT else solution
 
 
@@ -152,12 +154,9 @@ def _beside(less: Redundant, found: Solution, progress: Progress | None, examine
 
 def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
     """What the method finds, or the sweep in its place."""
-    spec, method = instance.model.spec, _named(instance)
+    method = _named(instance)
     automatic = instance.solver.method == methods.AUTO
     solution = _solved(method, instance, progress, examined)
-    if automatic and spec.throttled and solution.status is Status.NOT_CONVERGED:
-        steady = _solved(methods.METHODS["collocation"], instance, progress, examined)
-        return steady if steady.status.answered else solution
     if automatic and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
         shot = _solved(methods.METHODS["shooting"], instance, progress, examined)
         if shot.status.answered:

@@ -29,9 +29,6 @@ ROUNDS, CHILDREN, PARENTS, NEAR = (0.3, 0.1), 256, 48, 0.15
 """Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
 cheapest whose gaps are below that."""
 
-CLOSEST = 0.03
-"""Relative change of costates in one more round."""
-
 TIMES, ANY_TIMES, NEIGHBOURS = 8, 40, 4
 """Times at which they may meet, where the duration is given and where it is free, and how many of the nearest of the
 other side are looked at."""
@@ -48,7 +45,7 @@ SEARCHED, HALVINGS = np.geomspace(1e-3, 1e2, 26), 12
 """Sizes of costates, as shares of the known ones, between which H changes its sign, and halvings of that."""
 
 SAMPLES = 401
-"""Of a known extremal."""
+"""Even times at which a known extremal is sampled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +64,7 @@ class Known:
 
     @property
     def size(self) -> float:
-        """Of costates."""
+        """The largest norm of its costates."""
         return float(np.linalg.norm(self.costates, axis=0).max())
 
 
@@ -86,25 +83,22 @@ class Beside:
         return self.z[: len(self.z) // 2]
 
 
-def about(solution: Solution, problem: TwoPoint, seed: int, *, closely: bool) -> list[Beside]:
+def about(solution: Solution, problem: TwoPoint, seed: int) -> list[Beside]:
     """See :func:`beside`: of a solution, in its problem at its duration."""
     even = np.linspace(solution.times[0], solution.times[-1], SAMPLES)
     z = [np.interp(even, solution.times, row) for row in (*solution.x, *solution.lam)] / problem.scale.both
     n, free = problem.states, solution.instance.tf is None
     known = Known(z[:n], z[n:], solution.objective / problem.scale.cost, longest(solution), free)
-    return beside(problem, known, np.random.default_rng(seed), closely=closely)
+    return beside(problem, known, np.random.default_rng(seed))
 
 
-def beside(problem: TwoPoint, known: Known, rng: np.random.Generator, *, closely: bool = False) -> list[Beside]:
+def beside(problem: TwoPoint, known: Known, rng: np.random.Generator) -> list[Beside]:
     """Different motions that nearly meet, and would cost less if they did, the cheapest first.
 
     Parameters
     ----------
     problem
         With its bounds, and with the duration of what is known.
-    closely
-        Whether more are drawn, and of each motion that pair is taken which comes nearest to it: costates are then near
-        those of an extremal as well.
     """
     if problem.unknowns or not problem.fixed.any() or not known.size > 0.0:
         return []
@@ -114,8 +108,8 @@ def beside(problem: TwoPoint, known: Known, rng: np.random.Generator, *, closely
         known = replace(known, cost=known.cost - problem.terminal_cost(end, problem.theta))
     free = known.free and problem.instance.model.spec.autonomous and bool(given.all())
     with np.errstate(all="ignore"):
-        field = (_of_any_duration if free else _of_given)(problem, known, closely, rng)
-        for size in (*ROUNDS, CLOSEST) if closely else ROUNDS:
+        field = (_of_any_duration if free else _of_given)(problem, known, rng)
+        for size in ROUNDS:
             field = field.refined(size, rng)
         return field.different()
 
@@ -125,21 +119,21 @@ def _directions(n: int, count: int, rng: np.random.Generator) -> Array:
     return np.asarray(found / np.linalg.norm(found, axis=0))
 
 
-def _of_given(problem: TwoPoint, known: Known, closely: bool, rng: np.random.Generator) -> _Field:
+def _of_given(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
     """Extremals in the known duration."""
     first, last = (
         _directions(problem.states, DRAWN, rng) * known.size * 10.0 ** rng.uniform(*SIZES, DRAWN) for _ in range(2)
     )
     onwards = from_start(problem, first, STEPS)
     backwards = to_end(problem, onwards, last, rng, STEPS)
-    return _Field(problem, known, problem.duration, False, closely, onwards, backwards)
+    return _Field(problem, known, problem.duration, False, onwards, backwards)
 
 
-def _of_any_duration(problem: TwoPoint, known: Known, closely: bool, rng: np.random.Generator) -> _Field:
+def _of_any_duration(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
     """Extremals with which H vanishes, up to the longest duration."""
     steps = int(np.ceil(STEPS * min(known.longest / problem.duration, LONGER)))
     nothing = Bundle(np.zeros((steps + 1, 2 * problem.states, 0)), np.zeros((steps + 1, 0)))
-    field = _Field(problem, known, known.longest, True, closely, nothing, nothing)
+    field = _Field(problem, known, known.longest, True, nothing, nothing)
     return field.joined(_directions(problem.states, DRAWN, rng), _directions(problem.states, DRAWN, rng), rng)
 
 
@@ -179,7 +173,6 @@ class _Field:
     known: Known
     longest: float
     free: bool
-    closely: bool
     onwards: Bundle
     backwards: Bundle
 
@@ -202,9 +195,6 @@ class _Field:
     def refined(self, size: float, rng: np.random.Generator) -> _Field:
         """With others about the cheapest pairs, and the closest as well, so far away relative to their costates."""
         n, pairs = self.problem.states, self.cheapest(NEAR)
-        if self.closely:
-            nearest = pairs[np.argsort(pairs[:, 4])]
-            pairs = np.concatenate([pairs[: PARENTS // 2], nearest[: PARENTS // 2]])
         pairs = pairs[:PARENTS]
         if not len(pairs):
             return self
@@ -249,18 +239,8 @@ class _Field:
             row = np.broadcast_to(np.arange(here.places.shape[1])[:, None], met.shape)[met]
             one, other = here.places[:, row], there.places[:, places[met]]
             cost, gap = here.costs[row] + there.costs[places[met]], gaps[met]
-            if self.closely:
-                gap = gap / self._extent(one, other)
             found.append(np.column_stack([one[0], other[0], one[1], other[1], gap, cost]))
         return np.concatenate(found)
-
-    def _extent(self, one: NDArray[np.int64], other: NDArray[np.int64]) -> Array:
-        """How far pairs go, shape (P,), in units of what is known, where that goes further: gaps are relative to it."""
-        n, unit = self.problem.states, self.unit
-        begin, end = self.onwards.z[0, :n, one[1]], self.backwards.z[-1, :n, other[1]]
-        before, after = self.onwards.z[one[0], :n, one[1]], self.backwards.z[other[0], :n, other[1]]
-        gone = np.maximum(np.abs(before - begin), np.maximum(np.abs(after - end), np.abs(end - begin))) / unit
-        return np.asarray(np.clip(np.linalg.norm(gone, axis=1), 1e-300, 1.0))
 
     def _points(self, side: Bundle, nodes: NDArray[np.int64]) -> _Points:
         """Where extremals of one side are at some nodes."""
@@ -270,7 +250,7 @@ class _Field:
         return _Points(states, costs[at, which], np.array([nodes[at], which]))
 
     def different(self) -> list[Beside]:
-        """The cheapest pairs that are not close to one before, nor to what is known; or the closest beside each."""
+        """The cheapest pairs that are not close to one before, nor to what is known."""
         pairs, n = self.cheapest(CLOSE)[:MOST], self.problem.states
         motions, durations = self._motions(pairs, SHOWN)
         motions = motions[:, :n]
@@ -287,15 +267,12 @@ class _Field:
         while left.any() and len(kept) < KEPT:
             k = int(left.argmax())
             others = apart(motions[k], float(durations[k]))
-            if self.closely:
-                near = np.flatnonzero(left & ~others)
-                k = int(near[pairs[near, 4].argmin()])
             kept.append(Beside(float(durations[k]), self._motions(pairs[k : k + 1])[0][0]))
             left &= others
         return kept
 
     def _motions(self, pairs: Array, count: int = 0) -> tuple[Array, Array]:
-        """Of pairs: states and costates at shares of their durations, or of one at all nodes, and these durations."""
+        """States and costates at shares of the durations of pairs, or at all nodes of one, and these durations."""
         steps = len(self.onwards.z) - 1
         first, second, one, other = pairs[:, :4].astype(int).T
         lasting = first + steps - second

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TypeVar
 
 from satsym.solvers.simulation.extrapolation import NotFinite
@@ -20,11 +20,3 @@ def tried(step: Callable[[], Found]) -> Found | None:
         return step()
     except FAILURES:
         return None
-
-
-def unbroken(source: Iterator[Found]) -> Iterator[Found]:
-    """What a source gives until its numbers fail."""
-    try:
-        yield from source
-    except FAILURES:
-        return

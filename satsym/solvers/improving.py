@@ -13,7 +13,6 @@ from satsym.instance import Guess, Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
 from satsym.solvers import iteration
-from satsym.solvers.certificate.competitors import SAMPLES, guess
 from satsym.solvers.certificate.saddle import departures, fall
 from satsym.solvers.certificate.verdict import examined
 from satsym.status import Status, Verdict
@@ -24,6 +23,9 @@ ROUNDS = 3
 SWITCHED = "bang-bang"
 """A method whose extremals are not departed from, nor those of boundary arcs: descents of other problems keep neither
 to controls that switch nor to path constraints."""
+
+SAMPLES = 401
+"""Values of a guess."""
 
 Solver = Callable[[Instance, Progress | None], Solution]
 
@@ -45,14 +47,15 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
     solution = solver(instance, progress)
     certificate, better = examined(solution, deadline)
     if better is not None and instance.guess:
-        message = f"{solution.message}; another extremal costs less, {better.cost:.10g}: leave out [guess] to have it"
+        less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to have it"
+        message = f"{solution.message}; {less}"
         solution, better = replace(solution, message=message), None
     for seed in range(1, ROUNDS + 1):
-        again = None if better is None else _again(guess(better, solution), solver, solution, progress, deadline)
-        if again is None:
+        if better is None:
             break
-        certificate, better = examined(again, deadline, seed)
-        solution = again
+        message = f"{better.message}; the first extremal found costs {solution.objective:.6g}"
+        solution = replace(better, instance=solution.instance, message=message, history=solution.history)
+        certificate, better = examined(solution, deadline, seed)
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != BOUNDARY_ARCS:
         endless = bottomless(solution)
         if endless is not None:

@@ -28,7 +28,7 @@ def longest(solution: Solution) -> float:
 
 
 def frequency(solution: Solution) -> float:
-    """Of the quickest oscillation of linearised motions along a solution."""
+    """The angular frequency of the quickest oscillation of linearised motions along a solution."""
     slopes = rates_by_states(solution, max(1, len(solution.times) // PLACES))
     return float(np.abs(np.linalg.eigvals(slopes.transpose(2, 0, 1)).imag).max())
 

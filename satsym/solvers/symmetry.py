@@ -253,12 +253,6 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
     return [Spiral(angle / TURN, between.spiral(angle)) for angle in likeliest]
 
 
-def other_spirals(problem: TwoPoint, states: Array, most: int) -> list[Spiral]:
-    """Those of other numbers of turns than a motion (n, M) has, the likeliest first; of any about further axes."""
-    found = [(k, turns(one, states), spirals(problem, most, one)) for k, one in enumerate(rotations(problem.instance))]
-    return [one for k, own, each in found for one in each if k or abs(one.turns - own) > 0.5]
-
-
 @dataclass(frozen=True, eq=False)
 class _Between:
     """Ends of spirals, shape (n, 1), and the rates of the free motion there."""

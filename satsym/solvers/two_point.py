@@ -12,8 +12,6 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.by_newton import from_guess
-from satsym.solvers.cold_start.direct import direct
-from satsym.solvers.cold_start.directions import directed, full_length
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
@@ -88,26 +86,13 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
         Whether free durations are looked for with great effort.
     """
     spec = instance.model.spec
-    guessed_extremal = from_guess(instance) if spec.stationary or spec.directional else None
-    if guessed_extremal is not None:
-        (problem, start), duration = guessed_extremal, ""
-    elif spec.stationary and not spec.directional and not instance.guess:
-        reached = direct(instance, limits)
-        if reached is None:
-            status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
-            message = "no extremal found by a direct method from controls that are drawn"
-            comparing = [u for part in spec.control_parts if part.ends for u in part.controls]
-            if comparing:
-                message += (
-                    f"; H may have several minimisers in {', '.join(comparing)}: extremals that jump between them are "
-                )
-                message += "not found as a rule, and where they stay equally good there is no optimum (chattering)"
-            return nothing(instance, status, message)
-        (problem, start), duration = reached, ""
-    elif spec.directional:
-        led = directed(instance, limits, effort, full_length)
-        if isinstance(led, Extremal):
-            return led
+    if spec.stationary or spec.directional:
+        led = from_guess(instance)
+        if led is None:
+            message = (
+                "no extremal is known near which the law says something of the controls: guess states and costates"
+            )
+            return nothing(instance, Status.NOT_CONVERGED, message)
         (problem, start), duration = led, ""
     elif instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)

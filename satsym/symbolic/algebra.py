@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import random
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache, reduce
+from typing import TypeVar
 
 import sympy as sp
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
@@ -15,11 +17,16 @@ from satsym.symbolic.decimals import with_letters
 from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import Model, symbols_of, t
 
+Simplified = TypeVar("Simplified", sp.Expr, sp.Matrix)
+
 LARGEST = 400
 """Terms, were it multiplied out, of what is simplified; what would have more stays as it was derived."""
 
 LENGTHY = 1000
 """Operations, likewise."""
+
+COMMON = 300
+"""Terms over a common denominator beyond which FLINT cancels and factors, and sympy, which takes long, is not asked."""
 
 TURNING = 300
 """Operations times sines and cosines of it, likewise, unless it may be zero: rewriting them grows with both."""
@@ -89,12 +96,14 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
     return plain if unique else shortened(expression)
 
 
-def simplify(expression: sp.Expr) -> sp.Expr:
-    """As by sympy's simplify, which is given letters for decimals, unless what has them may vanish.
+def simplify(expression: Simplified) -> Simplified:
+    """As by sympy's simplify, which is given letters for decimals, unless what has them may vanish; entry by entry.
 
     Its polynomials have whole numbers with all digits of a decimal, whose factors it may seek for hours.
     """
-    if not expression.has(sp.Float) or not _differs_from_zero(expression):
+    if isinstance(expression, sp.MatrixBase):
+        return expression.applyfunc(simplify)
+    if not expression.has(sp.Float) or not differs_from_zero(expression):
         return sp.simplify(expression)
     return with_letters(sp.simplify, expression)
 
@@ -104,15 +113,21 @@ def shortened(expression: sp.Expr) -> sp.Expr:
     operations, turned = expression.count_ops(), len(expression.atoms(TrigonometricFunction))
     if terms_of(expression) > LARGEST or operations > LENGTHY:
         return expression
-    if operations * turned > TURNING and _differs_from_zero(expression):
+    if operations * turned > TURNING and differs_from_zero(expression):
         return expression
+    if (over := terms_over(expression)) > COMMON:
+        if over > PROVABLE and differs_from_zero(expression):
+            return expression
+        form = factored(expression) if over <= PROVABLE else expression
+        if form == 0 or differs_from_zero(expression):
+            return shortest(expression, form)
     named, steep = _steep_named(expression)
     alone = _alone(named)
     named, steep = named.xreplace(alone), steep | {dummy: f.xreplace(steep) for f, dummy in alone.items()}
     logarithms = {e: sp.Dummy(real=True) for e in named.atoms(sp.log)}
     if not logarithms:
         return simplify(named).xreplace(steep)
-    if not _differs_from_zero(expression) and simplify(named) == 0:
+    if not differs_from_zero(expression) and simplify(named) == 0:
         return sp.Integer(0)
     simple = simplify(named.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
     return simple.xreplace(steep)
@@ -121,14 +136,13 @@ def shortened(expression: sp.Expr) -> sp.Expr:
 def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
     """Letters for functions of which nothing is known together with others: sympy would look for that for minutes.
 
-    Sines and cosines are such where there are decimals, with whose digits it takes long, and no powers of them.
+    Of sines and cosines those are such of which there are no powers.
     """
     hyperbolic, exponentials = expression.atoms(HyperbolicFunction), expression.atoms(sp.exp)
     found = [f for f in hyperbolic if not _meets(f, (hyperbolic | exponentials) - {f})]
-    if expression.has(sp.Float):
-        turning = expression.atoms(TrigonometricFunction)
-        raised = {p.base for p in expression.atoms(sp.Pow)}
-        found += [f for f in turning - raised if not _meets(f, turning - {f})]
+    turning = expression.atoms(TrigonometricFunction)
+    raised = {p.base for p in expression.atoms(sp.Pow)}
+    found += [f for f in turning - raised if not _meets(f, turning - {f})]
     return {f: sp.Dummy(real=True) for f in sorted(found, key=sp.default_sort_key)}
 
 
@@ -143,7 +157,7 @@ def shortest(*forms: sp.Expr) -> sp.Expr:
 
 def vanishes(expression: sp.Expr) -> bool:
     """Whether an expression is identically zero, as far as simplifying shows it; a number elsewhere shows that not."""
-    return expression == 0 or (not _differs_from_zero(expression) and bool(simplified(expression) == 0))
+    return expression == 0 or (not differs_from_zero(expression) and bool(simplified(expression) == 0))
 
 
 def divisors_in_time(model: Model, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
@@ -159,7 +173,7 @@ def depends(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _differs_from_zero(expression: sp.Expr) -> bool:
+def differs_from_zero(expression: sp.Expr) -> bool:
     """Whether its number at one point, which is good to 15 digits, is certainly not zero."""
     rng = random.Random(ONE_POINT)
     point = {symbol: sp.Rational(rng.randrange(500, 1500), 1000) for symbol in sorted(expression.free_symbols, key=str)}
@@ -174,9 +188,42 @@ def terms_of(expression: sp.Expr) -> int:
     if expression.is_Mul:
         return math.prod(terms_of(e) for e in expression.args)
     if expression.is_Pow and expression.exp.is_Integer:
-        terms, power = terms_of(expression.base), abs(int(expression.exp))
-        return math.comb(terms + power - 1, power)
+        return _power(terms_of(expression.base), abs(int(expression.exp)))
     return max((terms_of(e) for e in expression.args if isinstance(e, sp.Expr)), default=1)
+
+
+def terms_over(expression: sp.Expr) -> int:
+    """How many terms the numerator has over a common denominator, multiplied out, if none cancel."""
+    return _over(expression)[0]
+
+
+def _over(expression: sp.Expr) -> tuple[int, dict[sp.Expr, int]]:
+    """Terms of the numerator, and the sums in the denominator with their powers."""
+    if expression.is_Add:
+        parts = [_over(e) for e in expression.args]
+        common = {base: max(below.get(base, 0) for _, below in parts) for _, below in parts for base in below}
+        missing = ({base: power - below.get(base, 0) for base, power in common.items()} for _, below in parts)
+        return sum(terms * _product(lacks) for (terms, _), lacks in zip(parts, missing, strict=True)), common
+    if expression.is_Mul:
+        factors = [_over(e) for e in expression.args]
+        return math.prod(terms for terms, _ in factors), dict(sum((Counter(below) for _, below in factors), Counter()))
+    if expression.is_Pow and expression.exp.is_Rational:
+        terms, below = _over(expression.base)
+        power = math.ceil(abs(expression.exp))
+        whole = {base: times * power for base, times in below.items()}
+        if expression.exp.is_positive:
+            return _power(terms, power), whole
+        return _product(whole), {expression.base: power} if terms > 1 else {}
+    return max((terms_over(e) for e in expression.args if isinstance(e, sp.Expr)), default=1), {}
+
+
+def _product(powers: Mapping[sp.Expr, int]) -> int:
+    return math.prod(_power(terms_over(base), power) for base, power in powers.items())
+
+
+def _power(terms: int, power: int) -> int:
+    """Terms of a power of a sum."""
+    return math.comb(terms + power - 1, power)
 
 
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
@@ -263,7 +310,8 @@ def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:
 def _shortest(expression: sp.Expr) -> sp.Expr:
     expanded = _expand(expression)
     # A sum with decimals is hardly ever a product of others, and to look for them takes sympy up to a minute.
-    plain = expression.has(sp.Float) or len(sp.Add.make_args(expanded)) > FACTORED
+    long = len(sp.Add.make_args(expanded)) > FACTORED or terms_over(expression) > PROVABLE
+    plain = long or expression.has(sp.Float)
     fraction = sp.together(expression)
     products = sp.gcd_terms(expanded) if plain else factored(expression, fraction)
     return min((expanded, products, fraction), key=sp.count_ops)

@@ -136,11 +136,14 @@ def _where_finite(at: Callable[[int], Sides]) -> float | None:
 
 
 def with_digits(sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]], point: Point) -> Callable[[int], Sides]:
-    """Both sides at a point as a function of the digits."""
+    """Both sides at a point as a function of the digits; NaN where either divides by zero."""
 
     def at(digits: int) -> Sides:
         with mp.workdps(digits):
-            found, expected = sides(point)
+            try:
+                found, expected = sides(point)
+            except ZeroDivisionError:
+                return [mp.nan], [mp.nan]
             return list(found), list(expected)
 
     return at

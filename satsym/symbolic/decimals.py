@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import sympy as sp
@@ -42,7 +43,20 @@ def lengthened(stated: T) -> T:
 
 def as_fractions(expression: sp.Expr) -> sp.Expr:
     """The expression with fractions for its decimals: sums of decimals hardly ever cancel, and have no factors."""
-    return expression.xreplace({d: sp.Rational(str(sp.Float(d, CERTAIN))) for d in expression.atoms(sp.Float)})
+    return expression.xreplace({decimal: _fraction(decimal) for decimal in expression.atoms(sp.Float)})
+
+
+@lru_cache(maxsize=1024)
+def _fraction(decimal: sp.Float) -> sp.Rational:
+    """The fraction with the least denominator that has these digits: what was multiplied and divided to get there.
+
+    A third of 0.1 is 1/30, and no number of 400 digits. Where there is none, as for a root, it is the digits.
+    """
+    exact = Fraction(*map(int, sp.Rational(decimal).as_numer_denom()))
+    near = exact.limit_denominator(10 ** (CERTAIN // 3))
+    if abs(exact - near) <= abs(exact) / 10**CERTAIN:
+        return sp.Rational(near.numerator, near.denominator)
+    return sp.Rational(str(sp.Float(decimal, CERTAIN)))
 
 
 def as_decimals(expression: sp.Expr) -> sp.Expr:

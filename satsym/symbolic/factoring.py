@@ -11,15 +11,15 @@ from satsym.symbolic.decimals import with_letters
 
 
 def as_factors(expression: sp.Expr) -> sp.Expr:
-    """As by sympy's factor, which is given letters for decimals."""
-    return with_letters(sp.factor, expression) if expression.has(sp.Float) else sp.factor(expression)
+    """As by sympy's factor; what has decimals is factored by FLINT, for their letters are many symbols."""
+    return factored(expression) if expression.has(sp.Float) else sp.factor(expression)
 
 
 def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
     """Write an expression as a quotient of products of irreducible polynomials with rational coefficients.
 
-    Functions, roots and symbols count as independent. What has decimals, for which letters stand, or complex numbers is
-    left to sympy.
+    Functions, roots and symbols count as independent. Letters stand for decimals. What has complex numbers is left to
+    sympy.
 
     Parameters
     ----------
@@ -27,8 +27,10 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
         The expression as one fraction, where that is known.
     """
     expression = sp.sympify(expression)
-    if expression.has(sp.Float, sp.I, sp.Order, sp.Derivative, sp.Integral):
-        return as_factors(expression)
+    if expression.has(sp.Float):
+        return with_letters(factored, expression)
+    if expression.has(sp.I, sp.Order, sp.Derivative, sp.Integral):
+        return sp.factor(expression)
     coefficient, factors = sp.Integer(1), []
     for part in sp.Mul.make_args(sp.together(expression) if fraction is None else fraction):
         base, exponent = part.args if part.is_Pow else (part, sp.Integer(1))
@@ -43,7 +45,7 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
         elif exponent.is_Rational:
             factors += _roots(base, exponent)
         else:
-            return as_factors(expression)
+            return sp.factor(expression)
     number, product = sp.Mul(*factors).as_coeff_Mul()
     coefficient *= number
     # sympy would multiply each term of a sum by the number
@@ -67,7 +69,10 @@ def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]
     """Content and irreducible factors with multiplicities; each has a positive leading coefficient, as in sympy."""
     from flint import Ordering, fmpz_mpoly_ctx
 
-    poly = sp.Poly(polynomial)
+    try:
+        poly = sp.Poly(polynomial)
+    except sp.GeneratorsNeeded:  # all but a number cancels
+        return sp.expand(polynomial), []
     if not (poly.domain.is_ZZ or poly.domain.is_QQ):
         content, found = sp.factor_list(polynomial)
         return content, found

@@ -196,28 +196,26 @@ def report(found: Sequence[Outcome], wall: float) -> Iterator[str]:
     yield "slowest, in seconds of processor time:"
     for one in sorted(found, key=lambda each: -each.seconds)[:SHOWN]:
         yield f"{one.seconds:7.1f}  model {one.seed} ({one.kind})"
-    yield from _planted("slips in steps", [(slip, slip.caught) for one in found for slip in one.in_steps], found)
-    texts = [slip for one in found for slip in one.in_texts]
-    yield from _planted("slips in texts", [(slip, slip.caught) for slip in texts], found)
-    modules = [refusal for one in found for refusal in one.in_modules]
-    yield from _planted("the same in modules that are loaded", list(zip(texts, modules, strict=True)), ())
+    yield from _planted("slips in steps", [(one, slip, slip.caught) for one in found for slip in one.in_steps])
+    yield from _planted("slips in texts", [(one, slip, slip.caught) for one in found for slip in one.in_texts])
+    loaded = [(one, *each) for one in found for each in zip(one.in_texts, one.in_modules, strict=True)]
+    yield from _planted("the same in modules that are loaded", loaded)
 
 
-def _planted(title: str, tried: Sequence[tuple[Slip, str]], found: Sequence[Outcome]) -> Iterator[str]:
+def _planted(title: str, tried: Sequence[tuple[Outcome, Slip, str]]) -> Iterator[str]:
     """How many were caught, by how much of their sums they change; those that were not."""
-    real = [(slip, caught) for slip, caught in tried if slip.effect or caught]
-    seen = sum(1 for _, caught in real if caught)
+    real = [(one, slip, caught) for one, slip, caught in tried if slip.effect or caught]
+    seen = sum(1 for *_, caught in real if caught)
     yield f"{title}: {len(real)} planted, {seen} caught; {len(tried) - len(real)} without any effect"
     decades: dict[int, list[bool]] = defaultdict(list)
-    for slip, caught in real:
+    for _, slip, caught in real:
         decades[slip.decade].append(bool(caught))
     for decade, those in sorted(decades.items()):
         yield f"    1e{decade:+03d} of the sum: {sum(those)} of {len(those)}"
-    for one in found:
-        for slip in one.in_steps if "steps" in title else one.in_texts:
-            if slip.effect and not slip.caught:
-                share = f"{slip.change:.1e} of a term that is {slip.share:.1e} of its sum"
-                yield f"    missed: model {one.seed}, {slip.place}: {share}, {slip.term}"
+    for one, slip, caught in real:
+        if not caught:
+            share = f"{slip.change:.1e} of a term that is {slip.share:.1e} of its sum"
+            yield f"    missed: model {one.seed}, {slip.place}: {share}, {slip.term}"
 
 
 def main() -> int:

@@ -16,10 +16,9 @@ import pytest
 from sympy import sympify
 
 import satsym
-from satsym.solution import Event, Kind, Solution
+from satsym.solution import Event, Solution
 from satsym.solvers import two_point
-from satsym.solvers.certificate import certify, competitors
-from satsym.solvers.certificate.comparison import Competitor
+from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained import second_variation
 from satsym.solvers.certificate.constrained.conditions import _defect
 from satsym.solvers.certificate.constrained.replay import replay
@@ -153,22 +152,6 @@ def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, min
     verdict, failed = judged(limited(found, 1e-9))
     assert verdict is Verdict.EXTREMAL_ONLY
     assert ("second variation with the active arcs fixed" in failed) == (not minimum)
-
-
-def test_what_leaves_the_path_constraints_is_neither_a_competitor_nor_a_fall(
-    round_the_disc: Solution, monkeypatch: pytest.MonkeyPatch
-):
-    through = np.linspace(round_the_disc.x[:, 0], round_the_disc.x[:, -1], 401).T
-    way = np.repeat((through[:, -1] - through[:, 0])[:, None], 401, axis=1)
-    for leaves in (True, False):
-        place = through + np.array([[0.0], [0.0 if leaves else 3.0]])
-        moved = np.linspace(0.0, 1.0, 401), np.concatenate([place, -way]), 1.0
-        monkeypatch.setattr(competitors, "_motion", lambda *_, moved=moved: moved)
-        cheaper = Competitor(None, object(), round_the_disc.objective - 1.0)  # type: ignore[arg-type]
-        found = competitors._tried(round_the_disc, Kind.STARTS, [lambda _, one=cheaper: one], np.inf)
-        assert found is not None
-        assert (found.summary.tried, found.summary.solved) == (1, 0 if leaves else 1)
-        assert (found.margin < 0.0) != leaves
 
 
 @pytest.mark.slow

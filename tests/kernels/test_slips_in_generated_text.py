@@ -11,12 +11,13 @@ import sympy as sp
 from satsym import kernels
 from satsym.codegen import module, verify
 from satsym.report.artefacts import generated
-from satsym.spec import Variable
+from satsym.spec import ControlSetKind, Variable
 from satsym.symbolic import Derivation, DerivationError, FirstOrder, Problem, derive, symbols_of
 
 STATES = (Variable("x", "x"), Variable("y", "y"))
 CONTROLS = (Variable("u", "u"),)
 (x, y), (u,) = symbols_of(STATES), symbols_of(CONTROLS)
+v = sp.Symbol("v", real=True)
 SMALL = sp.Rational(1, 10**8)
 
 
@@ -65,3 +66,34 @@ def test_a_millionth_of_a_term_of_a_hundred_millionth_is_seen(name: str) -> None
 )
 def test_right_functions_with_numbers_of_any_size_are_generated(rate: sp.Expr) -> None:
     generated(derive(problem(rate)), "task.py")
+
+
+def test_a_motion_that_leaves_the_domain_in_a_step_is_followed_in_shorter_ones() -> None:
+    above = Variable("a", "a", positive=True)
+    (a,) = symbols_of((above,))
+    rates = {a: -(10**4) * (1 + x**2), x: u + sp.sin(a ** sp.Rational(1, 3)), y: x}
+    model = FirstOrder(name="m", title="M", states=(above, *STATES), controls=CONTROLS, parameters=(), rates=rates)
+    generated(derive(Problem(name="root", title="Root", model=model, running_cost=u**2 / 2)), "root.py")
+
+
+@pytest.mark.parametrize(
+    ("control_set", "cost", "right", "wrong"),
+    [
+        ("ball", 50 * u**2 + 50 * v**2, "(1.0/10000.0)*lambda_x*", "(1.000001/10000.0)*lambda_x*"),
+        ("box", sp.Integer(1), "0.5*(u_min + u_max)", "0.5*(u_min + 1.000001*u_max)"),
+    ],
+)
+def test_a_slip_is_seen_that_only_bounds_beyond_all_controls_show_or_vanishing_costates(
+    control_set: ControlSetKind, cost: sp.Expr, right: str, wrong: str
+) -> None:
+    controls = (*CONTROLS, Variable("v", "v"))
+    model = FirstOrder(name="m", title="M", states=STATES, controls=controls, parameters=(), rates={x: u + y, y: v - x})
+    stated = Problem(name="law", title="Law", model=model, running_cost=cost, control_set=control_set)
+    derivation = derive(stated)
+    text = module.render(derivation, "law.py")
+    head, law = text.split("def control_law(t", 1)
+    assert right in law
+    verify.verify(derivation, kernels.from_text(text, "law.py"))
+    changed = f"{head}def control_law(t{law.replace(right, wrong, 1)}"
+    with pytest.raises(DerivationError, match="generated control_law deviates"):
+        verify.verify(derivation, kernels.from_text(changed, "law.py"))

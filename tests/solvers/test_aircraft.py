@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +11,8 @@ from sympy import Expr, Rational
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Competitors, Kind, Solution
+from satsym.solution import Solution
 from satsym.solvers import solve
-from satsym.solvers.certificate.comparison import Compared
-from satsym.solvers.certificate.competitors import guess
-from satsym.solvers.certificate.seeded.drawn_extremals import searches
-from satsym.solvers.iteration import Limits, unsolved
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -88,30 +83,6 @@ def follows(case: Instance, costates: tuple[float, ...], times: Array) -> tuple[
     start, ends = np.array([*case.initial, *costates]), (times[0], times[-1])
     z = solve_ivp(rates, ends, start, t_eval=times, method="DOP853", rtol=1e-9, atol=1e-11, max_step=0.02).y
     return z, np.asarray(model.control_law_batch(times, z[:3], z[3:], p, bounds))
-
-
-@pytest.mark.slow
-def test_extremals_drawn_beside_a_levelling_lead_to_one_that_is_far_quicker(tmp_path: Path) -> None:
-    """To the slow one lead most starts; nothing that a descent of states finds tells of the other, whose law jumps."""
-    case = f8(tmp_path, 1, HURRIED)
-    times = np.linspace(0.0, SLOW, 801)
-    z, u = follows(case, COSTATES, times)
-    assert z[:3, -1] == pytest.approx(np.zeros(3), abs=1e-4)
-    slow = replace(unsolved(case, "collocation", 0.0), times=times, x=z[:3], u=u, lam=z[3:], objective=SLOW)
-    starts = Compared(Competitors(Kind.STARTS, 4, 1, SLOW), 0.0, None, interrupted=False)
-    with np.errstate(all="ignore"):
-        found = [search(Limits(200, float("inf"))) for search in searches(slow, starts, seed=0)]
-    quicker = min((one for one in found if one is not None), key=lambda one: one.cost)
-    assert quicker.cost == pytest.approx(QUICKEST, rel=2e-6)
-    assert quicker.curve is not None
-
-    begun = guess(quicker, slow)
-    assert begun.tf_guess == pytest.approx(quicker.cost)
-    again = solve(begun, examined=False)
-    assert again.status is Status.CONVERGED
-    assert again.objective == pytest.approx(quicker.cost, rel=1e-9)
-    z, _ = follows(case, tuple(again.lam[:, 0].tolist()), np.array([0.0, float(again.times[-1])]))
-    assert z[:3, -1] == pytest.approx(np.zeros(3), abs=1e-4)
 
 
 @pytest.mark.study

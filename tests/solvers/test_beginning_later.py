@@ -11,10 +11,6 @@ import pytest
 from satsym import instance, solvers
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.certificate.comparison import Competitor
-from satsym.solvers.certificate.competitors import _motion
-from satsym.solvers.cold_start import paths
-from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.continued import _guessed
 from satsym.status import Status
 
@@ -81,20 +77,6 @@ def test_that_an_end_is_too_far_does_not_depend_on_when_one_begins() -> None:
     found, moved = solvers.solve(case), solvers.solve(later(case))
     assert found.status is Status.INFEASIBLE
     assert (moved.status, moved.message) == (found.status, found.message)
-
-
-def test_competitors_are_followed_from_the_start_to_the_end() -> None:
-    found = solvers.solve(later(instance.load("zermelo")), examined=False)
-    begun, lasting = found.times[0], found.times[-1] - found.times[0]
-    problem = two_point(found.instance, lasting)
-
-    def along(times: np.ndarray) -> np.ndarray:
-        return np.array([np.interp(times, found.times, row) for row in found.x])
-
-    curve = paths.curve(problem, lambda tau: along(begun + lasting * tau) / problem.scale.state[:, None])
-    times, z, end = _motion(Competitor(problem, curve, found.objective), found)
-    assert (times[0], end) == (begun, pytest.approx(found.times[-1]))
-    assert z[: len(found.x)] == pytest.approx(along(times), abs=1e-3)
 
 
 def test_guesses_on_a_way_through_problems_have_the_duration_of_the_last_answer() -> None:

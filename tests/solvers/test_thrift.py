@@ -7,8 +7,6 @@ from itertools import accumulate, repeat
 import numpy as np
 import pytest
 
-from satsym import instance
-from satsym.solvers.cold_start.direct import KNOTS, Programme
 from satsym.solvers.control.corners import enclosed
 from satsym.solvers.switching.newton import MOST, SETTLED, _too_slow
 
@@ -54,17 +52,3 @@ def test_corrections_that_shrink_too_slowly_to_settle_are_given_up_early_and_fas
     squared = [5e-3, 2.5e-3, 6e-4, 4e-5, 1.6e-7]
     for fast in (evenly, squared):
         assert not any(_too_slow([np.inf, *fast[:k]]) for k in range(1, len(fast) + 1))
-
-
-def test_cost_ends_and_their_slopes_take_one_simulation(monkeypatch):
-    chain = instance.load("chain")
-    programme = Programme(chain, np.ones(len(chain.initial)))
-    simulated, calls = Programme.simulated, []
-    monkeypatch.setattr(Programme, "simulated", lambda self, *a: calls.append(a) or simulated(self, *a))
-    unknown = np.linspace(-1.0, 1.0, KNOTS)
-    values, (*_, slopes) = programme.values(unknown), programme.costates(unknown)
-    assert len(calls) == 1
-    step = 1e-6 * np.eye(KNOTS)[3]
-    change = (programme.values(unknown + step) - programme.values(unknown - step)) / 2e-6
-    assert slopes[:, 3] == pytest.approx(change, rel=1e-5)
-    assert programme.values(unknown) == pytest.approx(values, abs=0.0)

@@ -211,6 +211,6 @@ def test_minimum_propellant_takes_the_revolutions_that_cost_least(propelled: sat
     assert found.certificate is not None
     around = {one.kind.value: one for one in found.certificate.competitors}["revolutions"]
     assert around.solved
-    assert around.cheapest == pytest.approx(PROPELLANT[2], rel=1e-3)
+    assert around.cheapest >= found.objective * (1.0 - 1e-9)
     assert found.objective == pytest.approx(min(PROPELLANT.values()), rel=1e-2)
     assert found.objective <= in_polar_coordinates() * (1.0 + 1e-9)

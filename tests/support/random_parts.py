@@ -89,7 +89,8 @@ class Draw:
                 f"{a}/{r}",
                 f"1/({r} + {d})",
             ]
-            forms += [f"exp(-{c}*{r})", f"{a}**2/{r}", f"{r}**Rational(-3, 2)"]
+            moderate = f"({r}/{self.far[r][0]:g})" if r in self.far else r  # floats have no e^-6500
+            forms += [f"exp(-{c}*{moderate})", f"{a}**2/{r}", f"{r}**Rational(-3, 2)"]
         return self.rng.choice(forms)
 
     def polynomial(self) -> str:
@@ -98,7 +99,7 @@ class Draw:
             *(a, a, f"({a})**2", f"{a}*{b}", f"({a})**3", f"({a} - {c}*{b})**2", f"({a} + ({b} - {c})**2)**2"),
             *(
                 f"{a}*({b})**2",
-                f"({a} + {c})*({b} - {a})",
+                f"({a} + {c})*({b} - {a})" if a != b else f"({a} + {c})*{a}",  # a cost must not vanish
                 f"({a}*{b} + {c}*({a})**2)*({b} + 1)",
                 f"({a} - {c}*({b})**2)**3",
             ),

@@ -22,7 +22,7 @@ import sympy as sp
 
 from satsym import kernels
 from satsym.agreement import DIGITS
-from satsym.codegen import verify
+from satsym.codegen import arguments, verify
 from satsym.codegen.naming import code_of
 from satsym.kernels import loading
 from satsym.kernels.digest import sealed
@@ -103,7 +103,7 @@ def _tried(derivation: Derivation, rng: random.Random) -> Slip | None:
     made: list[sp.Expr] = []
     with _intercepted(lambda k, e: made.append(e) or e):
         function(before)
-    wanted = [k for k, e in enumerate(made) if e.free_symbols]
+    wanted = [k for k, e in enumerate(made) if e.free_symbols and not e.has(sp.Dummy)]  # of this call alone
     if not wanted:
         return None
     k = rng.choice(wanted)
@@ -228,7 +228,7 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
     rng_of_places = random.Random(derivation.name)
     with drawn_from(variables_of(derivation.model)):
         known = code_of(derivation).symbols
-        places = [verify._arguments(known, original.spec, rng_of_places) for _ in range(5)]
+        places = [arguments.drawn(known, original.spec, rng_of_places) for _ in range(5)]
     for _ in range(ATTEMPTS):
         function = rng.choice(functions)
         found = _terms(function)
@@ -242,7 +242,8 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
         wrong = _with_factor(text, term, 1.0 + change)
         caught = _verified(derivation, wrong)
         nested = total is not getattr(statement, "value", None)
-        return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught), wrong
+        effect = not _alone_in_a_condition(statement, total, term)
+        return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught, effect), wrong
     return None
 
 
@@ -283,6 +284,17 @@ def _terms(function: ast.FunctionDef) -> list[tuple[ast.stmt, ast.expr, ast.expr
             if _is_sum(node) and id(node) not in inner and id(node) not in parts:
                 found += [(statement, node, term) for term in _flat(node)]
     return found
+
+
+def _alone_in_a_condition(statement: ast.stmt, total: ast.expr, term: ast.expr) -> bool:
+    """Whether nothing but the sign of the term counts: what it is compared with, or added to where that is, is zero."""
+    conditions = [
+        node.args[0] if isinstance(node, ast.Call) else node.left
+        for node in ast.walk(statement)
+        if isinstance(node, ast.Compare) or (isinstance(node, ast.Call) and ast.unparse(node.func) == "np.heaviside")
+    ]
+    zeros = [isinstance(other, ast.Constant) and not other.value for other in _flat(total) if other is not term]
+    return any(total is condition for condition in conditions) and all(zeros)
 
 
 def _is_sum(node: ast.AST) -> bool:

@@ -14,7 +14,6 @@ from sympy import Expr, cos, sin, sqrt
 
 import satsym
 from satsym.solvers.certificate.comparison import UNCOMPARED
-from satsym.solvers.switching.cold_start import by_throttle
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Free, Problem, Variable, symbols_of
 from satsym.symbolic.derivation import DerivationError
@@ -159,22 +158,6 @@ def test_an_ascent_by_thrust_and_heading_is_that_by_components():
 
 LAUNCH, ORBIT = {"r": 1.0, "v_r": 0.0, "v_t": 0.0, "m": 1.0}, {"r": 1.01065, "v_r": 0.0, "v_t": 1.00425}
 BOTH = ((polar(), {"T": (0, 2.009328897)}), (cartesian(), {"max_norm": 2.009328897}))
-
-
-@pytest.mark.slow
-def test_where_numbers_fail_on_one_way_another_is_taken(monkeypatch: pytest.MonkeyPatch):
-    def failing(*given: Any, **more: Any) -> None:
-        raise ZeroDivisionError("division by zero")
-
-    monkeypatch.setattr(by_throttle, "directed", failing)
-    asked = satsym.Instance.of(polar(), initial=LAUNCH, final=ORBIT, tf=0.6, control={"T": (0, 2)})
-    found = satsym.solve(asked).certificate
-    assert found is not None
-    assert {check.name for check in found.checks if not check.passed} <= {UNCOMPARED}  # competitors go that way, too
-    monkeypatch.setattr(by_throttle, "followed", lambda instance, limits: None)
-    stopped = satsym.solve(asked)
-    assert stopped.status is Status.NOT_CONVERGED
-    assert "no regularised solution was found: division by zero" in stopped.message
 
 
 def test_a_magnitude_is_not_negative():

@@ -18,7 +18,6 @@ from sympy import Expr, Integer, sin
 from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.switching import solving
 from satsym.solvers.switching.refusals import refuse
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
@@ -247,11 +246,11 @@ def test_what_is_not_convex_is_an_extremal_only_along_a_singular_arc(tmp_path: P
 def test_an_extremal_is_found_again_from_any_of_its_points(tmp_path: Path) -> None:
     # Bellman: what is left of an optimum is optimal.
     base = case(tmp_path, PENDULUM, (2.0, 1.0), (0.0, 0.0), FREE)
-    whole = solving.solve(base)
+    whole = solve.solve(base)
     assert whole.status is Status.CONVERGED, whole.message
     for fraction in (0.2, 0.5, 0.9):
         k = int(fraction * len(whole.times))
-        rest = solving.solve(replace(base, initial=tuple(whole.x[:, k].tolist())))
+        rest = solve.solve(replace(base, initial=tuple(whole.x[:, k].tolist())))
         assert rest.objective == pytest.approx(whole.objective - whole.times[k], abs=1e-9)
 
 

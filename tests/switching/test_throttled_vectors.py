@@ -23,13 +23,13 @@ from satsym.solvers import solve
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.comparison import UNCOMPARED
 from satsym.solvers.certificate.reintegration.flow import typical
+from satsym.solvers.certificate.searched import Searched
 from satsym.solvers.certificate.switching import comparison
 from satsym.solvers.certificate.switching.arc_lengths import quadratic
 from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.cold_start.arcs_of_norms import _steady
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -314,13 +314,6 @@ def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
     assert "for some time nothing decides the norm of a vector" in found.message
 
 
-@pytest.mark.parametrize(
-    ("shares", "lasting"), [([0.9, 0.31, 0.08, 0.02], False), ([0.5, 0.3, 0.28, 0.28], True), ([0.1], False)]
-)
-def test_norms_between_their_bounds_are_switches_where_they_get_fewer(shares: list[float], lasting: bool):
-    assert _steady(shares) is lasting
-
-
 @pytest.mark.study
 def test_a_transfer_that_may_begin_at_any_time_is_no_strict_minimum():
     """From circle to circle with time to spare and the place on the second one left open."""
@@ -425,7 +418,8 @@ def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
 ) -> None:
     found = shipped("transfer-fuel")
     cheapest = found.objective if arrived else math.nan
-    monkeypatch.setattr(comparison, "_drawn", lambda *_: Competitors(Kind.STARTS, 2, arrived, cheapest))
+    competitors = (Competitors(Kind.STARTS, 2, arrived, cheapest),)
+    monkeypatch.setattr(comparison, "searched", lambda *_: Searched(competitors, None))
     again = certify(found)
     assert again is not None
     assert [check.name for check in again.checks if not check.passed] == ([] if arrived else [UNCOMPARED])

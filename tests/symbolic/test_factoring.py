@@ -35,6 +35,8 @@ def test_a_product_that_was_multiplied_out_is_found_again_as_sympy_writes_it(fac
         sp.sqrt(x**2 + 2 * x * y + y**2 + 1) * (x**2 - 1),
         sp.Integer(0),
         sp.Rational(2, 3),
+        x * (x + 1) - x**2 - x,
+        (x * (y + 1) - x * y - x + 2) * y / 3,
         (x**2 + 1) / (x + sp.I),
     ],
 )
@@ -48,7 +50,7 @@ def test_the_factors_of_a_long_product_are_found():
     assert factored(sp.together(sp.expand(product))) == product
 
 
-def test_decimals_are_letters_in_what_sympy_factors(monkeypatch: pytest.MonkeyPatch):
+def test_decimals_are_letters_in_what_is_factored(monkeypatch: pytest.MonkeyPatch):
     share = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100
     asked, ask = [], sp.factor
     monkeypatch.setattr(sp, "factor", lambda e: asked.append(e) or ask(e))
@@ -61,4 +63,4 @@ def test_decimals_are_letters_in_what_sympy_factors(monkeypatch: pytest.MonkeyPa
         for found in (as_factors(expression), factored(expression)):
             assert found.as_coeff_Mul()[1] == factors
             assert sp.expand(found) == expression
-    assert not any(e.has(sp.Float) for e in asked)
+    assert not asked

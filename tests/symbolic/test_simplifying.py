@@ -10,9 +10,20 @@ import sympy as sp
 from sympy import cos, sin, sqrt
 
 from satsym.symbolic import FirstOrder, Problem, Variable
-from satsym.symbolic.algebra import PROVABLE, depends, shortened, simplified, simplify, terms_of, tidy, vanishes
+from satsym.symbolic.algebra import (
+    COMMON,
+    PROVABLE,
+    depends,
+    shortened,
+    simplified,
+    simplify,
+    terms_of,
+    terms_over,
+    tidy,
+    vanishes,
+)
 from satsym.symbolic.checks import identity, numeric, points
-from satsym.symbolic.decimals import DIGITS, as_decimals, as_fractions, lengthened
+from satsym.symbolic.decimals import CERTAIN, DIGITS, as_decimals, as_fractions, lengthened
 from satsym.symbolic.linear.matrices import right_half_plane
 from tests.support.distance import deviation
 
@@ -88,6 +99,28 @@ def test_terms_are_counted_before_they_are_multiplied_out() -> None:
     assert terms_of(x * sin((x + y) ** 3)) == 4
 
 
+def test_terms_over_a_common_denominator_are_counted_before_they_are_multiplied_out() -> None:
+    for expression in (x / (x + y) + y / (x + q), (x + y) / (1 + x) ** 3 - 2 / (1 + x), q / x + x / q, x + y):
+        assert terms_over(expression) >= len(sp.Add.make_args(sp.numer(sp.cancel(expression))))
+    assert terms_over(1 / (x + y) + 1 / (x + y) ** 2) == 3
+    assert terms_over(1 / sqrt(1 + x) ** 5 + sin(q)) == 1 + 4
+
+
+@pytest.mark.parametrize("function", [sp.Symbol("w"), sp.tanh(q), cos(y)])
+def test_long_fractions_are_cancelled_and_sympy_is_not_asked(
+    function: sp.Expr, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sp, "simplify", lambda expression: pytest.fail(f"asked for {expression}"))
+    below = {k: k * x + function**2 + y + 1 for k in range(1, 5)}
+    long = sp.Add(*(k * y * (x + k * function**2) / of for k, of in below.items()))
+    same = sp.Add(*(k * y - k * y * (of - x - k * function**2) / of for k, of in below.items()))
+    assert terms_over(long) > COMMON
+    assert shortened(long).count_ops() <= long.count_ops()
+    assert shortened(long - same) == 0
+    assert vanishes(long - same)
+    assert not vanishes(long - same * (1 + x / 10**9))
+
+
 @pytest.mark.slow
 def test_what_would_grow_when_multiplied_out_is_parted_by_what_it_is_linear_in_and_no_more() -> None:
     lam = sp.symbols("lambda_1:3", real=True)
@@ -138,6 +171,15 @@ def test_decimals_are_fractions_and_back() -> None:
         assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "decimals"))
 
 
+def test_a_decimal_that_was_divided_is_the_fraction_that_it_is() -> None:
+    a, b = (sp.Float(text, DIGITS) for text in ("0.3", "8.494359976797647"))
+    exact = sp.Rational("8.494359976797647")
+    assert as_fractions(a / 6500 * x) == sp.Rational(3, 65000) * x
+    assert as_fractions(b**3 / 6500**4 * sp.Rational(89, 7)) == exact**3 / 6500**4 * sp.Rational(89, 7)
+    assert as_fractions(sp.Float("1.5e-250", DIGITS)) == sp.Rational("1.5e-250")
+    assert abs(as_fractions(sqrt(a)) ** 2 / sp.Rational(3, 10) - 1) < sp.Rational(1, 10**CERTAIN)
+
+
 @pytest.mark.parametrize("make", [tidy, simplified, shortened])
 def test_an_exponential_with_a_decimal_in_it_is_no_high_power_of_another(make: Callable[[sp.Expr], sp.Expr]) -> None:
     """With fractions for decimals sympy takes exp(2.34121812381485 q) for the power 46824362476297 of a root of exp."""
@@ -159,6 +201,19 @@ def test_one_hyperbolic_function_is_a_letter_to_sympy() -> None:
     assert vanishes(sp.cosh(q) - (sp.exp(q) + sp.exp(-q)) / 2)
 
 
+def test_a_cosine_of_what_no_other_has_is_a_letter_to_sympy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of products with others it would make sums, and of these products again."""
+    z, w = sp.symbols("z w", real=True)
+    asked, ask = [], sp.simplify
+    monkeypatch.setattr(sp, "simplify", lambda e: asked.append(e) or ask(e))
+    quotient = z**2 / 6 - 2 * z / 3 + sp.Rational(5, 3)
+    expression = x * sp.exp(sin(q)) * sin(w / 3) + (5 * cos(y + z / quotient - 2 / quotient) + q**2) * cos(q)
+    found = shortened(expression)
+    assert not asked[-1].atoms(sp.Symbol) & {w, z}
+    assert vanishes(found - expression)
+    assert shortened(sin(q) * cos(z) + cos(q) * sin(z)) == sin(q + z)
+
+
 def test_sympy_simplifies_letters_in_place_of_decimals(monkeypatch: pytest.MonkeyPatch) -> None:
     third, other = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100, sp.Float("5.205", DIGITS)
     expression = third * x / (1 + sin(q) ** 2) + third / 2 * x * cos(q) ** 2 + third / 2 * x * sin(q) ** 2
@@ -171,6 +226,12 @@ def test_sympy_simplifies_letters_in_place_of_decimals(monkeypatch: pytest.Monke
     sides = numeric([found, expression - other * y])
     with mp.workdps(30):
         assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "letters"))
+
+
+def test_matrices_with_decimals_are_simplified_entry_by_entry() -> None:
+    third = sp.Float("0.3", DIGITS)
+    found = simplify(sp.Matrix([[third * x * cos(q) ** 2 + third * x * sin(q) ** 2, x - x], [y, third * x / x]]))
+    assert found == sp.Matrix([[third * x, 0], [y, third]])
 
 
 @pytest.mark.parametrize("difference", ["0.3", "0.30000000000000001"])

@@ -5,17 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.reintegration.flow import products
-
-if TYPE_CHECKING:
-    from satsym.solvers.collocation.curve import Curve
-    from satsym.solvers.collocation.problem import TwoPoint
 
 HIDDEN = 1e-14
 """Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
@@ -35,18 +30,6 @@ LARGEST = 1e300
 
 
 @dataclass(frozen=True, eq=False)
-class Competitor:
-    """A competitor that was found."""
-
-    problem: TwoPoint
-    """Of which it is an extremal."""
-    curve: Curve | None
-    """Its states and costates, scaled; ``None`` where it ends at once, and has none."""
-    cost: float
-    """The cost J."""
-
-
-@dataclass(frozen=True, eq=False)
 class Compared:
     """What competitors of one kind came to."""
 
@@ -54,12 +37,8 @@ class Compared:
     """As the certificate has it."""
     margin: float
     """Excess of the cheapest, relative to the cost; negative where it is cheaper, infinite without any."""
-    cheapest: Competitor | None
-    """That one."""
     interrupted: bool
     """Whether time was up before all were tried."""
-    several: bool = False
-    """Whether one led to a minimum that clearly costs more: then there may be others."""
     simulated: bool = False
     """Whether motions under drawn controls were compared, none of which was cheaper unless it is among the others."""
 
@@ -75,35 +54,33 @@ class Compared:
         least = min(self, other, key=lambda one: one.margin)
         count, solved = (getattr(self.summary, name) + getattr(other.summary, name) for name in ("tried", "solved"))
         summary = Competitors(self.summary.kind, count, solved, least.summary.cheapest)
-        interrupted, several = self.interrupted or other.interrupted, self.several or other.several
-        return Compared(summary, least.margin, least.cheapest, interrupted, several)
+        return Compared(summary, least.margin, self.interrupted or other.interrupted)
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """All kinds that a problem allows."""
 
-    kinds: tuple[Compared, ...]
+    kinds: tuple[Compared, ...] = ()
     """Those that were compared."""
-    not_checked: tuple[Kind, ...]
+    not_checked: tuple[Kind, ...] = ()
     """Those that nobody tried, of which nothing was solved, or for which time was up."""
+    better: Solution | None = None
+    """A cheaper extremal that is exact."""
+    proved: tuple[Check, ...] = ()
+    """Why there are no others, where that is known."""
 
     def joined(self, other: Comparison) -> Comparison:
         """With what another has compared."""
-        return Comparison(self.kinds + other.kinds, self.not_checked + other.not_checked)
+        kinds, missing = self.kinds + other.kinds, self.not_checked + other.not_checked
+        return Comparison(kinds, missing, self.better or other.better, self.proved + other.proved)
 
     @property
     def checks(self) -> list[Check]:
         """Those of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
         none = not any(kind.summary.solved or kind.interrupted or kind.simulated for kind in self.kinds)
-        found = [check for kind in self.kinds for check in kind.checks]
+        found = [*self.proved, *(check for kind in self.kinds for check in kind.checks)]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
-
-    @property
-    def better(self) -> Competitor | None:
-        """The cheapest of all that are cheaper than the solution, and have states and costates to start from."""
-        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None and c.cheapest.curve]
-        return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
 
 
 def going_round(instance: Instance) -> list[Kind]:
@@ -117,7 +94,7 @@ def summed(solution: Solution, kind: Kind, count: int, costs: Sequence[float], i
     """What so many attempts at a kind came to, of which some have costs."""
     cheapest = min(costs, default=float("nan"))
     excess = margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
-    return Compared(Competitors(kind, count, len(costs), cheapest), excess, None, interrupted)
+    return Compared(Competitors(kind, count, len(costs), cheapest), excess, interrupted)
 
 
 def hidden(solution: Solution) -> float:

@@ -52,10 +52,10 @@ def _places(solution: Solution) -> dict[str, Any]:
         unit = np.where(unit > FAINT * unit.max(initial=0.0), unit, 0.0)
         return values + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(unit), columns))
 
-    def near(table: Array) -> Array:
-        return aside(table[:, chosen], np.abs(table).max(axis=-1, keepdims=True))
+    def near(table: Array, unit: Array | None = None) -> Array:
+        return aside(table[:, chosen], np.abs(table).max(axis=-1, keepdims=True) if unit is None else unit)
 
-    x, u, lam = near(solution.x), near(solution.u), near(solution.lam)
+    x, u, lam = near(solution.x), near(solution.u, _control_sizes(solution)), near(solution.lam)
     lam[:, 2 * NODES :] *= -1.0
     t = near(solution.times[None, :])[0]
     given = np.array(instance.parameters).reshape(-1, 1)
@@ -64,6 +64,18 @@ def _places(solution: Solution) -> dict[str, Any]:
     found = {"t": t, "x": x, "u": u, "lam": lam, "p": p, "final": final}
     found["nu"] = tuple(rng.uniform(0.5, 1.5, (len(spec.multipliers), columns)))
     return found | {"bounds": _bounds(instance, found)}
+
+
+def _control_sizes(solution: Solution) -> Array:
+    """The largest magnitude of each control, shape (m, 1); of a vector that of its largest component.
+
+    Where a component is next to nothing beside the others, second derivatives of a norm keep few of its digits.
+    """
+    size, instance = np.abs(solution.u).max(axis=-1, keepdims=True), solution.instance
+    for places, part in instance.control_set.parts if instance.model.spec.control_parts else ():
+        if part.kind in ("ball", "annulus"):
+            size[list(places)] = size[list(places)].max()
+    return size
 
 
 def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:

@@ -17,7 +17,7 @@ from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
 from satsym.solvers.certificate.accessory import accessory
-from satsym.solvers.certificate.drawn_controls import drawn_below, natural
+from satsym.solvers.certificate.drawn import drawn_below, natural
 from satsym.solvers.certificate.simulations import Simulations, simulations_of, stated_control
 
 DOUBLINGS = 12

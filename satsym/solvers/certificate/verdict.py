@@ -9,7 +9,7 @@ from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions, jumps
-from satsym.solvers.certificate.comparison import Comparison, Competitor
+from satsym.solvers.certificate.comparison import Comparison
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
@@ -48,7 +48,7 @@ def certify(solution: Solution, compared: bool = True) -> Certificate | None:
 
 def examined(
     solution: Solution, deadline: float, seed: int = 0, *, compared: bool = True
-) -> tuple[Certificate | None, Competitor | None]:
+) -> tuple[Certificate | None, Solution | None]:
     """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
 
     Parameters
@@ -69,7 +69,7 @@ def examined(
     return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
 
 
-def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Competitor | None]:
+def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Solution | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
     if solution.interval is not None:
         from satsym.solvers.certificate.switching import chattering
@@ -80,7 +80,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution, deadline, compared, seed), None
+            return switching.certify(solution, deadline, compared, seed)
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 
@@ -98,15 +98,13 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         field = conjugate(solution, along)
         second: list[Check] = []
         legendre = conditions.legendre_clebsch(solution)
-        close, others = None, Comparison((), ())
+        close, others = None, Comparison()
         if all(c.passed for c in first):
             close = neighbours(solution)
             second = _sufficient(solution, legendre, field, close)
-            if compared and competitors.none_conceivable(solution):
-                second.append(Check("no cheaper competitor", 0.0, 0.0))
-            elif compared:
+            if compared:
                 others = competitors.compared(solution, deadline, seed)
-                if solution.instance.model.spec.path_constraints:
+                if solution.instance.model.spec.path_constraints and not others.proved:
                     from satsym.solvers.certificate.constrained import comparison
 
                     others = others.joined(comparison.compared(solution, deadline, seed))

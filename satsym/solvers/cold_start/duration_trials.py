@@ -136,10 +136,6 @@ class Trials:
         start = replace(near.start, found=found, steps=self.steps)
         return Minimum(found.cost * problem.scale.cost, problem, start)
 
-    def freed_from(self, problem: TwoPoint, start: Start) -> Minimum | None:
-        """The same from the extremal of a given duration, by whatever way it was found."""
-        return self.freed(self._tried(problem, start))
-
     def _settled(self, problem: TwoPoint, curve: Curve, hard: bool) -> Attempt | None:
         """The minimum of a problem near an extremal of another one, on the mesh of a curve."""
         system = System(problem, curve.mesh, curve.order)

@@ -20,7 +20,6 @@ class Origin(str, Enum):
     DURATIONS = "path of durations"
     ENDS = "path of ends"
     NO_MINIMUM = "straight line, but no minimum was found"
-    DIRECT = "direct method"
     LAST_ANSWER = "last answer"
     COLD_START = "cold start"
 

@@ -17,6 +17,10 @@ POINTS = 9
 NO_SLOPE = 1e-40
 """Of costates that are none, see :func:`satsym.solvers.control.regularised.sloping`."""
 
+BESIDE, ROUNDED = 0.1, 1e-12
+"""How far beside the straight line slopes are looked at once more, as a share of the sizes of states, and the share of
+a slope there below which one on the line is a zero that was rounded, as the sine of half a turn is."""
+
 NEGLIGIBLE = 1e-3
 """A state this much smaller along the way than what it does to the others is scaled by the latter."""
 
@@ -70,13 +74,16 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
         control_set = control_set.regularised(full_length_smoothing(instance), 1.0)
     free = control_set.without_bounds.arguments
     none = sloping(instance, np.zeros_like(path))
-    slopes = np.empty((2 * n, 2 * n, POINTS))
+    size = np.abs(path).max(axis=1)
+    beside = path + BESIDE * np.where(size > 0.0, size, 1.0)[:, None]
+    slopes, aside = np.empty((2 * n, 2 * n, POINTS)), np.empty((2 * n, 2 * n, POINTS))
     with np.errstate(all="ignore"):
-        model.canonical_jacobian_batch(times, path, none, instance.parameters, free, out=slopes)
-    slopes = np.abs(slopes).max(axis=2)
+        for at, found in ((path, slopes), (beside, aside)):
+            model.canonical_jacobian_batch(times, at, none, instance.parameters, free, out=found)
+        slopes, aside = np.abs(slopes).max(axis=2), np.abs(aside).max(axis=2)
+        slopes[:n, :n][slopes[:n, :n] < ROUNDED * aside[:n, :n]] = 0.0
     # some laws say nothing of costates that vanish, and there some that Newton finds jump
     slopes[~((slopes >= NO_SLOPE) & np.isfinite(slopes))] = 0.0
-    size = np.abs(path).max(axis=1)
     table = slopes[:n, :n].tolist()
     for j in range(n):
         sizes = size.tolist()

@@ -51,20 +51,6 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
     return np.asarray((ahead + slopes()) / 2.0)
 
 
-def gain(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
-    """How much H falls with the length of a direction, shape (N,): its slope, less what its norm adds to H."""
-    model, p = instance.model, instance.parameters
-    against = slope(instance, places, t, x, lam)
-    size = np.linalg.norm(against, axis=0)
-    if places[0] in instance.control_set.angles:
-        return np.asarray(size)
-    u = np.zeros((len(model.spec.controls), len(t)))
-    u[list(places)] = -against / np.maximum(size, 1e-300)
-    with np.errstate(all="ignore"):
-        along = np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)[list(places)]
-    return np.asarray(-(along * u[list(places)]).sum(axis=0))
-
-
 def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.bool_]:
     """Which controls are directions that nothing decides at an instant, shape (m, N)."""
     found = np.zeros((len(instance.model.spec.controls), len(t)), dtype=bool)

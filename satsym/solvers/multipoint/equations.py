@@ -348,7 +348,7 @@ def cost(problem: Problem, v: Array) -> float:
     if instance.model.spec.has_terminal_cost:
         last = problem.values(v, len(problem.laws) - 1)[0][-1]
         total += float(instance.model.terminal_cost(float(times[-1]), tuple(last[:n].tolist()), p))
-    return total
+    return float(total)
 
 
 def begun(problem: Problem, times: Array, z: Array, edges: Array, multipliers: Array, free: Array) -> Array:

@@ -13,6 +13,9 @@ from satsym.instance import Instance
 
 Parameters: TypeAlias = "tuple[Any, ...]"
 
+Vanishing: TypeAlias = "Callable[[Array, Array, Parameters], Array]"
+"""(t, z, p) -> values (M,), real or complex."""
+
 
 @dataclass(frozen=True)
 class Law:
@@ -43,13 +46,13 @@ class Junction:
     Attributes
     ----------
     vanishing
-        (t, z, p) -> values (M,).
-    control
-        Place of the control that switches.
+        What is zero there.
+    controls
+        Places of the controls that switch, or that meet or leave a bound.
     """
 
-    vanishing: Callable[[Array, Array, Parameters], Array]
-    control: int = 0
+    vanishing: Vanishing
+    controls: tuple[int, ...] = ()
 
 
 def derived(instance: Instance, bounds: tuple[float, ...], name: str = "") -> Law:
@@ -64,18 +67,3 @@ def derived(instance: Instance, bounds: tuple[float, ...], name: str = "") -> La
         return np.asarray(np.broadcast_to(found, (len(model.spec.controls), len(t))))
 
     return Law(rates, control, bounds, name)
-
-
-def level(instance: Instance, u: tuple[float, ...], name: str = "") -> Law:
-    """The law of controls that are constant."""
-    model, n, column = instance.model, len(instance.initial), np.array(u)[:, None]
-
-    def control(t: Array, z: Array, p: Parameters) -> Array:
-        return np.asarray(np.broadcast_to(column, (len(column), len(t))))
-
-    def rates(t: Array, z: Array, p: Parameters) -> Array:
-        x, lam, held = z[:n], z[n:], control(t, z, p)
-        parts = model.dynamics_batch(t, x, held, p), model.costate_rate_batch(t, x, held, lam, p)
-        return np.concatenate([np.broadcast_to(part, x.shape) for part in parts])
-
-    return Law(rates, control, instance.control_set.saturated(u).arguments, name)

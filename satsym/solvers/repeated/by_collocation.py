@@ -22,6 +22,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
+from satsym.solvers.search.solving import guessed
 
 
 class ByCollocation:
@@ -69,7 +70,7 @@ class ByCollocation:
         def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
             return two_point.explained(self._within(problem, start, limits), limits)
 
-        return two_point.from_cold_start(case, limits, True, accurate)
+        return two_point.from_cold_start(guessed(case, limits), limits, True, accurate)
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
         """Nothing is missing."""

@@ -12,6 +12,7 @@ from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.iteration import Limits
+from satsym.solvers.search.solving import guessed
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import linearised
 from satsym.solvers.shooting.quick import quick_newton
@@ -52,7 +53,7 @@ class ByShooting:
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, which also decides on arcs and steps."""
-        found = without_guess(case, limits, True)
+        found = without_guess(guessed(case, limits), limits, True)
         if found.status.answered and isinstance(found.path, Arcs):
             self._good, self._steps = found.path, max(found.path.steps // 2, 1)
         return found

@@ -17,7 +17,7 @@ from satsym.status import Status
 
 
 def answered(instance: Instance, extremal: Extremal) -> Solution:
-    """The solution of an instance that an extremal is; times hold each junction twice, before and after.
+    """The solution of an instance that an extremal is; times hold each junction twice where the control jumps.
 
     Parameters
     ----------
@@ -26,16 +26,21 @@ def answered(instance: Instance, extremal: Extremal) -> Solution:
     """
     problem = extremal.problem
     given = _with_values(instance, extremal)
+    names = "".join(law.name for law in problem.laws)
+    structure = f"structure {names}, " if len(names) > 1 else ""
     times, z, u = _grid(extremal, np.linspace(given.t0, float(extremal.times[-1]), instance.solver.steps + 1))
     n, m = problem.n, len(instance.model.spec.controls)
-    if instance.model.spec.directional and len(problem.laws) == 1:
+    if instance.model.spec.directional and not structure:
         u = continued(given, times, z[:n], z[n:], u)
-    switches = [(float(t), one.control) for t, one in zip(extremal.times[1:-1], problem.junctions, strict=True)]
-    structure = f"structure {''.join(law.name for law in problem.laws)}, " if len(problem.laws) > 1 else ""
+    switches = [
+        (float(t), place)
+        for t, one in zip(extremal.times[1:-1], problem.junctions, strict=True)
+        for place in one.controls
+    ]
     status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
     return Solution(
         instance=given,
-        method="bang-bang" if instance.model.spec.throttled else "collocation",
+        method="bang-bang" if structure else "collocation",
         status=status,
         message=f"{structure}estimated error {extremal.step:.0e} on {sum(problem.intervals)} intervals, by the search",
         objective=extremal.cost,
@@ -62,14 +67,15 @@ def _with_values(instance: Instance, extremal: Extremal) -> Instance:
 
 
 def _grid(extremal: Extremal, even: Array) -> tuple[Array, Array, Array]:
-    """Times, values and controls at even times and at both sides of each junction."""
+    """Times, values and controls at even times and at junctions, at both sides where the law changes."""
     problem, v, edges = extremal.problem, extremal.unknown, extremal.times
     p, times, values, controls = problem.given(v), list[Array](), list[Array](), list[Array]()
     near = 1e-9 * (edges[-1] - edges[0])
     for arc, law in enumerate(problem.laws):
         begin, end = edges[arc], edges[arc + 1]
         inside = even[(even > begin + near) & (even < end - near)]
-        t = np.concatenate([[begin], inside, [end]])
+        again = arc > 0 and law is problem.laws[arc - 1]
+        t = np.concatenate([[] if again else [begin], inside, [end]])
         z = between(problem, v, arc, np.clip((t - begin) / (end - begin), 0.0, 1.0))
         z[:, -1] = problem.values(v, arc)[0][-1]
         times.append(t)

@@ -75,11 +75,19 @@ class Controls:
     norms: tuple[Norm, ...] = ()
     angles: dict[int, tuple[int, int]] = field(default_factory=dict)
     """Place of an angle -> those of its cosine and its sine."""
+    affine: bool = False
+    """Whether rates are linear in all controls, apart from magnitudes."""
 
     @property
     def count(self) -> int:
         """How many variables there are."""
         return len(self.lower)
+
+    @property
+    def linear(self) -> set[int]:
+        """Places of variables in which rates are linear: they have no second derivative by two of them."""
+        lifted = {place for lift in self.lifts for place in (*lift.places, *lift.variables)}
+        return set(range(self.count)) if self.affine else lifted
 
     def nodes(self, v: Array) -> list[tuple[Array, Array]]:
         """Controls (m, M) at which rates are asked for, and the weights (M,) with which they are added.
@@ -144,7 +152,8 @@ class _Made:
 
     def controls(self, m: int) -> Controls:
         lower, upper = np.array(self.lower), np.array(self.upper)
-        return Controls(m, lower, upper, tuple(self.lifts), tuple(self.norms), self.angles)
+        affine = self.instance.model.spec.switching
+        return Controls(m, lower, upper, tuple(self.lifts), tuple(self.norms), self.angles, affine)
 
     def new(self, low: float, high: float) -> int:
         self.lower.append(low)

@@ -7,8 +7,9 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.failures import tried
 from satsym.solvers.search.controls import Controls
-from satsym.solvers.search.sizes import flow, resting, wanted
+from satsym.solvers.search.sizes import flows, resting, wanted
 
 STEPS = 400
 """In which each constant control is followed."""
@@ -27,15 +28,18 @@ def first_duration(instance: Instance, controls: Controls) -> float:
         return instance.tf - instance.t0
     if instance.tf_guess is not None:
         return instance.tf_guess - instance.t0
-    return _moved(instance, controls) or time_scale(instance)
+    return _moved(instance, controls) or _time_scale(instance)
+
+
+def _time_scale(instance: Instance) -> float:
+    """The time scale of the motion; one where its slopes have no numbers."""
+    return tried(lambda: time_scale(instance)) or 1.0
 
 
 def _moved(instance: Instance, controls: Controls) -> float | None:
     start = np.array(instance.initial)
     goal = np.abs(wanted(instance, instance.t0) - start)
-    first = np.full(len(start), np.inf)
-    for v in _constant(controls):
-        first = np.minimum(first, _reached(instance, controls, v, start, goal))
+    first = _reached(instance, controls, np.array(_constant(controls)).T, start, goal)
     found = first[(goal > 0.0) & np.isfinite(first)]
     return float(found.max()) if len(found) else None
 
@@ -57,28 +61,32 @@ def _constant(controls: Controls) -> list[Array]:
 
 
 def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goal: Array) -> Array:
-    """When each state has moved far enough; infinite where that is never seen."""
+    """When each state has moved far enough under any of many constant controls (k, M); infinite where none is seen."""
     size = np.maximum(np.abs(start), np.nan_to_num(goal))
     size[size == 0.0] = np.inf
     positive = np.array([one.positive for one in instance.model.spec.states])
-    first, x, t = np.full(len(start), np.inf), start, instance.t0
-    speed = np.abs(flow(instance, controls, t, x, v)[:-1]) / size
-    quick = float(np.nan_to_num(speed).max())
-    h, way = FIRST * (1.0 / quick if quick > 0.0 else time_scale(instance)), np.where(goal > 0.0, goal, np.inf)
+    way = np.where(goal > 0.0, goal, np.inf)[:, None]
+    first, count = np.full(len(start), np.inf), v.shape[1]
+    x, t = np.repeat(start[:, None], count, 1), np.full(count, instance.t0)
+    quick = np.nan_to_num(np.abs(flows(instance, controls, t, x, v)[:-1]) / size[:, None]).max(axis=0)
+    slowest = 1.0 if (quick > 0.0).all() else _time_scale(instance)
+    h = FIRST * np.where(quick > 0.0, 1.0 / np.where(quick > 0.0, quick, 1.0), slowest)
     for _ in range(STEPS):
-        a = flow(instance, controls, t, x, v)[:-1]
-        b = flow(instance, controls, t + h / 2, x + h / 2 * a, v)[:-1]
-        c = flow(instance, controls, t + h / 2, x + h / 2 * b, v)[:-1]
-        d = flow(instance, controls, t + h, x + h * c, v)[:-1]
+        a = flows(instance, controls, t, x, v)[:-1]
+        b = flows(instance, controls, t + h / 2, x + h / 2 * a, v)[:-1]
+        c = flows(instance, controls, t + h / 2, x + h / 2 * b, v)[:-1]
+        d = flows(instance, controls, t + h, x + h * c, v)[:-1]
         after = x + h / 6 * (a + 2 * (b + c) + d)
-        if not np.isfinite(after).all() or (after[positive] <= 0.0).any():
+        left = ~np.isfinite(after).all(axis=0) | (after[positive] <= 0.0).any(axis=0)
+        far = (np.abs(after - x) > LONGEST * way).any(axis=0)
+        error = np.abs(after - x - h * b).max(axis=0) / np.maximum(np.abs(after).max(axis=0), 1e-300)
+        x, t = np.where(far, x, after), np.where(far, t, t + h)
+        arrived = (np.abs(x - start[:, None]) >= FAR * goal[:, None]) & (goal[:, None] > 0.0) & ~far & ~left
+        first = np.minimum(first, np.where(arrived, t - instance.t0, np.inf).min(axis=1))
+        grown = np.where(error < SMALLEST, 1.3, np.where(error > LARGEST, 0.7, 1.0))
+        h = h * np.where(far, SHORTER, grown)
+        kept = ~left
+        x, t, h, v = x[:, kept], t[kept], h[kept], v[:, kept]
+        if not len(t):
             break
-        if (np.abs(after - x) > LONGEST * way).any():
-            h *= SHORTER
-            continue
-        error = float(np.abs(after - x - h * b).max() / max(np.abs(after).max(), 1e-300))
-        t, x = t + h, after
-        arrived = (np.abs(x - start) >= FAR * goal) & (goal > 0.0)
-        first = np.where(arrived, np.minimum(first, t - instance.t0), first)
-        h *= 1.3 if error < SMALLEST else 0.7 if error > LARGEST else 1.0
     return first

@@ -3,49 +3,239 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, Meter
+from satsym.solvers.search import order
 from satsym.solvers.search.motion import Motion
+from satsym.solvers.search.reading import read_norm
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside
-from satsym.solvers.switching.structure import Guess
-from satsym.solvers.switching.throttled import signs
+from satsym.solvers.switching.cold_start.recognition import LONG, Sample, guess
+from satsym.solvers.switching.magnitudes import moving
+from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess, Structure
+from satsym.solvers.switching.throttled import signs, switched
+
+WORK = 4_000_000
+"""Unknowns times iterations that all starts together may take."""
+
+POINTS, NEAR, FAINT = 401, 1e-3, 1e-9
+"""Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
+of ends that it meets, relative to sizes."""
+
+AT_BOUND = 0.02
+"""Share of the width of its range by which a programme's control is off a bound at which it is."""
+
+CLOSE = 0.02
+"""Share of the time between the first and the last switch by which switching times of guesses differ that are one."""
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
+    """The extremal of exact arcs that a motion is near, as an answer; ``None`` where there is none."""
+    began = time.perf_counter()
+    found = arcs(instance, at, limits)
+    return None if found is None else answered(instance, found, (), began)
+
+
+def arcs(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
     """The extremal of exact arcs that a motion is near; ``None`` where there is none.
 
     Controls are taken for bang-bang first; where that leads to no extremal, and they are off their bounds for long,
     for singular there.
     """
-    began = time.perf_counter()
-    with np.errstate(all="ignore"):
-        found = _first(instance, at, limits)
-    return None if found is None else answered(instance, replace(found, origin=Origin.SEARCH), (), began)
-
-
-def _first(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
     known: list[Guess] = []
-    for one in _guesses(instance, at):
-        if all(one.structure != other.structure for other in known):
-            found = attempt(instance, one, limits)
-            if found is not None:
-                return found
-            known.append(one)
+    with np.errstate(all="ignore"):
+        for one in _guesses(instance, at):
+            if all(one.structure != other.structure or _apart(one, other) for other in known):
+                found = attempt(instance, one, limits)
+                if found is not None:
+                    return replace(found, origin=Origin.SEARCH)
+                known.append(one)
     return None
 
 
-def _guesses(instance: Instance, at: Motion) -> list[Guess]:
+def searched(instance: Instance, limits: Limits) -> Exact | None:
+    """The extremal of exact arcs to which the first start leads that leads to one."""
+    return order.searched(instance, replace(limits, work=WORK, meter=Meter()), partial(arcs, instance))
+
+
+def at_rest(instance: Instance, limits: Limits) -> Solution | None:
+    """No norms at all for the whole of a given time, where that arrives and is an extremal."""
+    began = time.perf_counter()
+    with np.errstate(all="ignore"):
+        found = _at_rest(instance, limits)
+    return None if found is None else answered(instance, replace(found, origin=Origin.REST), (), began)
+
+
+def _at_rest(instance: Instance, limits: Limits) -> Exact | None:
+    least = instance.control_set.switching[0]
+    if instance.tf is None or any(least):
+        return None
+    n, p, model = len(instance.initial), instance.parameters, instance.model
+    times, none = np.linspace(instance.t0, instance.tf, POINTS), np.zeros((len(model.spec.controls), POINTS))
+    x, middle, _ = model.forward(times, instance.initial, none, none[:, 1:], p)
+    fixed = [(i, instance.final[name]) for i, name in enumerate(model.spec.state_names) if name in instance.final]
+    size = np.abs(x).max(axis=1)
+    size = np.where(size > NEAR * size.max(), size, size.max())
+    if any(isinstance(end, float) and not abs(x[i, -1] - end) <= NEAR * size[i] for i, end in fixed):
+        return None
+    given = np.array([name in instance.final for name in model.spec.state_names])
+    slope = np.array(model.terminal_gradient(instance.tf, tuple(x[:, -1].tolist()), p))
+    end = np.where(given, FAINT / size, slope)  # any that are small enough do, but where all vanish nothing has a slope
+    lam, _ = model.backward(times, tuple(end.tolist()), x, middle, none, none[:, 1:], p)
+    costates = lam[:, 0] if np.isfinite(lam).all() else np.zeros(n)
+    return attempt(instance, Guess(Structure(((LOWER,),) * len(least)), np.zeros(0), costates, instance.tf), limits)
+
+
+def _apart(one: Guess, other: Guess) -> bool:
+    """Whether two guesses of one structure have other switching times."""
+    lasting = float(np.ptp(one.times)) if len(one.times) else 0.0
+    return bool(np.abs(one.times - other.times).max(initial=0.0) > CLOSE * lasting)
+
+
+def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
     n, z = len(at.x), np.concatenate([at.x, at.lam])
     u = np.concatenate([at.u[:, :1], at.u], axis=1)
     seen = Sample(at.times, z, u, *signs(instance, at.times, z[:n], z[n:]))
     plain = guess(instance, seen)
-    if instance.model.spec.throttled:
-        return [plain]
-    return [plain, guess(instance, seen, inside(instance, seen))]
+    if not instance.model.spec.throttled:
+        yield plain
+        off, seen = _off_bounds(instance, seen)
+        if off.any():
+            yield guess(instance, seen, off)
+        return
+    if (read := read_norm(at)) is not None:
+        levels, edges = read
+        structure = Structure((tuple(UPPER if label else LOWER for label in levels),))
+        yield replace(plain, structure=structure, times=edges[1:-1])
+    if plain.structure.levels == ((UPPER,),):
+        yield _paused(plain, seen)
+    filled = _filled(instance, seen)
+    spread = guess(instance, replace(seen, sigma=seen.sigma - _threshold(seen.times, seen.sigma, filled)))
+    for one in (plain, spread):
+        yield one
+        short = replace(one, times=_concentrated(one, seen.times, filled))
+        yield short
+        at_once = _from_the_start(instance, short)
+        if at_once is not None:
+            yield at_once
+
+
+def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sample]:
+    """Where controls are at neither bound for long, shape (m, N), and a sample whose signs are those of the others.
+
+    A programme's control may jump between its bounds from point to point where it is singular. So it counts as off its
+    bounds between any two stretches in which it is at one for long.
+    """
+    low, high = instance.control_set.box
+    edge, lasting = AT_BOUND * (high - low), float(np.ptp(seen.times))
+    at = np.where(seen.u > high - edge, 1, np.where(seen.u < low + edge, -1, 0))
+    plain = ~np.array(moving(instance))[:, None] & (seen.weight == 0.0)
+    off, sigma = np.zeros(at.shape, bool), seen.sigma.copy()
+    for row, labels in enumerate(at):
+        for first, last, label in _stretches(labels):
+            if label and seen.times[last] - seen.times[first] >= LONG * lasting:
+                sigma[row, first : last + 1] = -label * np.maximum(np.abs(sigma[row, first : last + 1]), 1e-300)
+            else:
+                off[row, first : last + 1] = True
+        off[row] &= plain[row]
+        for first, last, label in _stretches(off[row]):
+            if label and seen.times[last] - seen.times[first] < LONG * lasting:
+                off[row, first : last + 1] = False
+    return off, replace(seen, sigma=sigma)
+
+
+def _stretches(labels: NDArray[Any]) -> list[tuple[int, int, Any]]:
+    """First and last places of equal labels, and these."""
+    edges = np.flatnonzero(np.diff(np.asarray(labels, int))) + 1
+    return [(int(a), int(b) - 1, labels[a]) for a, b in pairwise([0, *edges.tolist(), len(labels)])]
+
+
+def _filled(instance: Instance, seen: Sample) -> Array:
+    """How far what switches is from its lower to its upper bound, shape (r, N)."""
+    low, high = (np.array(bounds)[:, None] for bounds in instance.control_set.switching)
+    return np.clip((switched(instance, seen.u) - low) / np.where(high > low, high - low, 1.0), 0.0, 1.0)
+
+
+def _paused(first: Guess, seen: Sample) -> Guess:
+    """A guess that never switches with a short arc at the lower bound where the switching function is largest.
+
+    Where there is hardly any time to spare, the controls of a programme do not show such an arc.
+    """
+    middle, half = float(seen.times[int(np.argmax(seen.sigma[0]))]), CLOSE / 2.0 * float(np.ptp(seen.times))
+    middle = min(max(middle, seen.times[0] + 2.0 * half), seen.times[-1] - 2.0 * half)
+    structure = first.structure.with_levels(0, (UPPER, LOWER, UPPER))
+    return replace(first, structure=structure, times=np.array([middle - half, middle + half]))
+
+
+def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
+    """What switching functions are below for as long as upper bounds would last that do the same, shape (r, 1).
+
+    It is zero where controls are at their bounds. Where other controls cost nearly the same, these are spread over a
+    time in which the signs of switching functions say little, but not where these functions are least.
+    """
+    widths = np.gradient(times)
+    found = []
+    for own, full in zip(sigma, filled, strict=True):
+        by = np.argsort(own)
+        lasting = np.cumsum(widths[by])
+        place = min(int(np.searchsorted(lasting, float(full @ widths))), len(by) - 1)
+        found.append(float(own[by][place]))
+    return np.array(found)[:, None]
+
+
+def _concentrated(first: Guess, times: Array, filled: Array) -> Array:
+    """Switching times of a guess whose arcs at upper bounds do what controls do round them, which may be spread."""
+    rows = zip(first.structure.levels, first.structure.by_control(first.times), filled, strict=True)
+    return np.concatenate([_lasting(times, *row) for row in rows])
+
+
+def _lasting(times: Array, levels: tuple[int, ...], switches: Array, filled: Array) -> Array:
+    """Switching times of one control, whose level is so far between its bounds."""
+    edges = np.concatenate([times[:1], switches, times[-1:]])
+    found = switches.copy()
+    for arc, level in enumerate(levels):
+        if level != UPPER or len(levels) == 1:
+            continue
+        # from the middle of the arc before it to that of the one after it
+        begin = times[0] if arc == 0 else (edges[arc - 1] + edges[arc]) / 2.0
+        end = times[-1] if arc == len(levels) - 1 else (edges[arc + 1] + edges[arc + 2]) / 2.0
+        own = (times >= begin) & (times <= end)
+        lasting = float(np.trapezoid(filled[own], times[own]))
+        centre = float(np.trapezoid(filled[own] * times[own], times[own])) / max(lasting, 1e-300)
+        if arc == 0:
+            found[0] = times[0] + lasting
+        elif arc == len(levels) - 1:
+            found[-1] = times[-1] - lasting
+        else:
+            found[arc - 1 : arc + 1] = centre - lasting / 2.0, centre + lasting / 2.0
+    return found
+
+
+def _from_the_start(instance: Instance, first: Guess) -> Guess | None:
+    """A guess without the wait at the lower bound with which it begins: all that follows comes as much earlier.
+
+    Where such a wait next to changes nothing, as on an orbit that is next to circular, the equations hardly tell when
+    to begin, and the best time may be the earliest. ``None`` where it does not wait before it acts.
+    """
+    row = first.structure.levels[0]
+    if len(first.structure.levels) > 1 or len(row) < 3 or row[0] != LOWER or first.course is None:
+        return None
+    wait = first.times[0] - instance.t0
+    times = first.times[1:] - wait
+    if row[-1] != LOWER:
+        row, times = (*row, LOWER), np.append(times, first.end - wait)
+    costates = first.course.at(float(first.times[0]))[len(instance.initial) :]
+    course = Course(first.course.times - wait, first.course.z)
+    structure = first.structure.with_levels(0, row[1:])
+    return replace(first, structure=structure, times=times, costates=costates, course=course)

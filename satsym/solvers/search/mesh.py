@@ -17,10 +17,31 @@ TOLERANCE, MOST = 1e-5, 6
 JUMP, PIECES = 0.15, 4
 """Change of a control within an interval, as a share of what it may do, that is a jump; how often it is cut then."""
 
+EVENLY = 0.5
+"""Share of a graded mesh that is laid evenly in time; the rest is laid evenly along the way of the states."""
+
 MIDDLES = 0.5 * (NODES[:-1] + NODES[1:])
 STATES = np.array([[one(tau) for one in basis(NODES)] for tau in MIDDLES])
 RISES = np.array([[one.deriv()(tau) for one in basis(NODES)] for tau in MIDDLES])
 VARIABLES = np.array([[one(tau) for one in basis(RADAU)] for tau in MIDDLES])
+
+
+def graded(times: Array, x: Array, intervals: int) -> Array:
+    """Edges of intervals from 0 to 1 that are short where the states of a motion change fast.
+
+    Parameters
+    ----------
+    times, x
+        Of the motion: increasing (N,), and states (n, N), of which each counts as a share of its range.
+    """
+    span = np.ptp(x, axis=1, keepdims=True)
+    steps = np.diff(x, axis=1) / np.where(span > 0.0, span, 1.0)
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=0))])
+    share = (times - times[0]) / (times[-1] - times[0])
+    laid = EVENLY * share + (1.0 - EVENLY) * (way / way[-1] if way[-1] > 0.0 else share)
+    edges = np.interp(np.linspace(0.0, 1.0, intervals + 1), laid, share)
+    edges[0], edges[-1] = 0.0, 1.0
+    return np.asarray(edges)
 
 
 def refined(found: Found) -> tuple[list[Array], float]:

@@ -15,6 +15,9 @@ from satsym.solvers.search.transcription import Places
 TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
 """Tolerance of the optimality conditions, and the one that is taken where rounding allows no more."""
 
+RESTORED = 2
+"""Iterations in all, as a multiple of those that do not restore feasibility."""
+
 SOLVED, ACCEPTED = 0, 1
 """What the code says of its end."""
 
@@ -42,8 +45,8 @@ class Found:
 class _Watched:
     """A programme as the code calls it, which ends where time is up."""
 
-    def __init__(self, programme: Programme, limits: Limits | None) -> None:
-        self.programme, self.limits, self.iterations = programme, limits, 0
+    def __init__(self, programme: Programme, limits: Limits | None, most: int) -> None:
+        self.programme, self.limits, self.iterations, self.most = programme, limits, 0, most
         self.objective, self.gradient, self.constraints = programme.objective, programme.gradient, programme.values
         self.jacobian = programme.jacobian
 
@@ -63,10 +66,10 @@ class _Watched:
         """Called once an iteration; whether to go on."""
         self.iterations += 1
         if self.limits is None:
-            return True
+            return self.iterations < self.most
         self.limits.spend(self.programme.unknowns)
         self.limits.tell(objective * self.programme.sizes.cost, infeasibility)
-        return not self.limits.expired
+        return self.iterations < self.most and not self.limits.expired
 
 
 def solve(
@@ -79,7 +82,7 @@ def solve(
     start
         Unknowns to begin with.
     most
-        Iterations.
+        Iterations, besides those that restore feasibility.
     near
         Whether the start is near a solution.
     """
@@ -88,7 +91,7 @@ def solve(
 
     low, high = programme.bounds
     lower, upper = programme.limits
-    watched = _Watched(programme, limits)
+    watched = _Watched(programme, limits, RESTORED * most)
     problem = pounce.Problem(n=len(low), m=len(lower), problem_obj=watched, lb=low, ub=high, cl=lower, cu=upper)
     options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
     options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}

@@ -6,7 +6,7 @@ which is the derivative of the Hamiltonian by the states, and differences of com
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -84,7 +84,30 @@ class Points:
         """Derivatives (rows, l, M) of a function by all local variables."""
         return self._complex(function, y, range(self.local))
 
-    def _complex(self, function: Callable[[Array], Array], y: Array, by: range) -> Array:
+    @cached_property
+    def _moving(self) -> list[int]:
+        """Local variables by which rates may have derivatives: not the time, where it does not appear in them."""
+        still = {self.states + self.controls.count} if self.instance.model.spec.autonomous else set()
+        still |= {self.states + place for place in self.controls.angles}
+        return [place for place in range(self.local) if place not in still]
+
+    @cached_property
+    def _curved(self) -> list[int]:
+        """Local variables besides the states in which rates need not be linear."""
+        linear = {self.states + place for place in self.controls.linear}
+        return [place for place in self._moving if place >= self.states and place not in linear]
+
+    def _spread(self, found: Array) -> Array:
+        """Derivatives (rows, l, M) by all local variables from those by the ones that move rates."""
+        whole = np.zeros((len(found), self.local, found.shape[2]))
+        whole[:, self._moving] = found
+        return whole
+
+    def slopes_of_rates(self, y: Array) -> Array:
+        """Derivatives (n + 1, l, M) of :meth:`rates`."""
+        return self._spread(self._complex(self.rates, y, self._moving))
+
+    def _complex(self, function: Callable[[Array], Array], y: Array, by: Sequence[int]) -> Array:
         many = np.repeat(y.astype(complex)[:, None], len(by), 1)
         for k, place in enumerate(by):
             many[place, k] += 1j * STEP
@@ -109,8 +132,8 @@ class Points:
             total -= share * (found + (weight - 1.0) * cost)
         return total
 
-    def hessian(self, y: Array, mu: Array, weight: Array, eta: Array) -> tuple[Array, Array, Array]:
-        """Gradient (l, M) and second derivatives (l, l, M) of mu f + weight L, and those of eta g.
+    def hessian(self, y: Array, mu: Array, weight: Array, eta: Array) -> tuple[Array, Array]:
+        """Second derivatives (l, l, M) of mu f + weight L, and those of eta g.
 
         Parameters
         ----------
@@ -126,25 +149,33 @@ class Points:
         def held(z: Array) -> Array:
             return np.sum(self.constraints(z) * np.tile(eta, z.shape[1] // mu.shape[1]), axis=0)[None]
 
-        gradient = self._complex(added, y, range(count))[0]
         found = np.zeros((count, count, y.shape[1]))
-        found[:n] = self._complex(lambda z: self._by_states(z, mu, weight), y, range(count))
+        found[:n] = self._spread(self._complex(lambda z: self._by_states(z, mu, weight), y, self._moving))
         found[n:, :n] = found[:n, n:].transpose(1, 0, 2)
-        found[n:, n:] = self._differences(added, y, range(n, count))
+        others = [place for place in self._moving if place >= n]
+        if self._curved:
+            bent = self._differences(added, y, self._curved, others)
+            found[np.ix_(others, self._curved)] = bent
+            found[np.ix_(self._curved, others)] = bent.transpose(1, 0, 2)
         other = self._differences(held, y, range(count)) if len(eta) else np.zeros_like(found)
-        return gradient, found, other
+        return found, other
 
-    def _differences(self, function: Callable[[Array], Array], y: Array, by: range) -> Array:
-        """Second derivatives (k, k, M) of one row by some variables."""
+    def _differences(
+        self, function: Callable[[Array], Array], y: Array, by: Sequence[int], slopes: Sequence[int] | None = None
+    ) -> Array:
+        """Second derivatives (s, k, M) of one row: by some variables, of those by others or by the same."""
+        whole = by if slopes is None else slopes
         moved = np.repeat(y[:, None], 2 * len(by), 1)
         for k, place in enumerate(by):
             moved[place, 2 * k] += DIFFERENCE * self.sizes[place]
             moved[place, 2 * k + 1] -= DIFFERENCE * self.sizes[place]
-        slopes = self._complex(function, moved.reshape(len(y), -1), by)[0]
-        slopes = slopes.reshape(len(by), len(by), 2, y.shape[1])
+        found = self._complex(function, moved.reshape(len(y), -1), whole)[0]
+        found = found.reshape(len(whole), len(by), 2, y.shape[1])
         steps = 2.0 * DIFFERENCE * self.sizes[list(by)]
-        found = (slopes[:, :, 0] - slopes[:, :, 1]) / steps[None, :, None]
-        return 0.5 * (found + found.transpose(1, 0, 2))
+        found = (found[:, :, 0] - found[:, :, 1]) / steps[None, :, None]
+        rows = [list(whole).index(place) for place in by]
+        found[rows] = 0.5 * (found[rows] + found[rows].transpose(1, 0, 2))
+        return np.asarray(found)
 
     def cost(self, y: Array) -> Array:
         """The terminal cost, shape (1, M)."""

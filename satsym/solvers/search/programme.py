@@ -52,11 +52,18 @@ class Programme(Transcription):
             into[self._time, -1] = self.sizes.duration
         return into, np.concatenate([point * n + np.arange(n), self.globals])
 
+    def _slopes(self, w: Array) -> Array:
+        """Derivatives (n + 1, l, N) of rates by local variables; those of the last unknowns are remembered."""
+        key = w.tobytes()
+        if self._last_slopes is None or self._last_slopes[0] != key:
+            self._last_slopes = key, self.points.slopes_of_rates(self._local(w)[0])
+        return self._last_slopes[1]
+
     def gradient(self, w: Array) -> Array:
         """Of :meth:`objective`."""
-        y, steps, _ = self._local(w)
+        _, steps, _ = self._local(w)
         into, grown, places = self._into
-        slopes, cost = self.points.slopes(self.points.rates, y)[-1], self.points.rates(y)[-1]
+        slopes, cost = self._slopes(w)[-1], self._rates(w)[-1]
         each = self.weights * (np.einsum("lN,lzN->zN", slopes * steps, into) + cost * grown)
         found: Array = np.bincount(places.ravel(), each.ravel(), self.unknowns).astype(float)
         end = self._at(w, [self.count])
@@ -69,7 +76,7 @@ class Programme(Transcription):
         y, steps, _ = self._local(w)
         n = self.points.states
         into, grown, _ = self._into
-        slopes, values = self.points.slopes(self.points.rates, y)[:n], self.points.rates(y)[:n]
+        slopes, values = self._slopes(w)[:n], self._rates(w)[:n]
         moved = np.einsum("ilN,lzN->izN", slopes * steps, into) + values[:, None] * grown[None]
         parts = [
             np.repeat(self._collocation[:, :, None], n, 2).ravel(),
@@ -179,7 +186,8 @@ class Programme(Transcription):
         weight = factor / self.sizes.cost * self.weights
         held = len(self.points.kept)
         eta = multipliers[self.kinds["path"].places].reshape(self.count, held).T if held else np.empty((0, self.count))
-        gradient, second, of_path = self.points.hessian(y, mu, weight, eta)
+        second, of_path = self.points.hessian(y, mu, weight, eta)
+        gradient = np.einsum("ilN,iN->lN", self._slopes(w), np.concatenate([mu, weight[None]]))
         block = np.einsum("lmN,lzN,myN->zyN", second * steps + of_path, into, into, optimize=True)
         along = np.einsum("lN,lzN->zN", gradient, into)
         block += along[:, None] * grown[None] + grown[:, None] * along[None]

@@ -9,6 +9,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
+from satsym.solvers.failures import tried
 from satsym.solvers.search.controls import Controls, rates
 from satsym.solvers.search.transcription import Sizes
 
@@ -20,6 +21,9 @@ FAR = 30.0
 
 ROUNDING = 1e-12
 """Share of its largest rate with which a state at rest seems to move."""
+
+TELLING = 1e-4
+"""Share of the size that moves others by theirs, below which a motion at rest says nothing of a state's size."""
 
 LEVEL = 0.3
 """Share of the sizes of controls at which the cost is looked at."""
@@ -78,27 +82,25 @@ def sizes_of(instance: Instance, controls: Controls, duration: float) -> Sizes:
 
 def flow(instance: Instance, controls: Controls, t: float, x: Array, v: Array) -> Array:
     """Rates (n + 1,) of states and of the cost at one point."""
-    found = [
-        weight[0] * rates(instance, np.array([t]), x[:, None], u, instance.parameters)[:, 0]
-        for u, weight in controls.nodes(v[:, None])
-    ]
+    return flows(instance, controls, np.array([t]), x[:, None], v[:, None])[:, 0]
+
+
+def flows(instance: Instance, controls: Controls, t: Array, x: Array, v: Array) -> Array:
+    """Rates (n + 1, M) of states and of the cost at many points: times (M,), states (n, M), variables (k, M)."""
+    found = [weight * rates(instance, t, x, u, instance.parameters) for u, weight in controls.nodes(v)]
     return np.asarray(np.sum(found, axis=0))
 
 
 def followed(instance: Instance, controls: Controls, times: Array, x: Array, v: Array, far: float) -> Array:
     """States row by row along times with constant controls, by steps of RK4, as far as they stay within reason."""
-    rows = [x]
-    for t, after in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
-        h = after - t
-        a = flow(instance, controls, t, x, v)[:-1]
-        b = flow(instance, controls, t + h / 2, x + h / 2 * a, v)[:-1]
-        c = flow(instance, controls, t + h / 2, x + h / 2 * b, v)[:-1]
-        d = flow(instance, controls, t + h, x + h * c, v)[:-1]
-        x = x + h / 6 * (a + 2 * (b + c) + d)
-        if not np.isfinite(x).all() or np.abs(x).max() > far:
-            break
-        rows.append(x)
-    return np.array(rows)
+    u = np.repeat(controls.controls(v[:, None]), len(times), 1)
+    start = tuple(x.tolist())
+    found = tried(lambda: instance.model.forward(times, start, u, u[:, 1:], instance.parameters)[0].T)
+    if found is None:
+        return x[None]
+    away = ~np.isfinite(found).all(axis=1) | (np.abs(found).max(axis=1) > far)
+    away[0] = False
+    return np.asarray(found[: int(np.argmax(away)) if away.any() else len(found)])
 
 
 def _rest(instance: Instance, controls: Controls, duration: float) -> Rest:
@@ -121,9 +123,14 @@ def _of_states(instance: Instance, controls: Controls, duration: float, rest: Re
     size = np.maximum(np.abs(start), np.nan_to_num(np.abs(end)))
     size = np.where(span > 0.0, np.maximum(span, between), size)
     moved = np.ptp(rest.states, axis=0)
-    size = np.where((size > 0.0) | (moved <= ROUNDING * duration * _largest(instance, controls, start)), size, moved)
+    told = (size > 0.0) | (moved <= ROUNDING * duration * _largest(instance, controls, start))
+    both = np.where(told, size, moved)
     if not (size > 0.0).all():
-        size = _through_others(instance, controls, duration, size, rest)
+        others = _through_others(instance, controls, duration, size, rest)
+        both = np.where((both > TELLING * others) | (others == 0.0), both, others)
+        if not (both > 0.0).all():
+            both = _through_others(instance, controls, duration, both, rest)
+    size = both
     return np.where(size > 0.0, size, 1.0)
 
 

@@ -1,33 +1,34 @@
-"""The search as solvers call it: where nothing else found an answer, and where something may be cheaper."""
+"""The search as methods call it: the kinds of arcs that it knows, the first extremal, and what other starts come to."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
+from satsym.methods import automatic
 from satsym.solution import Progress, Solution
-from satsym.solvers.certificate.verdict import examined
-from satsym.solvers.constrained.convexity import convex
-from satsym.solvers.iteration import MOST, Limits, deadline_of, watched
+from satsym.solvers.iteration import Limits, unsolved, watched
 from satsym.solvers.redundant_ends import Redundant, redundant
-from satsym.solvers.search import boundaries, levels, order, reading
+from satsym.solvers.search import boundaries, collocated, failing, levels, order, reading
 from satsym.solvers.search.answer import answered
 from satsym.solvers.search.motion import Motion
-from satsym.status import Verdict
+from satsym.solvers.search.nlp import ACCEPTABLE
+from satsym.solvers.search.order import Tried
+from satsym.solvers.switching.refusals import refuse_angles
 
-WORK, COMPARED = 4_000_000, 2_000_000
-"""Unknowns times iterations that a search may take, for an answer and for a cheaper one."""
+if TYPE_CHECKING:
+    from satsym.spec import ProblemSpec
 
-PROBE, AROUND = 160_000, 600_000
-"""Unknowns times iterations within which the starts must come to more than one motion for a search for a cheaper
-answer to go on. It is more where there are path constraints, because motions may pass these on several sides."""
-
-CHEAPER = 1e-6
-"""Share of its size, or of that of its terms, by which something must be cheaper to be taken."""
+WORK = 4_000_000
+"""Unknowns times iterations that a search may take."""
 
 
 def applies(instance: Instance) -> bool:
@@ -39,6 +40,11 @@ def applies(instance: Instance) -> bool:
     return plain and arcs and not timed and not instance.continuation
 
 
+def begins(spec: ProblemSpec) -> bool:
+    """Whether methods begin with the search: vanishing costates say nothing there of the controls."""
+    return not spec.in_arcs and (spec.switching or spec.throttled or spec.directional or spec.stationary)
+
+
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     """The extremal that a motion is near, as an answer without a certificate."""
     spec = instance.model.spec
@@ -47,17 +53,44 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     extremal = None if spec.switching else reading.exact(instance, at, limits)
     if extremal is not None:
         return answered(instance, extremal)
-    in_levels = (spec.switching or spec.throttled) and not instance.free
-    return levels.exact(instance, at, limits) if in_levels else None
+    if instance.free:
+        return None
+    if spec.switching or spec.throttled:
+        return levels.exact(instance, at, limits)
+    return collocated.exact(instance, at)
 
 
-def _found(instance: Instance, limits: Limits, below: float = math.inf, probe: float = math.inf) -> Solution | None:
+def searched(instance: Instance, limits: Limits) -> Solution | None:
     """What the search finds, without a final state that follows from the others."""
     less = redundant(instance)
     if less is None:
-        return order.searched(instance, limits, partial(exact, instance), below, probe)
-    found = order.searched(instance, limits, partial(_met, less), below, probe, less.state)
+        return order.searched(instance, limits, partial(exact, instance))
+    found = order.searched(instance, limits, partial(_met, less), less.state)
     return None if found is None else replace(found, message=f"{found.message}; {less.note}")
+
+
+def guessed(instance: Instance, limits: Limits) -> Instance:
+    """An instance with states and costates guessed by the search, where vanishing costates say nothing of controls."""
+    spec = instance.model.spec
+    if not (spec.directional or spec.stationary) or instance.guess:
+        return instance
+    found = searched(instance, replace(limits, work=WORK))
+    return instance if found is None else collocated.guessing(instance, found.times, found.x, found.lam)
+
+
+def others(instance: Instance, solution: Solution, limits: Limits) -> Iterator[Tried[Solution]]:
+    """What other starts come to beside an answer to an instance, as :func:`order.others` has it."""
+    less = redundant(instance)
+    making, loose = (partial(exact, instance), "") if less is None else (partial(_met, less), less.state)
+    way = solution.times, solution.x
+    cost, hidden = solution.objective, _hidden(solution)
+    return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden)
+
+
+def _hidden(solution: Solution) -> float:
+    """What the cost changes by where states miss what is asked of them by as much as a programme lets them."""
+    size, slope = (np.abs(row).max(axis=1) for row in (solution.x, solution.lam))
+    return ACCEPTABLE * float(size @ slope)
 
 
 def _met(less: Redundant, at: Motion, limits: Limits) -> Solution | None:
@@ -66,56 +99,39 @@ def _met(less: Redundant, at: Motion, limits: Limits) -> Solution | None:
     return found if found is not None and less.met(found) else None
 
 
-def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
-    """The answer of a search; ``None`` without one, or where the certificate of what it found fails.
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by the search alone.
 
     Parameters
     ----------
-    certified
-        Whether it is examined.
+    instance
+        Of a model without path constraints whose vectors are throttled, or whose controls are directions or have no
+        law in closed form.
+    progress
+        Called after each iteration of the interior-point code.
+
+    Returns
+    -------
+    Solution
+        Without a certificate. Times hold each switching time twice: the last instant of one arc and the first of the
+        next.
+
+    Raises
+    ------
+    BadInput
+        If final angles are to count modulo a turn.
     """
+    throttled = instance.model.spec.throttled
+    if throttled:
+        refuse_angles(instance)
     began = time.perf_counter()
     limits, history = watched(instance, progress)
-    found = _found(instance, replace(limits, work=WORK))
-    if found is None:
-        return None
-    certificate = examined(found, limits.deadline)[0] if certified else None
-    if certificate is not None and certificate.verdict is Verdict.FAILED:
-        return None
-    return replace(found, certificate=certificate, history=tuple(history), wall_s=time.perf_counter() - began)
-
-
-def _doubtful(solution: Solution) -> bool:
-    """Whether competitors say little of an answer, for free ends, path constraints or starts that led nowhere."""
-    certificate, instance = solution.certificate, solution.instance
-    if certificate is None:
-        return False
-    partly = 0 < len(instance.final) < len(instance.initial)
-    parted = bool(instance.model.spec.path_constraints) and not convex(instance)
-    return bool(instance.free) or partly or parted or any(kind.unanswered for kind in certificate.competitors)
-
-
-def cheaper(stated: Instance, solution: Solution) -> Solution:
-    """An answer, or another one that the search finds and that costs less.
-
-    Parameters
-    ----------
-    stated
-        What was asked: the answer's own instance may lack a final state that follows from others.
-    """
-    began = time.perf_counter()
-    instance = solution.instance if stated.free else stated
-    if instance.model.spec.linear_quadratic or not applies(instance) or not _doubtful(solution):
-        return solution
-    limits = Limits(MOST, deadline_of(instance), work=COMPARED)
-    least = solution.objective - CHEAPER * abs(solution.objective)
-    probe = AROUND if instance.model.spec.path_constraints else PROBE
-    found = _found(instance, limits, least, probe)
-    if found is None or not found.objective < least:
-        return solution
-    message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
-    certificate = examined(found, limits.deadline)[0]
-    if certificate is None or certificate.verdict is Verdict.FAILED:
-        return solution
-    lasted = solution.wall_s + time.perf_counter() - began
-    return replace(found, message=message, certificate=certificate, history=solution.history, wall_s=lasted)
+    limits = replace(limits, work=WORK)
+    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
+    if found is not None:
+        limits.tell(found.objective, history[-1].residual if history else math.nan)
+        return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
+    nothing = unsolved(instance, automatic(instance.model.spec).name, 0.0)
+    status, message = failing.why(instance, limits)
+    wall_s = time.perf_counter() - began
+    return replace(nothing, status=status, message=message, history=tuple(history), wall_s=wall_s)

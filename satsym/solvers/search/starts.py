@@ -6,6 +6,7 @@ by drawn waves; durations that are free are guessed several times as long.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,11 +25,17 @@ WITHIN = 1e2
 WAVES = 3
 """Of which drawn starts are made."""
 
+SAME = 1e-9
+"""Relative difference of a rate and a state that are one but for rounding."""
+
 FREELY, DRAWS = 1.0, 40
 """Standard deviation of drawn ends, in sizes of their states, and how many are drawn."""
 
-TURNS = (0, 1, 2, 3)
-"""Revolutions that are tried where the duration is free."""
+MORE, WIDER = 24, (0.3, 1.0, 3.0)
+"""Further starts where the first ones come to several costs, and how far they are bent."""
+
+TURNS = (0, -1, 1, 2, 3)
+"""Revolutions that are tried where the duration is free; one less than none is the other way round."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,8 @@ class Plan:
         What angles of controls are at, as a share of half a turn.
     drawn
         By which random numbers free ends are drawn; 0 where they are not.
+    guessed
+        Whether states and controls are those that the instance guesses, as far as it does.
     """
 
     scale: float = 1.0
@@ -58,13 +67,15 @@ class Plan:
     coasting: bool = False
     turned: float | None = None
     drawn: int = 0
+    guessed: bool = False
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
     """The list for an instance, in the order in which they are tried."""
     given = instance.tf is not None
     if given:
-        drawn = ((0.1, 1), (0.3, 2), (0.3, 3), (1.0, 4), (1.0, 5))
+        drawn = [(0.1, 1), (0.3, 2), (0.3, 3), (1.0, 4), (1.0, 5)]
+        drawn += [(WIDER[seed % len(WIDER)], seed) for seed in range(6, 6 + MORE)]
         found = [Plan(), *(Plan(noise=noise, seed=seed) for noise, seed in drawn)]
     else:
         found = [Plan(scale=scale) for scale in (1.0, 2.5, 0.6, 6.0)]
@@ -74,35 +85,39 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         ]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    if any(one.place is Place.INITIAL for one in instance.free) or (np.isnan(end).any() and not np.isnan(end).all()):
+        found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
     if round_:
         places = [place for pair in round_[:2] for place in pair]
         speed = 0.5 * (_turn_rate(start, round_) + _turn_rate(np.where(np.isnan(end), start, end), round_))
         if given or np.isnan(end[places]).any():
             usual = int(speed * duration / (2.0 * np.pi))
-            turns = dict.fromkeys((usual, max(usual - 1, 0), usual + 1))
-            found[1:1] = [Plan(coasting=True), *(Plan(turns=k) for k in turns)]
+            turns = dict.fromkeys((usual, usual - 1, usual + 1))
+            found[1:1] = [*(Plan(turns=k) for k in turns), Plan(coasting=True)]
         elif speed > 0.0:
             angle = _swept(start, end, round_)
-            rounds = [Plan(turns=k, scale=max((angle + 2.0 * np.pi * k) / speed / duration, 0.2)) for k in TURNS]
+            rounds = [Plan(turns=k, scale=max(abs(angle + 2.0 * np.pi * k) / speed / duration, 0.2)) for k in TURNS]
             found = rounds + found
     elif given and len(instance.final) >= len(start) - 1:
         found.insert(1, Plan(coasting=True))
-    if any(one.place is Place.INITIAL for one in instance.free) or (np.isnan(end).any() and not np.isnan(end).all()):
-        found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
-    return found
+    return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
 
 
 def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
-    """Positions with their velocities, two or three pairs: states whose rates are states, and nothing else."""
+    """Positions with their velocities, two or three pairs: states whose rates are states, and nothing else.
+
+    None where a position must be positive: that is a distance, beside which the other positions are angles.
+    """
     rng, n = np.random.default_rng(1), len(instance.initial)
-    x = np.array(instance.initial) * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, n)) + 1e-3
+    x = np.array(instance.initial) * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, n)) + 1e-3 * rng.uniform(1.0, 2.0, n)
     v = resting(controls)
     with np.errstate(all="ignore"):
         f = flow(instance, controls, instance.t0, x, v)
-    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and f[i] == x[j]]
-    return pairs if 2 <= len(pairs) <= 3 else []
+    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and abs(f[i] - x[j]) <= SAME * abs(x[j])]
+    polar = any(instance.model.spec.states[i].positive for i, _ in pairs)
+    return pairs if 2 <= len(pairs) <= 3 and not polar else []
 
 
 def _turn_rate(x: Array, pairs: list[tuple[int, int]]) -> float:
@@ -147,6 +162,8 @@ def begun(programme: Programme, plan: Plan) -> Array:
     many = np.repeat(v[:, None], len(times) - 1, 1)
     if plan.noise:
         x, many = _bent(programme, x, many, share, plan)
+    if plan.guessed:
+        _overlaid(programme, x, many, share)
     parameters = [one.of(instance) for one in programme.free]
     return programme.packed(x, many, durations, np.array(parameters), instance.t0)
 
@@ -165,6 +182,28 @@ def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> t
         positive = np.array([state.positive for state in programme.instance.model.spec.states])
         end = np.where(np.isnan(end), np.where(positive, np.abs(drawn), drawn), end)
     return start, end
+
+
+def _overlaid(programme: Programme, x: Array, v: Array, share: Array) -> None:
+    """Put states and controls in that the instance guesses: values evenly spaced, straight lines between."""
+    instance, controls, spec = programme.instance, programme.controls, programme.instance.model.spec
+
+    def along(values: Sequence[float], at: Array) -> Array:
+        return np.asarray(np.interp(at, np.linspace(0.0, 1.0, len(values)), values))
+
+    for name, values in instance.guess.state.items():
+        x[spec.state_names.index(name)] = along(values, share)
+    known = {spec.control_names.index(name): values for name, values in instance.guess.control.items()}
+    for place, values in known.items():
+        row = along(values, share[1:])
+        if place in controls.angles:
+            cosine, sine = controls.angles[place]
+            v[cosine], v[sine] = np.cos(row), np.sin(row)
+        else:
+            v[place] = row
+    for norm in controls.norms:
+        if norm.spot is not None and known.keys() & set(norm.places):
+            v[norm.spot] = np.linalg.norm(v[list(norm.places)], axis=0)
 
 
 def _bent(programme: Programme, x: Array, v: Array, share: Array, plan: Plan) -> tuple[Array, Array]:
@@ -223,7 +262,7 @@ def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tup
     last = np.hypot(end[vp], end[vq])
     speeds = first, first * np.sqrt(radius / max(far, 1e-300)) if np.isnan(last) else last
     r, angle = radius + (far - radius) * share, begin + sense * sweep * share
-    speed = sense * (speeds[0] + (speeds[1] - speeds[0]) * share)
+    speed = sense * np.sign(sweep) * (speeds[0] + (speeds[1] - speeds[0]) * share)
     x = x.copy()
     x[p], x[q], x[vp], x[vq] = r * np.cos(angle), r * np.sin(angle), -speed * np.sin(angle), speed * np.cos(angle)
     return x

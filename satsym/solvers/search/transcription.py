@@ -128,6 +128,8 @@ class Transcription:
             [self.sizes.states, self.sizes.variables, [self.sizes.duration], self.sizes.free[: len(self.free)]]
         )
         self.points = Points(self.instance, self.controls, tuple(one.index for one in self.free), size)
+        self._last_rates: tuple[bytes, Array] | None = None
+        self._last_slopes: tuple[bytes, Array] | None = None
         self._placed()
         self._listed()
 
@@ -172,6 +174,13 @@ class Transcription:
         times = self.times(durations, start)[1:]
         rows = [x[:, 1:], v, times[None], np.repeat(free[:, None], self.count, 1)]
         return np.concatenate(rows), self.steps @ durations, x
+
+    def _rates(self, w: Array) -> Array:
+        """Rates (n + 1, N) at collocation points; those of the last unknowns are remembered."""
+        key = w.tobytes()
+        if self._last_rates is None or self._last_rates[0] != key:
+            self._last_rates = key, self.points.rates(self._local(w)[0])
+        return self._last_rates[1]
 
     def _at(self, w: Array, points: Sequence[int]) -> Array:
         """Local variables (l, K) of some points, the first being the start; those of controls count for nothing."""
@@ -264,7 +273,7 @@ class Transcription:
         n, d = self.points.states, DEGREE
         index = np.arange(self.intervals)[:, None] * d + np.arange(d + 1)
         slopes = np.einsum("nkr,rj->nkj", x[:, index], SLOPES).reshape(n, -1)
-        defects = (slopes - steps * self.points.rates(y)[:n]) / self.sizes.states[:, None]
+        defects = (slopes - steps * self._rates(w)[:n]) / self.sizes.states[:, None]
         rows = [defects.T.ravel()]
         if "path" in self.kinds:
             rows.append(self.points.constraints(y).T.ravel())
@@ -304,6 +313,6 @@ class Transcription:
 
     def objective(self, w: Array) -> float:
         """The cost in units of its size."""
-        y, steps, _ = self._local(w)
-        running = self.points.rates(y)[-1] @ (steps * self.weights)
+        _, steps, _ = self._local(w)
+        running = self._rates(w)[-1] @ (steps * self.weights)
         return float(running + self.points.cost(self._at(w, [self.count]))[0, 0]) / self.sizes.cost

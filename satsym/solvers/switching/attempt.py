@@ -51,15 +51,10 @@ class Origin(Enum):
     STRUCTURE = "a given structure"
     REST = "rest"
     REACH = "the reachable set"
-    SATURATED = "controls saturated at a bound"
-    EFFORT = "the signs of minimum effort"
     DRAWN = "switching times that were drawn"
-    COSTATES = "costates that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
-    GIVEN = "exact arcs in a given time"
     PATH = "a regularised path"
-    EASIER = "exact arcs of an easier problem"
     SEARCH = "a direct search"
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,30 +10,26 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.failures import FAILURES, unbroken
+from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.chattering import NARROW, Look, look, shows
 from satsym.solvers.switching.cold_start import homotopy, minimum_effort
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
 from satsym.solvers.switching.structure import Guess
-from satsym.solvers.switching.variants import neighbours
 from satsym.status import Status
-
-BETWEEN = 4
-"""Of so many smoothed extremals one is looked at for structures with an arc less or more."""
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
 def smoothed(
-    instance: Instance, limits: Limits, thorough: bool = True, begun: tuple[TwoPoint, Curve] | None = None
+    instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None = None
 ) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
-    Structures with an arc less or more are many, and those without an arc that seems to be singular seldom lead
-    anywhere, so both are tried once all smoothed extremals show no better one.
+    Structures without an arc that seems to be singular seldom lead anywhere, so they are tried once all smoothed
+    extremals show no better one.
 
     Parameters
     ----------
@@ -43,7 +38,6 @@ def smoothed(
     """
     before: Sample | None = None
     levels: list[minimum_effort.Smoothed] = []
-    waiting: list[tuple[Guess, float]] = []
     unlikely: list[tuple[Guess, float]] = []
     looks: list[Look] = []
     endless = bool(instance.model.spec.chattering)
@@ -62,8 +56,6 @@ def smoothed(
             if exact is not None:
                 return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
             unlikely += [(one, smoothing) for one in plainer]
-            if thorough and level % BETWEEN == BETWEEN - 1:
-                waiting += [(one, smoothing) for one in (likeliest, *plainer)]
             before = seen
             if limits.expired:
                 break
@@ -76,8 +68,7 @@ def smoothed(
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
     if shows(looks) and not limits.expired:
         return replace(last_seen, chattering=tuple(levels))
-    more = ((one, s) for candidate, s in waiting for one in unbroken(neighbours(instance, candidate, limits)))
-    for one, smoothing in chain(unlikely, more):
+    for one, smoothing in unlikely:
         if limits.expired:
             break
         if exact := attempt(instance, one, limits):

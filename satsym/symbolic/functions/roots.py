@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any, ClassVar
 from weakref import WeakValueDictionary
 
@@ -185,6 +186,10 @@ def minimum_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: A
         Its first and second derivative.
     """
     low, high = mp.mpf(lower), mp.mpf(upper)
+    for end, outwards in ((low, -1), (high, 1)):  # what is least there must be that end to the last digit
+        with suppress(ArithmeticError):
+            if mp.isfinite(end) and not mp.im(slope := slopes(end)[0]) and outwards * slope <= 0:
+                return end
     at, last = max(low, min(mp.mpf(0), high)), mp.inf
     for _ in range(MOST):
         slope, curvature = slopes(at)

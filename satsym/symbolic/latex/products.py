@@ -72,7 +72,8 @@ def take_apart(expression: sp.Expr) -> Product:
     if not number.is_Float:
         number, below = sp.fraction(number / below)
     if below in HUNDREDTHS and (top or bottom):
-        number, below = sp.Float(str(number.p / below.p)), sp.Integer(1)
+        number = number / below if number.is_Float else sp.Float(str(number.p / below.p))
+        below = sp.Integer(1)
     return Product(negative, abs(number), *_with_roots(top, bottom, below))
 
 

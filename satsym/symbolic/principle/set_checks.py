@@ -22,6 +22,9 @@ from satsym.symbolic.principle.set_laws import bare, found, problem_of
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point."""
 
+NEAR = 4
+"""Admissible controls beside the law of each set that it is held against."""
+
 TRIES = 60
 """Costates at most that are tried until H has a minimum."""
 
@@ -92,6 +95,7 @@ def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
             best = value({**here, **law})[0]
             for one in every:
                 margin += _slacks(one, here, law)
+            margin += _beside(so_far, value, chosen, here, rng)
             for _ in range(COMPETITORS):
                 other = {u: v for one in every for u, v in drawn(one, here, rng).items()}
                 margin.append(sign(problem) * (value({**here, **other})[0] - best))
@@ -100,6 +104,46 @@ def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
     everything = {*limits, *controls, *costates(so_far)} | h.free_symbols.union(*(e.free_symbols for e in laws))
     unlimited = all(one.part.kind in ("free", "angle") for one in every)
     return never_below(worded("cheapest of all" if unlimited else "cheapest admissible", problem), everything, margins)
+
+
+def _beside(so_far: Derivation, value: Any, chosen: Any, here: Point, rng: random.Random) -> list[Any]:
+    """How much worse H becomes towards admissible controls so near to the law that a slip in it makes one better.
+
+    Farther away H grows with the square of the distance, which hides that of a law from the minimiser.
+    """
+    problem, margin, step = problem_of(so_far), list[Any](), mp.mpf(10) ** -mp.mp.dps
+    with mp.workdps(3 * mp.mp.dps):
+        law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
+        best = value({**here, **law})[0]
+        for one in found(so_far):
+            for _ in range(NEAR):
+                other = {**law, **near(one, here, law, step, rng)}
+                margin.append(sign(problem) * (value({**here, **other})[0] - best) / step)
+    return margin
+
+
+def near(
+    one: Minimum, point: Point, law: Mapping[sp.Symbol, Any], step: Any, rng: random.Random
+) -> dict[sp.Symbol, Any]:
+    """The law over one set moved by a step within the set, so that it is admissible still.
+
+    One control alone where it may move alone, so that none hides another.
+    """
+    symbols, limits, kind = one.part.symbols, one.part.bounds, bare(one.part.kind)
+    if kind == "box":
+        k = rng.randrange(len(symbols))
+        end = point[limits[rng.choice((k, k + len(symbols)))]]
+        return {symbols[k]: law[symbols[k]] + step * (end - law[symbols[k]])}
+    before = [law[u] for u in symbols]
+    size = mp.sqrt(sum(u**2 for u in before))
+    if kind == "free":
+        k = rng.randrange(len(symbols))
+        return {symbols[k]: before[k] + rng.choice((-1, 1)) * step * (size or 1)}
+    moved = [u + step * point[limits[-1]] * mp.mpf(rng.gauss(0, 1)) for u in before]
+    norm = mp.sqrt(sum(u**2 for u in moved))
+    least = point[limits[0]] if one.part.kind == "annulus" else 0
+    wanted = max(least, min(norm, point[limits[-1]]))
+    return {u: v * wanted / norm for u, v in zip(symbols, moved, strict=True)}
 
 
 def _decided(

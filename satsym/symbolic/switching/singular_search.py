@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import sympy as sp
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
-from satsym.symbolic.algebra import depends, shortened, tidy, total_derivative
+from satsym.symbolic.algebra import COMMON, depends, differs_from_zero, shortened, terms_over, tidy, total_derivative
 from satsym.symbolic.convention import sign
 from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.derivation import Derivation
@@ -181,7 +182,7 @@ def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
     if len(having) != 1 or having[0].is_Pow:
         return None
     others = sp.Mul(*(factor for factor in factors if factor != having[0]))
-    if not having[0].is_polynomial(unknown):
+    if not having[0].is_polynomial(unknown) or terms_over(having[0]) > COMMON:
         slope = sp.diff(having[0], unknown)
         if depends(slope, [unknown]):
             return None
@@ -196,5 +197,22 @@ def _simplest(expression: sp.Expr) -> sp.Expr:
     names = {magnitude: sp.Dummy(real=True) for magnitude in expression.atoms(sp.Abs)}
     plain = expression.xreplace(names)
     if not plain.is_rational_function():
-        return shortened(expression)
+        found = shortened(expression)
+        return found if differs_from_zero(found) or not _vanishes_by_half_angles(found) else sp.Integer(0)
     return factored(plain).xreplace({dummy: magnitude for magnitude, dummy in names.items()})
+
+
+def _vanishes_by_half_angles(expression: sp.Expr) -> bool:
+    """Whether an expression is zero, proved by the tangents of half its angles where it is rational in them."""
+    single = sp.expand_trig(expression)
+    halves = {f.args[0]: sp.Dummy(real=True) for f in single.atoms(TrigonometricFunction)}
+    tangents = {f(angle): value for angle, h in halves.items() for f, value in _by_half(h).items()}
+    rational = single.xreplace(tangents)
+    return bool(rational.is_rational_function() and factored(rational) == 0)
+
+
+def _by_half(h: sp.Symbol) -> dict[type[TrigonometricFunction], sp.Expr]:
+    """Functions of an angle by the tangent of its half."""
+    sine, cosine = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
+    ratios = {sp.tan: sine / cosine, sp.cot: cosine / sine, sp.sec: 1 / cosine, sp.csc: 1 / sine}
+    return {sp.sin: sine, sp.cos: cosine, **ratios}

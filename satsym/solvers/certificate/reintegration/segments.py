@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -82,14 +83,11 @@ def segments(solution: Solution) -> Segments | None:
     slopes = _slopes(solution, times, z)
     if not np.isfinite(slopes).all():
         return None
-    lasting, unit = float(times[-1] - times[0]), unit_sizes(solution)
-    scale = balanced(unit, np.abs(slopes).max(axis=2), lasting)
-    turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
-    if not turned[-1] <= MOST * TURN:
-        # What is steep for a moment is not what units are for where there is far more time without it.
-        scale = balanced(unit, np.trapezoid(np.abs(slopes), times, axis=2) / lasting, lasting)
+    for scale in _scales(solution, slopes):
         turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
-    if not turned[-1] <= MOST * TURN:
+        if turned[-1] <= MOST * TURN:
+            break
+    else:
         return None
     nodes = _nodes(solution, turned)
     steps = max(1, int(np.ceil(np.diff(turned[nodes]).max() / TURN)))
@@ -97,6 +95,23 @@ def segments(solution: Solution) -> Segments | None:
         return _linearised(solution, nodes, steps, scale)
     except FAILURES:
         return None
+
+
+def _scales(solution: Solution, slopes: Array) -> Iterator[Array]:
+    """Units of states and costates, one after the other, in each of which neighbouring extremals may turn slowly.
+
+    They start from the units of the problem and from the largest states along the way: what is next to zero at both
+    ends, as the height above a plane may be, is not so between them. Both are balanced for the steepest rates and for
+    their mean: what is steep for a moment is not what units are for where there is far more time without it.
+    """
+    lasting, n, unit = float(np.ptp(solution.times)), len(solution.x), unit_sizes(solution)
+    steepest = np.abs(slopes).max(axis=2)
+    mean = np.trapezoid(np.abs(slopes), solution.times, axis=2) / lasting
+    largest = np.abs(solution.x).max(axis=1)
+    largest = np.where(largest > 0.0, largest, unit[:n])
+    for begun in (unit, np.concatenate([largest, unit[n:] * unit[:n] / largest])):
+        for sizes in (steepest, mean):
+            yield balanced(begun, sizes, lasting)
 
 
 def between(solution: Solution, found: Segments, station: int, times: Array) -> Array:

@@ -43,8 +43,10 @@ LATER = Check("not strict: the same switches later cost the same", 1.0, 0.0)
 """Why a second variation is not positive, where a shift in time is the whole reason."""
 
 
-def certify(solution: Solution, deadline: float, compare: bool = True, seed: int = 0) -> Certificate:
-    """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`."""
+def certify(
+    solution: Solution, deadline: float, compare: bool = True, seed: int = 0
+) -> tuple[Certificate, Solution | None]:
+    """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`. And an extremal that costs less, if any."""
     limits = Limits(MOST, deadline)
     try:
         again, failed = replay(solution, limits), "flow from the initial costates is finite"
@@ -52,19 +54,20 @@ def certify(solution: Solution, deadline: float, compare: bool = True, seed: int
         again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
     except OutOfTime:
         check = Check("time was up before: flow from the initial costates", 1.0, 0.0)
-        return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance)))
+        return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance))), None
     first = [] if again is None else _first_order(solution, again)
     if not first or not all(c.passed for c in first):
         again, first = _closely(solution, limits) or (again, first)
     if again is None:
-        return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ())
+        return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ()), None
     second: list[Check] = []
     comparison = Comparison()
     if all(c.passed for c in first):
+        second = _sufficient(solution, again, limits)
         comparison = compared(solution, limits, seed) if compare else Comparison()
-        second = [*_sufficient(solution, again, limits), *comparison.checks]
+        second += comparison.checks
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compare)
-    return Certificate(
+    certificate = Certificate(
         verdict=verdict,
         **conditions.headlines(first),
         legendre_clebsch=_legendre(again),
@@ -73,6 +76,7 @@ def certify(solution: Solution, deadline: float, compare: bool = True, seed: int
         competitors=comparison.competitors,
         not_checked=comparison.not_checked,
     )
+    return certificate, comparison.better
 
 
 def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
@@ -131,16 +135,27 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     elif boundaries.on_boundary(again):
         checks += boundaries.sufficient(solution, again)
     elif solution.instance.model.spec.throttled:
-        by = Integration(np.concatenate(typical(solution)), limits)
-        flat = not curvature(solution, extended, by) > CURVED
-        checks.append(Check("second variation in lengths of arcs and directions", float(flat), 0.0))
-        checks += [LATER] if flat and flat_by_shift(solution, extended, by, CURVED) else []
+        checks += _in_lengths(solution, extended, limits)
     elif not any(free):
         second = variation(solution.instance, extended)
         flat = second is None or not second.curvature > CURVED
         checks.append(Check("second variation in the switching times", float(flat), 0.0))
         checks += [LATER] if second is not None and flat and second.flat_by_shift(CURVED) else []
     return checks
+
+
+def _in_lengths(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
+    """The second variation in the lengths of arcs and the directions of vectors."""
+    name = "second variation in lengths of arcs and directions"
+    by = Integration(np.concatenate(typical(solution)), limits)
+    try:
+        flat = not curvature(solution, extended, by) > CURVED
+        later = flat and flat_by_shift(solution, extended, by, CURVED)
+    except TooMuchWork:
+        return [Check(f"{name} is integrated within {EVALUATIONS} evaluations", 1.0, 0.0)]
+    except OutOfTime:
+        return [Check(f"time was up before: {name}", 1.0, 0.0)]
+    return [Check(name, float(flat), 0.0), *([LATER] if later else [])]
 
 
 def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bool:

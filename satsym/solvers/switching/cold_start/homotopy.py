@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.accuracy.refinement import refine
@@ -28,7 +27,6 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
 from satsym.solvers.control.slopes import cost_rate
-from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.minimum_effort import (
     NEAR_FULL,
@@ -89,13 +87,7 @@ def path(
     Stopped
         Where there is none, or the way to the bounds is blocked.
     """
-    try:
-        first = _weighed(instance, limits, begun)
-    except (Stopped, *FAILURES):
-        by_programme = None if begun else _by_programme(instance, limits)
-        if by_programme is None:
-            raise
-        first = by_programme
+    first = _weighed(instance, limits, begun)
     yield from less_and_less(instance, first, limits, most)
 
 
@@ -111,12 +103,6 @@ def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] |
     if reached < 1.0:
         raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
     return Smoothed(weighed(1.0), curve)
-
-
-def _by_programme(instance: Instance, limits: Limits) -> Smoothed | None:
-    """The same from a direct method, which keeps the bounds from the start; ``None`` where that leads nowhere."""
-    found = tried(lambda: direct(regularised(instance, first_smoothing(instance), 1.0), limits))
-    return None if found is None else Smoothed(found[0], found[1].found.curve)
 
 
 def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:

@@ -1,22 +1,29 @@
-"""Controls that are drawn, where no state is asked of the end: all are admissible, none costs less than an optimum.
+"""Controls and extremals that are drawn: what a solution is compared with beside the starts of the search.
 
-Extremals are found by descents, which need not leave the basin in which they begin. A simulation knows no basins: where
-one control of many costs less, what was found is not the optimum, whatever else it is.
+Where no state is asked of the end, all controls are admissible, and none costs less than an optimum. Extremals are
+found by descents, which need not leave the basin in which they begin. A simulation knows no basins: where one control
+of many costs less, what was found is not the optimum, whatever else it is.
+
+Extremals are drawn where a motion is likely to have several minima that few starts show (:func:`several_likely`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
+from satsym.instance import Guess, Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.certificate.simulations import Simulations, simulations_of
 from satsym.solvers.simulation.together import together
+from satsym.solvers.spare_time import frequency, longest, rates_by_states
+from satsym.solvers.switching.linear.linear_motion import linear_motion
 
 GROUPS, DRAWN, WAVES = 8, 96, 4
 """Groups of controls, apart lest all gather in the basin of the solution; controls of each, and harmonics."""
@@ -38,6 +45,13 @@ CERTAIN = 0.1
 
 WORTH = 1e-3
 """What is saved at least, relative to the cost: less may be the error of a grid."""
+
+UNLIKE = 1.0 / 3.0
+"""Share of linearised rates by which they depart from their mean along the way, on average, where motions are nearly
+linear: one that keeps to an orbit has a seventh, one that leaves a well or falls from the top more than half."""
+
+SWING = np.pi
+"""Angle by which the quickest mode turns in time that can be paid for besides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,3 +173,54 @@ def _certain(drawn: Drawn, objective: float) -> bool:
     control = np.array([np.interp(times, coarse, row) for row in drawn.control])
     again, _ = twice(control, fine)
     return saved > WORTH * abs(objective) and abs(again - drawn.cost) < CERTAIN * saved
+
+
+def extremals_below(solution: Solution, seed: int) -> Iterator[Instance]:
+    """The instance of a solution with guesses of its states by extremals that nearly meet and seem to cost less.
+
+    Parameters
+    ----------
+    seed
+        Of what is drawn.
+    """
+    from satsym.solvers.collocation.scaling import two_point
+    from satsym.solvers.drawn_beside import about
+
+    instance, lasting = replace(solution.instance, guess=Guess()), float(np.ptp(solution.times))
+    if not instance.final or not several_likely(solution):
+        return
+    problem = two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None), lasting)
+    for one in about(solution, problem, seed):
+        rows = (one.states * problem.scale.state[:, None]).tolist()
+        states = dict(zip(instance.model.spec.state_names, map(tuple, rows), strict=True))
+        end = instance.t0 + one.duration if instance.tf is None else None
+        yield replace(instance, guess=Guess(states), tf_guess=end)
+
+
+def several_likely(solution: Solution) -> bool:
+    """Whether a motion is likely to have several minima that few starts show.
+
+    So it is where it is far from linear, where it is not linear and controls switch, and where a free duration leaves
+    time for another swing.
+    """
+    nonlinear = any(solution.switching_times) and linear_motion(solution.instance) is None
+    return nonlinear or far_from_linear(solution) or may_swing(solution)
+
+
+def far_from_linear(solution: Solution) -> bool:
+    """Whether linearised rates change much along a solution.
+
+    Those of a linear motion are the same everywhere, and its least cost has one minimum where costs are convex.
+    """
+    size = unit_sizes(solution)[: len(solution.x)]
+    scaled = rates_by_states(solution, 1) * (size / size[:, None])[:, :, None]
+    widths = np.gradient(solution.times)
+    mean = (scaled * widths).sum(axis=2, keepdims=True) / widths.sum()
+    apart, whole = (float(np.linalg.norm(one, axis=(0, 1)) @ widths) for one in (scaled - mean, scaled))
+    return apart > UNLIKE * whole
+
+
+def may_swing(solution: Solution) -> bool:
+    """Whether a free duration leaves time for another swing, which then need not cost more than pushing at once."""
+    spare = longest(solution) - float(solution.times[-1] - solution.times[0])
+    return spare > 0.0 and spare * frequency(solution) > SWING

@@ -1,0 +1,159 @@
+"""Methods that choose between ways to an extremal, by what a model is; most begin with the direct search.
+
+It is asked as well where another way finds nothing, and where something may be cheaper than what that finds.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from satsym.instance import Instance
+from satsym.methods import BOUNDARY_ARCS
+from satsym.solution import Progress, Solution
+from satsym.solvers.certificate.verdict import examined
+from satsym.solvers.constrained.convexity import convex
+from satsym.solvers.iteration import MOST, Limits, deadline_of, unsolved, watched
+from satsym.solvers.search import collocated, levels, solving
+from satsym.status import Verdict
+
+COMPARED = 2_000_000
+"""Unknowns times iterations that a search for a cheaper answer may take."""
+
+CHEAPER = 1e-6
+"""Share of its size, or of that of its terms, by which something must be cheaper to be taken."""
+
+
+def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance whose controls, or norms of vectors, switch between their bounds.
+
+    Parameters
+    ----------
+    instance
+        Of a model with such controls.
+    progress
+        Called after each iteration.
+    """
+    if instance.model.spec.throttled:
+        return solving.solve(instance, progress)
+    from satsym.solvers.switching import solving as switching
+
+    return switching.solve(instance, progress, levels.searched)
+
+
+def collocation(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by collocation, from the search where vanishing costates say nothing of the controls.
+
+    Parameters
+    ----------
+    instance, progress
+        See :func:`satsym.solvers.two_point.solve`.
+    """
+    from satsym.solvers import two_point
+
+    return solving.solve(instance, progress) if _unknown(instance) else two_point.solve(instance, progress)
+
+
+def shooting(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by multiple shooting, from the search where vanishing costates say nothing of the controls.
+
+    Parameters
+    ----------
+    instance, progress
+        See :func:`satsym.solvers.shooting.solving.solve`.
+    """
+    from satsym.solvers.shooting import solving as by_shooting
+
+    if not _unknown(instance):
+        return by_shooting.solve(instance, progress)
+    found = solving.solve(instance, progress)
+    if not found.status.answered:
+        return replace(found, method="shooting")
+    known = collocated.guessing(instance, found.times, found.x, found.lam)
+    return replace(by_shooting.solve(known, progress), instance=instance)
+
+
+def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance with path constraints, or with points on the way, by extremals in arcs.
+
+    Parameters
+    ----------
+    instance
+        Of a model with some of either.
+    progress
+        Called after each iteration while the problem without them is solved.
+    """
+    if instance.model.spec.interior:
+        from satsym.solvers.interior import solving as through_points
+
+        return through_points.solve(instance, progress)
+    from satsym.solvers.constrained import solving as along_boundaries
+
+    return along_boundaries.solve(instance, progress)
+
+
+def _unknown(instance: Instance) -> bool:
+    """Whether vanishing costates say nothing of controls, and no guess says anything."""
+    spec, guess = instance.model.spec, instance.guess
+    known = all(name in guess.state and name in guess.costate for name in spec.state_names)
+    return (spec.directional or spec.stationary) and not (known or spec.in_arcs or instance.solver.free_angles)
+
+
+def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
+    """The answer of a search, or a cheaper one that its certificate knows; ``None`` without one, or where that fails.
+
+    Parameters
+    ----------
+    certified
+        Whether it is examined.
+    """
+    from satsym.solvers.improving import improved
+
+    def found(one: Instance, watching: Progress | None) -> Solution:
+        began = time.perf_counter()
+        limits, history = watched(one, watching)
+        answer = solving.searched(one, replace(limits, work=solving.WORK))
+        if answer is None:
+            return unsolved(one, "collocation", time.perf_counter() - began)
+        return replace(answer, history=tuple(history), wall_s=time.perf_counter() - began)
+
+    answer = improved(found, instance, progress) if certified else found(instance, progress)
+    certificate = answer.certificate
+    failed = certificate is not None and certificate.verdict is Verdict.FAILED
+    return answer if answer.status.answered and not failed else None
+
+
+def _compared(solution: Solution) -> bool:
+    """Whether its certificate has compared an answer with what the search finds in the problem as it was stated."""
+    instance = solution.instance
+    return not instance.free and (solution.method != BOUNDARY_ARCS or convex(instance))
+
+
+def cheaper(stated: Instance, solution: Solution) -> Solution:
+    """An answer, or another one that the search finds and that costs less.
+
+    Parameters
+    ----------
+    stated
+        What was asked: the answer's own instance may lack a final state that follows from others.
+    """
+    began = time.perf_counter()
+    instance = solution.instance if stated.free else stated
+    spec = instance.model.spec
+    if _compared(solution) or spec.linear_quadratic or not solving.applies(instance):
+        return solution
+    limits = Limits(MOST, deadline_of(instance), work=COMPARED)
+    least = solution.objective - CHEAPER * abs(solution.objective)
+    found = min(
+        (one.exact for one in solving.others(instance, solution, limits) if one.exact is not None),
+        key=lambda one: one.objective,
+        default=None,
+    )
+    if found is None or not found.objective < least:
+        return solution
+    message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
+    certificate = examined(found, limits.deadline)[0]
+    if certificate is None or certificate.verdict is Verdict.FAILED:
+        return solution
+    lasted = solution.wall_s + time.perf_counter() - began
+    return replace(found, message=message, certificate=certificate, history=solution.history, wall_s=lasted)

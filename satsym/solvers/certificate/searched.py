@@ -1,0 +1,116 @@
+"""Competitors from the direct search: other starts than the one that led to an answer, and what they come to.
+
+Where these show nothing cheaper, extremals that are drawn are starts as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from satsym.instance import Guess, Instance
+from satsym.solution import Competitors, Kind, Solution
+from satsym.solvers.certificate.comparison import COST_MARGIN, going_round, margin
+from satsym.solvers.certificate.drawn import extremals_below
+from satsym.solvers.iteration import Limits
+from satsym.solvers.revolutions import shifted
+
+WORK = 2_000_000
+"""Unknowns times iterations that all starts together may take."""
+
+TURNED = 400_000
+"""Unknowns times iterations that the search may take for an end that is one turn away."""
+
+GUESSED = 200_000
+"""Unknowns times iterations that the search may take from an extremal that was drawn."""
+
+
+@dataclass(frozen=True)
+class Searched:
+    """What starts came to.
+
+    Attributes
+    ----------
+    competitors
+        One for each kind.
+    better
+        The cheapest extremal that costs less than the answer, if any.
+    """
+
+    competitors: tuple[Competitors, ...]
+    better: Solution | None
+
+
+def kinds(instance: Instance) -> list[Kind]:
+    """Kinds of starts that an instance has."""
+    round_ = [Kind.REVOLUTIONS] if _angles(instance) else going_round(instance)
+    return [Kind.STARTS, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
+
+
+def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
+    """Compare an answer with what the search's starts come to; starts that the clock ends are left out.
+
+    Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
+    more, is compared as well; where an end can be met at once, so is the cost of that.
+
+    Parameters
+    ----------
+    seed
+        Of what is drawn.
+    """
+    from satsym.solvers.search import solving
+
+    instance = replace(solution.instance, guess=Guess())
+    within = replace(limits, work=limits.meter.spent + WORK, watch=None)
+    costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
+    better: Solution | None = None
+    for one in solving.others(instance, solution, within):
+        if limits.late:
+            break
+        kind = Kind.REVOLUTIONS if one.plan.turns is not None else Kind.STARTS
+        kind = Kind.DURATIONS if instance.tf is None and one.plan.scale != 1.0 and one.plan.turns is None else kind
+        costs[kind if kind in costs else Kind.STARTS].append(one.cost)
+        if one.exact is not None and (better is None or one.exact.objective < better.objective):
+            better = one.exact
+    for turned in _turned(instance):
+        within = replace(within, work=limits.meter.spent + TURNED)
+        found = None if limits.late else solving.searched(turned, within)
+        costs[Kind.REVOLUTIONS].append(math.nan if found is None else found.objective)
+        if found is not None and found.objective < (solution if better is None else better).objective:
+            better = found
+    for guess in [] if better else extremals_below(solution, seed):
+        within = replace(within, work=limits.meter.spent + GUESSED)
+        found = None if limits.late else solving.searched(guess, within)
+        costs[Kind.STARTS].append(math.nan if found is None else found.objective)
+        if found is not None and margin(found.objective, solution.objective, COST_MARGIN) < 0.0:
+            better = replace(found, instance=instance)
+            break
+    if instance.tf is None and math.isfinite(cost := _at_once(solution)):
+        costs[Kind.DURATIONS].append(cost)
+    return Searched(tuple(_summed(costs)), better)
+
+
+def _angles(instance: Instance) -> list[str]:
+    """Final angles that count modulo a turn."""
+    return [name for name in instance.solver.free_angles if name in instance.final]
+
+
+def _turned(instance: Instance) -> list[Instance]:
+    """An instance with one turn less and one more of each such angle."""
+    return [shifted(instance, {name: turns}) for name in _angles(instance) for turns in (-1, 1)]
+
+
+def _at_once(solution: Solution) -> float:
+    """The cost of ending where and when the motion begins; infinite where that is no end."""
+    from satsym.solvers.collocation.scaling import two_point
+
+    lasting = float(solution.times[-1]) - solution.instance.t0
+    return two_point(replace(solution.instance, guess=Guess(), free=()), lasting).at_once
+
+
+def _summed(costs: dict[Kind, list[float]]) -> Iterator[Competitors]:
+    for kind, own in costs.items():
+        solved: Sequence[float] = [cost for cost in own if not math.isnan(cost)]
+        if own:
+            yield Competitors(kind, len(own), len(solved), min(solved, default=math.nan))

@@ -1,0 +1,58 @@
+"""The check of a law over a product of sets sees a slip in it, however close H is to its minimum there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import mpmath as mp
+import pytest
+import sympy as sp
+
+from satsym.symbolic import Annulus, Ball, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive
+from satsym.symbolic.functions.minimisers import Clip
+from satsym.symbolic.functions.roots import minimum_between
+from satsym.symbolic.principle import product
+
+STATES = (Variable("x", "x"), Variable("y", "y"))
+CONTROLS = (Variable("u", "u"), Variable("v", "v"), Variable("w", "w"))
+x, y, u, v, w = sp.symbols("x y u v w", real=True)
+SMALL = 1 + sp.Rational(1, 10**14)
+
+
+def problem(sets: dict[str, Box | Ball | Free | Annulus], cost: sp.Expr) -> Problem:
+    rates = {x: y + 3 * u, y: v - 7 * w - x}
+    model = FirstOrder(name="m", title="M", states=STATES, controls=CONTROLS, parameters=(), rates=rates)
+    return Problem(name="task", title="Task", model=model, running_cost=cost, control_sets=sets)
+
+
+CASES = [
+    ({"a": Box("u"), "b": Ball("v", "w")}, u**2 / 500 + v**2 + w**2),
+    ({"a": Free("u", "v"), "b": Box("w")}, u**2 / 500 + v**2 + 40 * w**2),
+    ({"a": Ball("u", "v"), "b": Free("w")}, u**2 + v**2 + w**2 / 3),
+    ({"a": Annulus("u", "v"), "b": Box("w")}, u**2 + v**2 + w**2 / 3),
+    ({"a": Ball("u", "v"), "b": Box("w")}, w**2 / 3),
+]
+
+
+@pytest.mark.parametrize("stated", [problem(*case) for case in CASES])
+def test_a_slip_in_the_law_over_a_set_is_refused(stated: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = replace(found := derive(stated), steps=found.steps[: [s.name for s in found.steps].index("control_law")])
+    law_of: Callable[..., list[sp.Expr]] = product.law_of
+
+    def wrong(of: Problem, one: object) -> list[sp.Expr]:
+        first, *others = law_of(of, one)
+        return [Clip(SMALL * first.args[0], *first.args[1:]) if isinstance(first, Clip) else SMALL * first, *others]
+
+    assert before.extended(product.control_law(before))
+    monkeypatch.setattr(product, "law_of", wrong)
+    with pytest.raises(DerivationError, match="control_law failed its check"):
+        before.extended(product.control_law(before))
+
+
+def test_what_is_least_at_an_end_is_that_end_to_the_last_digit() -> None:
+    with mp.workdps(30):
+        end = mp.mpf("1.3e-9")
+        for slope, expected in ((5, -end), (-5, end)):
+            assert minimum_between(lambda z, s=slope: (s + z**3, 3 * z**2), -end, end) == expected
+        assert minimum_between(lambda z: (1 / z - 10, -1 / z**2 + 10), 0, 1) <= 1
