@@ -114,7 +114,8 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
         if off.any():
             yield guess(instance, seen, off)
         return
-    if (read := read_norm(at)) is not None:
+    read = read_norm(at)
+    if read is not None and any(read[0]):  # burns that are shorter than an interval are not read
         levels, edges = read
         structure = Structure((tuple(UPPER if label else LOWER for label in levels),))
         yield replace(plain, structure=structure, times=edges[1:-1])

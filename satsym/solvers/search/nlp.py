@@ -32,6 +32,8 @@ class Found:
         Whether it is optimal, at least acceptably.
     multipliers
         Of the rows.
+    smoother
+        The solution of the same problem with norms that are smoothed more, at which this one began, if it did.
     """
 
     programme: Programme
@@ -40,6 +42,7 @@ class Found:
     objective: float
     iterations: int
     solved: bool
+    smoother: Found | None = None
 
 
 class _Watched:

@@ -269,7 +269,7 @@ def _less_smoothed(
     for programme in programmes[1:]:
         if not found.solved:
             break
-        found = nlp.solve(programme, found.unknown, limits, most, near=True)
+        found = replace(nlp.solve(programme, found.unknown, limits, most, near=True), smoother=found)
     known.append((first.objective, found))
     return found
 
@@ -308,16 +308,11 @@ def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
     """What was found, on meshes that are ever finer."""
     yield motion(found)
     for number in range(MESHES):
-        old = found.programme
         meshes, _ = refined(found)
-        if sum(len(mesh) - 1 for mesh in meshes) == old.intervals:
+        if sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals:
             return
-        programme = Programme(old.instance, old.controls, meshes, old.sizes, SMOOTHINGS[number], old.loose)
-        start = starts.carried(programme, old, found.unknown)
         with np.errstate(all="ignore"):
-            one = nlp.solve(programme, start, limits, AGAIN, near=True)
-            if not one.solved and not limits.expired:
-                one = nlp.solve(programme, start, limits, ITERATIONS)
+            one = _again(found, meshes, SMOOTHINGS[number], limits)
         if not one.solved:
             return
         settled = abs(one.objective - found.objective) <= SETTLED * abs(one.objective)
@@ -325,3 +320,21 @@ def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
         yield motion(found)
         if settled:
             return
+
+
+def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
+    """The solution on other meshes that is near one that was found.
+
+    Where that began at a smoother one, so does this: next to bounds, controls that are hardly smoothed jump from point
+    to point, and are no start for finer meshes.
+    """
+    old = found.programme
+    programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
+    first = None if found.smoother is None else replace(found.smoother, smoother=None)
+    smoother = None if first is None else _again(first, meshes, first.programme.smoothing, limits)
+    if smoother is not None and smoother.solved:
+        one = nlp.solve(programme, smoother.unknown, limits, AGAIN, near=True)
+        return replace(one, smoother=smoother)
+    start = starts.carried(programme, old, found.unknown)
+    one = nlp.solve(programme, start, limits, AGAIN, near=True)
+    return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)

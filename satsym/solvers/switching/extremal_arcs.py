@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import count
+from itertools import count, pairwise
 
 import numpy as np
 
@@ -33,6 +33,9 @@ WHOLE = 1.0
 ROUGHLY = 1e6
 """So many times larger may errors of the derivatives be: Newton's method corrects itself."""
 
+
+CORNERS, LOOKED = 1e-9, 64
+"""Relative error of the times of corners, and how many stretches of a piece are looked at."""
 
 MOST = 2000
 """Evaluations of a piece with a singular control: off its manifold such a motion may leave for infinity, and steps
@@ -195,6 +198,8 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
     if abs(end - start) <= ROUNDING * max(abs(start), abs(end)):
         return z + (end - start) * np.array(field.rates(start, z.tolist())), np.eye(rows)
     evaluations = count()
+    corners = _corners(field, start, end, z, sizes) if tolerance <= TOLERANCE else []
+    through = np.array([start, *corners, end])
 
     def counted() -> None:
         if next(evaluations) > MOST and field.singular is not None:
@@ -206,7 +211,7 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
             counted()
             return np.array(field.rates(t, y.tolist()))
 
-        return integrate(rates, np.array([start, end]), z, tolerance, sizes, WHOLE)[0].end, np.zeros(0)
+        return integrate(rates, through, z, tolerance, sizes, WHOLE)[-1].end, np.zeros(0)
 
     def both(t: float, y: Array) -> Array:
         counted()
@@ -215,5 +220,43 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
 
     values = np.concatenate([z, np.eye(rows).ravel()])
     scale = np.concatenate([sizes, ROUGHLY * np.outer(sizes, 1.0 / sizes).ravel()])
-    found = integrate(both, np.array([start, end]), values, tolerance, scale, WHOLE)[0].end
+    found = integrate(both, through, values, tolerance, scale, WHOLE)[-1].end
     return found[:rows], found[rows:].reshape(rows, rows)
+
+
+def _corners(field: Field, start: float, end: float, z: Array, sizes: Array) -> list[float]:
+    """Times within a piece at which controls that do not switch meet or leave bounds.
+
+    Rates are continuous there, so that an error in such a time counts by its square.
+    """
+    if not len(field.sides(start, z.tolist())):
+        return []
+    from scipy.integrate import solve_ivp
+
+    solution = solve_ivp(
+        lambda t, y: field.rates(t, y.tolist()),
+        (start, end),
+        z,
+        "DOP853",
+        rtol=CORNERS,
+        atol=CORNERS * sizes,
+        dense_output=True,
+    )
+    if not solution.success:
+        return []
+
+    def sides(t: float) -> list[bool]:
+        return list(field.sides(t, solution.sol(t).tolist()))
+
+    times = np.linspace(start, end, LOOKED + 1).tolist()
+    found, before = list[float](), sides(start)
+    for low, high in pairwise(times):
+        after = sides(high)
+        if after != before:
+            a, b = low, high
+            while abs(b - a) > CORNERS * abs(end - start):
+                middle = (a + b) / 2.0
+                a, b = (middle, b) if sides(middle) == before else (a, middle)
+            found.append(b)
+        before = after
+    return found

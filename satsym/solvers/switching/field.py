@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import Row
@@ -60,6 +61,10 @@ class Field:
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
         """The controls, shape (m,)."""
         return self.saturated if self.singular is None else self._feedback(t, z)[0]
+
+    def sides(self, t: float, z: list[float]) -> NDArray[np.bool_]:
+        """On which bounds controls are that do not switch: where this changes, rates have a corner."""
+        return np.zeros(0, bool)
 
     def rates(self, t: float, z: list[float]) -> list[float]:
         """dz/dt, 2n numbers."""

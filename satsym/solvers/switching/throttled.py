@@ -8,6 +8,7 @@ keeps its level, and what is left follows the costates: the canonical equations 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet, Row
@@ -21,6 +22,9 @@ from satsym.solvers.switching.structure import BOUNDARY
 NOTHING = 1e-300
 """A level that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
 
+ON_BOUND = 1e-12
+"""Distance from a bound at which a control is on it."""
+
 
 class ThrottledField(Field):
     """Rates of states and costates while every norm and control that switches keeps its level; see :class:`Field`."""
@@ -30,6 +34,7 @@ class ThrottledField(Field):
         if self.singular is not None:
             raise ArithmeticError("no law is known for a level that nothing decides")
         throttled = [places for places, part in instance.control_set.parts if part.throttled]
+        self.steered = [one for one in instance.control_set.parts if not one[1].throttled and one[1].bounded]
         self.none = [i for places, level in zip(throttled, self.saturated, strict=True) for i in places if not level]
         self.arguments = instance.control_set.saturated(tuple(level or NOTHING for level in self.saturated)).arguments
 
@@ -39,6 +44,13 @@ class ThrottledField(Field):
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
         u = self.model.control_law(t, z[: self.n], z[self.n :], self.p, self.arguments)
         return tuple(0.0 if i in self.none else value for i, value in enumerate(u))
+
+    def sides(self, t: float, z: list[float]) -> NDArray[np.bool_]:
+        if not self.steered:
+            return np.zeros(0, bool)
+        u = self.control(t, z)
+        rows = [part.excess(np.array([[u[i]] for i in places]))[:, 0] for places, part in self.steered]
+        return np.abs(np.concatenate(rows)) <= ON_BOUND
 
     def rates(self, t: float, z: list[float]) -> list[float]:
         return list(self.model.canonical(t, z[: self.n], z[self.n :], self.p, self.arguments))
