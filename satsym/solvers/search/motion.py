@@ -10,6 +10,10 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.solvers.search.nlp import Found
+from satsym.solvers.search.transcription import DEGREE, RADAU, basis
+
+START = np.array([[one(0.0)] for one in basis(RADAU)])
+"""Weights of the points of an interval in the value at its start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +49,7 @@ def motion(found: Found) -> Motion:
     n, points, scale = len(x), programme.count, programme.sizes.cost
     rows = found.multipliers[programme.kinds["defects"].places].reshape(points, n).T
     lam = -rows / programme.sizes.states[:, None] / programme.weights * scale
-    first = lam[:, :1] + (lam[:, :1] - lam[:, 1:2]) * 0.5
+    first = lam[:, :DEGREE] @ START
     steps = (programme.steps @ durations) * programme.weights
     held = len(programme.points.kept)
     eta = np.empty((0, points))

@@ -32,6 +32,8 @@ class Found:
         Whether it is optimal, at least acceptably.
     multipliers
         Of the rows.
+    objective
+        The cost without what smoothing adds to it.
     smoother
         The solution of the same problem with norms that are smoothed more, at which this one began, if it did.
     """
@@ -106,12 +108,12 @@ def solve(
     with np.errstate(all="ignore"):
         w, report = problem.solve(np.clip(start, low, high))
     solved = report["status"] in (SOLVED, ACCEPTED)
-    w = np.asarray(w)
+    w, multipliers = np.asarray(w), np.asarray(report["mult_g"])
     return Found(
         programme,
         w,
-        np.asarray(report["mult_g"]),
-        programme.objective(w) * programme.sizes.cost,
+        multipliers,
+        (programme.objective(w) - programme.raised(multipliers)) * programme.sizes.cost,
         watched.iterations,
         solved,
     )

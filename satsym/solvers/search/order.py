@@ -256,6 +256,8 @@ def _less_smoothed(
 ) -> Found:
     """The solution of the last of several programmes that differ in smoothing, each begun at that of the one before.
 
+    Of the last that is solved: next to bounds, what is hardly smoothed may take very many iterations.
+
     Parameters
     ----------
     known
@@ -267,9 +269,10 @@ def _less_smoothed(
         if before is not None:
             return before
     for programme in programmes[1:]:
-        if not found.solved:
+        one = nlp.solve(programme, found.unknown, limits, most, near=True) if found.solved else found
+        if not one.solved:
             break
-        found = replace(nlp.solve(programme, found.unknown, limits, most, near=True), smoother=found)
+        found = replace(one, smoother=found)
     known.append((first.objective, found))
     return found
 
@@ -334,7 +337,7 @@ def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) 
     smoother = None if first is None else _again(first, meshes, first.programme.smoothing, limits)
     if smoother is not None and smoother.solved:
         one = nlp.solve(programme, smoother.unknown, limits, AGAIN, near=True)
-        return replace(one, smoother=smoother)
+        return replace(one, smoother=smoother) if one.solved else smoother
     start = starts.carried(programme, old, found.unknown)
     one = nlp.solve(programme, start, limits, AGAIN, near=True)
     return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)

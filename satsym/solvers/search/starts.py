@@ -93,7 +93,8 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         if given or np.isnan(end[places]).any():
             usual = int(speed * duration / (2.0 * np.pi))
             turns = dict.fromkeys((usual, usual - 1, usual + 1))
-            found[1:1] = [*(Plan(turns=k) for k in turns), Plan(coasting=True)]
+            first = 0 if speed > 0.0 else 1  # a straight line leads through the centre of what goes round
+            found[first:first] = [*(Plan(turns=k) for k in turns), Plan(coasting=True)]
         elif speed > 0.0:
             angle = _swept(start, end, round_)
             rounds = [Plan(turns=k, scale=max(abs(angle + 2.0 * np.pi * k) / speed / duration, 0.2)) for k in TURNS]

@@ -251,6 +251,9 @@ class Transcription:
             if name in instance.ranges:
                 low[i, -1], high[i, -1] = instance.ranges[name]
         v_low, v_high = (np.repeat(row[:, None], points, 1) for row in (self.controls.lower, self.controls.upper))
+        for norm in self.controls.norms:
+            if norm.spot is not None:  # no smoothing takes anything from the largest norm
+                v_high[norm.spot] = np.hypot(norm.outer, self.smoothing * norm.outer)
         given = instance.tf is not None and self.phases == 1 and not self.starts
         scale = self.sizes.duration
         exact = 0.0 if instance.tf is None else instance.tf - instance.t0
@@ -310,6 +313,15 @@ class Transcription:
         if norm.spot is None:
             return np.asarray(length)
         return np.asarray(length - (y[n + norm.spot] / unit) ** 2 + self.smoothing**2)
+
+    def raised(self, multipliers: Array) -> float:
+        """By how much the smoothing of norms raises the cost, in units of its size and to first order.
+
+        Its derivative by the squared smoothing is the sum of the multipliers of their rows (the envelope theorem). Where
+        norms vanish, the cost rises linearly with the smoothing, so that this counts twice.
+        """
+        rows = [self.kinds[f"norm{k}"] for k, norm in enumerate(self.controls.norms) if norm.spot is not None]
+        return 2.0 * self.smoothing**2 * float(sum(multipliers[row.places].sum() for row in rows))
 
     def objective(self, w: Array) -> float:
         """The cost in units of its size."""
