@@ -14,7 +14,7 @@ from satsym import methods
 from satsym.instance import Instance
 from satsym.methods import Method
 from satsym.solution import Progress, Simulation, Solution
-from satsym.solvers.iteration import TimeUp
+from satsym.solvers.iteration import TimeUp, deadline_of, hurried
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
@@ -94,17 +94,25 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None, 
 
     if not search.applies(instance) or (search.begins(instance.model.spec) and not instance.free):
         return solver(instance, progress)
+    deadline = deadline_of(instance)
     solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)
     solution = replace(solution, instance=replace(solution.instance, work=instance.work))
     if solution.status.answered:
         return by_search.cheaper(instance, solution) if examined else solution
     if solution.status not in (Status.NOT_CONVERGED, Status.TIME_LIMIT):
         return solution
-    found = by_search.instead(instance, progress, examined)
+    left = hurried(instance, deadline)
+    found = None if left is None else by_search.instead(left, progress, examined)
     if found is not None:
-        found = replace(found, wall_s=found.wall_s + solution.wall_s)
+        found = replace(_in_full(found, instance), wall_s=found.wall_s + solution.wall_s)
         return by_search.cheaper(instance, found) if examined else found
-    return solver(instance, progress) if solution.status is Status.TIME_LIMIT else solution
+    left = hurried(instance, deadline) if solution.status is Status.TIME_LIMIT else None
+    return solution if left is None else _in_full(solver(left, progress), instance)
+
+
+def _in_full(found: Solution, instance: Instance) -> Solution:
+    """A solution whose instance has the options of what was asked, not those that were left of its time."""
+    return replace(found, instance=replace(found.instance, solver=instance.solver))
 
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:

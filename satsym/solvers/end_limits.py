@@ -14,8 +14,6 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-import msgspec
-
 from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.solution import Kind, Progress, Solution
@@ -118,14 +116,13 @@ class Trials:
 
     def by(self, solver: Solver, met: Met, work: float) -> Solution:
         """The solution with these ends by a solver; no answer where time is up, or such an end is refused."""
-        left = self.deadline - iteration.computed()
+        begun = iteration.hurried(self.instance.meeting(met), self.deadline)
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
-        if left <= 0.0:
+        if begun is None:
             self.late = True
             return replace(nothing, status=Status.TIME_LIMIT, message="time was up before all ends were tried")
-        options = msgspec.structs.replace(self.instance.solver, max_seconds=left)
         try:
-            found = solver(replace(self.instance.meeting(met), solver=options, work=work), self.progress)
+            found = solver(replace(begun, work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
             self.refused[frozenset(met.items())] = error
             return replace(nothing, status=Status.NOT_CONVERGED, message=str(error))

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-import msgspec
 import numpy as np
 
 from satsym.instance import Guess, Instance
@@ -131,11 +130,10 @@ def _again(
     start: Instance, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
 ) -> Solution | None:
     """The solution to which an instance with a guess leads; ``None`` where it is not cheaper, or time is up."""
-    instance, left = solution.instance, deadline - iteration.computed()
-    if left <= 0.0:
+    instance, begun = solution.instance, iteration.hurried(start, deadline)
+    if begun is None:
         return None
-    options = msgspec.structs.replace(instance.solver, max_seconds=left)
-    found = solver(replace(start, solver=options), progress)
+    found = solver(begun, progress)
     if not found.status.answered or not found.objective < solution.objective:
         return None
     message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"

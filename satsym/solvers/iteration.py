@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Protocol, TypeVar
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -119,6 +120,14 @@ class Limits:
     def expired(self) -> bool:
         """Whether the time is over, or all work done that may be."""
         return self.meter.spent > self.work or self.late
+
+
+def hurried(instance: Instance, deadline: float) -> Instance | None:
+    """An instance that may take as long as is left until a deadline; ``None`` where nothing is left."""
+    left = deadline - computed()
+    if left <= 0.0:
+        return None
+    return replace(instance, solver=msgspec.structs.replace(instance.solver, max_seconds=left))
 
 
 def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list[Iteration]]:

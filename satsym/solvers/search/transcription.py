@@ -317,8 +317,8 @@ class Transcription:
     def raised(self, multipliers: Array) -> float:
         """By how much the smoothing of norms raises the cost, in units of its size and to first order.
 
-        Its derivative by the squared smoothing is the sum of the multipliers of their rows (the envelope theorem). Where
-        norms vanish, the cost rises linearly with the smoothing, so that this counts twice.
+        Its derivative by the squared smoothing is the sum of the multipliers of their rows (the envelope theorem).
+        Where norms vanish, the cost rises linearly with the smoothing, so that this counts twice.
         """
         rows = [self.kinds[f"norm{k}"] for k, norm in enumerate(self.controls.norms) if norm.spot is not None]
         return 2.0 * self.smoothing**2 * float(sum(multipliers[row.places].sum() for row in rows))

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-import msgspec
 import numpy as np
 
 from satsym.arrays import Array
@@ -14,7 +13,7 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place, Unknown
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.start import slope
-from satsym.solvers.iteration import computed
+from satsym.solvers.iteration import hurried
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -76,11 +75,10 @@ class Trials:
             if not (math.isfinite(value) and unknown.admits(self.instance, value)):
                 return None
             found = unknown.at(found, value)
-        left = self.deadline - computed()
-        if left <= 0.0:
+        begun = hurried(found, self.deadline)
+        if begun is None:
             raise Late
-        options = msgspec.structs.replace(found.solver, max_seconds=left)
-        return replace(found, free=(), solver=options)
+        return replace(begun, free=())
 
     def __call__(self, at: Array) -> Trial | None:
         """The trial at a choice; ``None`` where that has no answer."""
