@@ -116,13 +116,13 @@ class Trials:
 
     def by(self, solver: Solver, met: Met, work: float) -> Solution:
         """The solution with these ends by a solver; no answer where time is up, or such an end is refused."""
-        begun = iteration.hurried(self.instance.meeting(met), self.deadline)
+        begun = iteration.hurried(self.instance, self.deadline)
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
             return replace(nothing, status=Status.TIME_LIMIT, message="time was up before all ends were tried")
         try:
-            found = solver(replace(begun, work=work), self.progress)
+            found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
             self.refused[frozenset(met.items())] = error
             return replace(nothing, status=Status.NOT_CONVERGED, message=str(error))

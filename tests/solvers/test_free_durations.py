@@ -109,8 +109,8 @@ def test_the_best_final_time_is_what_golden_section_finds(name, c0, near):
 @pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("c0", WEIGHTS[:3])
 def test_free_ends_have_a_best_final_time_where_moving_pays(c0, fraction):
-    best = float(two_point.solve(weighed(FIVE, c0)).times[-1])
-    found = two_point.solve(weighed(FIVE, c0, fraction * best))
+    best = float(solve(weighed(FIVE, c0)).times[-1])
+    found = solve(weighed(FIVE, c0, fraction * best))
     assert_least(found, FIVE, c0)
 
 
