@@ -247,12 +247,12 @@ def _started(
         if limits.expired:
             return
         with np.errstate(all="ignore"):
-            found = _less_smoothed(programmes, starts.begun(programmes[0], plan), limits, most, known)
+            found = _less_smoothed(programmes, plan, limits, most, known)
         yield plan, found
 
 
 def _less_smoothed(
-    programmes: Sequence[Programme], start: Array, limits: Limits, most: int, known: list[tuple[float, Found]]
+    programmes: Sequence[Programme], plan: Plan, limits: Limits, most: int, known: list[tuple[float, Found]]
 ) -> Found:
     """The solution of the last of several programmes that differ in smoothing, each begun at that of the one before.
 
@@ -263,7 +263,8 @@ def _less_smoothed(
     known
         Costs of the first programme and what they led to; what is found is added.
     """
-    first = found = nlp.solve(programmes[0], start, limits, most)
+    start = starts.begun(programmes[0], plan)
+    first = found = nlp.solve(programmes[0], start, limits, most, near=plan.held is not None)
     if len(programmes) > 1 and first.solved:
         before = next((last for cost, last in known if _same(cost, first.objective)), None)
         if before is not None:

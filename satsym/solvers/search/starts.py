@@ -1,7 +1,8 @@
 """Where programmes are started: a short fixed list of motions, whatever the problem.
 
-The straight line to the end, coasts from both ends, revolutions about the origin, the straight line with controls bent
-by drawn waves; durations that are free are guessed several times as long.
+The straight line to the end, controls that are held next to a bound where no end is given, coasts from both ends,
+revolutions about the origin, the straight line with controls bent by drawn waves; durations that are free are guessed
+several times as long.
 """
 
 from __future__ import annotations
@@ -34,6 +35,9 @@ FREELY, DRAWS = 1.0, 40
 MORE, WIDER = 24, (0.3, 1.0, 3.0)
 """Further starts where the first ones come to several costs, and how far they are bent."""
 
+HELD = 0.96
+"""Share of their ranges at which controls are held next to their bounds."""
+
 TURNS = (0, -1, 1, 2, 3)
 """Revolutions that are tried where the duration is free; one less than none is the other way round."""
 
@@ -58,6 +62,8 @@ class Plan:
         By which random numbers free ends are drawn; 0 where they are not.
     guessed
         Whether states and controls are those that the instance guesses, as far as it does.
+    held
+        The share of their ranges, between -1 and 1, at which controls are held all along.
     """
 
     scale: float = 1.0
@@ -68,6 +74,7 @@ class Plan:
     turned: float | None = None
     drawn: int = 0
     guessed: bool = False
+    held: float | None = None
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
@@ -101,9 +108,18 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
             found = rounds + found
     elif given and len(instance.final) >= len(start) - 1:
         found.insert(1, Plan(coasting=True))
+    if np.isnan(end).all() and len(_ranged(controls)):
+        found[1:1] = [Plan(held=share) for share in (HELD, -HELD)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
+
+
+def _ranged(controls: Controls) -> Places:
+    """Places of controls that have two bounds of their own."""
+    lifted = {place for lift in controls.lifts for place in lift.places}
+    given = [place for place in range(controls.given) if place not in lifted]
+    return np.array([k for k in given if np.isfinite(controls.lower[k]) and np.isfinite(controls.upper[k])], int)
 
 
 def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
@@ -148,6 +164,10 @@ def begun(programme: Programme, plan: Plan) -> Array:
     if plan.turned is not None:
         for cosine, sine in controls.angles.values():
             v[cosine], v[sine] = np.cos(np.pi * plan.turned), np.sin(np.pi * plan.turned)
+    if plan.held is not None:
+        at = _ranged(controls)
+        low, high = controls.lower[at], controls.upper[at]
+        v[at] = 0.5 * (low + high) + 0.5 * plan.held * (high - low)
     start, end = _drawn_ends(programme, plan, start, end)
     free = np.isnan(end)
     x = start[:, None] + np.where(free, 0.0, end - start)[:, None] * share
