@@ -77,7 +77,7 @@ def _inside(a: Array, b: Array, c: Array) -> Array:
     ("bound", "structure"),
     [
         (0.25, "-+-+"),
-        pytest.param(0.2, "+-+-+-", marks=pytest.mark.xfail(reason="which extremal is found hangs on rounding")),
+        (0.2, "+-+-+-"),
         pytest.param(0.15, "-+-+-+-", marks=pytest.mark.study),
     ],
 )

@@ -19,6 +19,7 @@ from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import order
 from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.reading import read_norm
+from satsym.solvers.search.transcription import DEGREE
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.recognition import LONG, Sample, guess
@@ -136,7 +137,7 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
     """Where controls are at neither bound for long, shape (m, N), and a sample whose signs are those of the others.
 
     A programme's control may jump between its bounds from point to point where it is singular. So it counts as off its
-    bounds between any two stretches in which it is at one for long.
+    bounds between any two stretches in which it is at one for long, or, at either end of the motion, for an interval.
     """
     low, high = instance.control_set.box
     edge, lasting = AT_BOUND * (high - low), float(np.ptp(seen.times))
@@ -145,7 +146,8 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
     off, sigma = np.zeros(at.shape, bool), seen.sigma.copy()
     for row, labels in enumerate(at):
         for first, last, label in _stretches(labels):
-            if label and seen.times[last] - seen.times[first] >= LONG * lasting:
+            outer = last - first >= DEGREE and (first == 0 or last == len(labels) - 1)
+            if label and (outer or seen.times[last] - seen.times[first] >= LONG * lasting):
                 sigma[row, first : last + 1] = -label * np.maximum(np.abs(sigma[row, first : last + 1]), 1e-300)
             else:
                 off[row, first : last + 1] = True
