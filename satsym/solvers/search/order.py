@@ -334,11 +334,18 @@ def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) 
     """
     old = found.programme
     programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
-    first = None if found.smoother is None else replace(found.smoother, smoother=None)
-    smoother = None if first is None else _again(first, meshes, first.programme.smoothing, limits)
+    begun = found if old.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
+    smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
     if smoother is not None and smoother.solved:
-        one = nlp.solve(programme, smoother.unknown, limits, AGAIN, near=True)
+        one = nlp.solve(programme, smoother.unknown, limits, BESIDE, near=True)
         return replace(one, smoother=smoother) if one.solved else smoother
+    return _carried(found, meshes, smoothing, limits)
+
+
+def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
+    """The solution on other meshes to which one leads directly."""
+    old = found.programme
+    programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
     start = starts.carried(programme, old, found.unknown)
     one = nlp.solve(programme, start, limits, AGAIN, near=True)
     return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)
