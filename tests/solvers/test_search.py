@@ -364,6 +364,30 @@ def test_singular_derivatives_end_an_attempt(monkeypatch: pytest.MonkeyPatch) ->
     assert newton.newton(problem, np.zeros(count), LIMITS) is None
 
 
+@pytest.mark.parametrize("smoothing", [1e-1, 1e-2, 1e-3])
+def test_what_smoothing_adds_to_a_cost_is_taken_from_it(smoothing: float) -> None:
+    """Two burns that last b with b (T - b) = 1 are cheapest, and cost 2 b."""
+    case, least = instances.load("double-integrator-fuel"), 3.0 - np.sqrt(5.0)
+    even = programme_of(case, 80)
+    programme = Programme(case, even.controls, even.meshes, even.sizes, smoothing)
+    found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+    assert found.solved
+    plain = programme.objective(found.unknown) * programme.sizes.cost
+    assert plain - least > 10.0 * abs(found.objective - least)
+    assert found.objective == pytest.approx(least, rel=max(2.0 * smoothing**2, 3e-5))
+
+
+def test_no_smoothing_takes_anything_from_the_largest_norm() -> None:
+    """In the least time thrust is full all along, which a norm that is rounded off would not reach."""
+    case = replace(instances.load("double-integrator-fuel"), tf=2.0 + 1e-9)
+    even = programme_of(case)
+    programme = Programme(case, even.controls, even.meshes, even.sizes, 1e-1)
+    found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+    assert found.solved
+    u = programme.controls.controls(programme.unpacked(found.unknown)[1])
+    assert np.abs(u).min() > 0.999
+
+
 def test_programmes_end_with_the_work_that_is_allowed() -> None:
     programme = programme_of(instances.load("reorientation"))
     limits = Limits(MOST, np.inf, work=3.5 * programme.unknowns)
