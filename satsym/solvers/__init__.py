@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.methods import Method
 from satsym.solution import Progress, Simulation, Solution
 from satsym.solvers.iteration import TimeUp, deadline_of, hurried
-from satsym.status import BadInput, Status
+from satsym.status import BadInput, Status, Verdict
 
 if TYPE_CHECKING:
     from satsym.solvers.redundant_ends import Redundant
@@ -167,11 +167,16 @@ def _by_method(instance: Instance, progress: Progress | None, examined: bool) ->
     solution = _solved(method, instance, progress, examined)
     if automatic and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
         shot = _solved(methods.METHODS["shooting"], instance, progress, examined)
-        if shot.status.answered:
+        if shot.status.answered and not _refuted(shot):
             return replace(shot, message=f"{shot.message}; by collocation {solution.message}")
     if automatic and solution.status is Status.NOT_CONVERGED and not methods.refusal(methods.SWEEP.name, instance):
         return _confirmed(_solved(methods.SWEEP, instance, progress), method, progress)
     return solution
+
+
+def _refuted(solution: Solution) -> bool:
+    """Whether an answer has a certificate that says that it is none."""
+    return solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
 
 
 def _nearly(solution: Solution) -> bool:

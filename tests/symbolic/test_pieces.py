@@ -11,7 +11,9 @@ from scipy.integrate import quad
 from scipy.interpolate import make_interp_spline
 
 import satsym
-from satsym.status import Status
+from satsym.front.instance import as_case
+from satsym.solvers.control.breaks import find_breaks
+from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of, t
 from satsym.symbolic.checks import numeric
 from satsym.symbolic.functions.pieces import Until, breaks, in_pieces
@@ -124,7 +126,20 @@ def test_a_cart_that_is_pushed_by_a_schedule_is_brought_to_rest_with_least_effor
     asked = satsym.Instance.of(drifting(force), initial={"x": 0, "v": 0}, final={"x": 1, "v": 0}, tf=3)
     found = satsym.solve(asked)
     assert found.status is Status.CONVERGED
-    assert found.objective == pytest.approx(least(force, ends), rel=1e-8)
+    assert found.objective == pytest.approx(least(force, ends), rel=1e-11)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate.checks
+
+
+def test_breaks_of_schedules_are_found_to_the_last_digit() -> None:
+    """Jumps and corners are breaks, and neither a zero of what is smooth nor one at either end is."""
+    jumps, wave = sp.Piecewise((1, t < sp.Rational(1, 3)), (-2, t < 2), (0, True)), sp.Max(0, sp.sin(3 * t))
+    wanted = {jumps: [1.0 / 3.0, 2.0], wave: [math.pi / 3, 2 * math.pi / 3], sp.sin(3 * t): [], sp.Abs(t - 3): []}
+    for force, times in wanted.items():
+        asked = satsym.Instance.of(drifting(force), initial={"x": 0, "v": 0}, final={"x": 1, "v": 0}, tf=3)
+        before, after = 3.0 * find_breaks(as_case(asked).case)
+        assert before == pytest.approx(times, rel=4e-16)
+        assert after == pytest.approx(times, rel=4e-16)
 
 
 def test_a_spline_is_the_natural_reading_of_its_points() -> None:

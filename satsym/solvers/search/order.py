@@ -264,7 +264,7 @@ def _less_smoothed(
         Costs of the first programme and what they led to; what is found is added.
     """
     start = starts.begun(programmes[0], plan)
-    first = found = nlp.solve(programmes[0], start, limits, most, near=plan.held is not None)
+    first = found = nlp.solve(programmes[0], start, limits, most, near=plan.at_bound is not None)
     if len(programmes) > 1 and first.solved:
         before = next((last for cost, last in known if _same(cost, first.objective)), None)
         if before is not None:

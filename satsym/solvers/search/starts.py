@@ -35,7 +35,7 @@ FREELY, DRAWS = 1.0, 40
 MORE, WIDER = 24, (0.3, 1.0, 3.0)
 """Further starts where the first ones come to several costs, and how far they are bent."""
 
-HELD = 0.96
+NEXT_TO_BOUND = 0.96
 """Share of their ranges at which controls are held next to their bounds."""
 
 TURNS = (0, -1, 1, 2, 3)
@@ -62,7 +62,7 @@ class Plan:
         By which random numbers free ends are drawn; 0 where they are not.
     guessed
         Whether states and controls are those that the instance guesses, as far as it does.
-    held
+    at_bound
         The share of their ranges, between -1 and 1, at which controls are held all along.
     """
 
@@ -74,7 +74,7 @@ class Plan:
     turned: float | None = None
     drawn: int = 0
     guessed: bool = False
-    held: float | None = None
+    at_bound: float | None = None
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
@@ -109,7 +109,7 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     elif given and len(instance.final) >= len(start) - 1:
         found.insert(1, Plan(coasting=True))
     if np.isnan(end).all() and len(_ranged(controls)):
-        found[1:1] = [Plan(held=share) for share in (HELD, -HELD)]
+        found[1:1] = [Plan(at_bound=share) for share in (NEXT_TO_BOUND, -NEXT_TO_BOUND)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
@@ -164,10 +164,10 @@ def begun(programme: Programme, plan: Plan) -> Array:
     if plan.turned is not None:
         for cosine, sine in controls.angles.values():
             v[cosine], v[sine] = np.cos(np.pi * plan.turned), np.sin(np.pi * plan.turned)
-    if plan.held is not None:
+    if plan.at_bound is not None:
         at = _ranged(controls)
         low, high = controls.lower[at], controls.upper[at]
-        v[at] = 0.5 * (low + high) + 0.5 * plan.held * (high - low)
+        v[at] = 0.5 * (low + high) + 0.5 * plan.at_bound * (high - low)
     start, end = _drawn_ends(programme, plan, start, end)
     free = np.isnan(end)
     x = start[:, None] + np.where(free, 0.0, end - start)[:, None] * share

@@ -12,6 +12,7 @@ from satsym.arrays import Array, distinct
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.control.breaks import find_breaks
 from satsym.solvers.control.jumps import beside
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
@@ -39,6 +40,9 @@ SMALL, FAINT = 1e-4, 1e-6
 """Share of its unit at which a smaller costate counts: states are rounded, and with them what a costate must be at
 the end; the flow from the initial costates is not, but that it depends on the states."""
 
+APART = 1e-15
+"""Share of the time between the last instant before a break of a schedule and the first one after it, at most."""
+
 STATIONS = 64
 """Times at which the flow is compared with the solver's trajectory."""
 
@@ -62,7 +66,9 @@ def flow(solution: Solution) -> Flow | None:
     n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
     corners = [t for times in solution.switching_times for t in times if start < t < end]
-    stations, size = distinct(np.concatenate([np.linspace(start, end, STATIONS + 1), corners])), sizes(solution)
+    scheduled = (start + (end - start) * find_breaks(instance)).ravel()
+    stations = distinct(np.concatenate([np.linspace(start, end, STATIONS + 1), corners, scheduled]))
+    size = sizes(solution)
 
     def rates(t: float, y: Array, held: Array | None) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
@@ -79,8 +85,12 @@ def flow(solution: Solution) -> Flow | None:
     found = [values]
     try:
         for held, part in _parts(solution, stations):
-            for piece in integrate(partial(rates, held=held), part, found[-1], TOLERANCE, scale):
-                found.append(piece.end)
+            beside_breaks = np.flatnonzero(np.diff(part) <= APART * np.abs(part).max()) + 1
+            for number, unbroken in enumerate(np.split(part, beside_breaks)):
+                found += [found[-1]] if number else []
+                if len(unbroken) > 1:
+                    pieces = integrate(partial(rates, held=held), unbroken, found[-1], TOLERANCE, scale)
+                    found += [piece.end for piece in pieces]
     except FAILURES:
         return None
     stations = distinct(np.concatenate([part for _, part in _parts(solution, stations)]))

@@ -17,6 +17,7 @@ from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
+from satsym.solvers.control.breaks import find_breaks
 from satsym.solvers.control.jumps import Jump
 
 NEAR = 1e-3
@@ -60,6 +61,9 @@ def refine(
         The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
     """
     total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, FINEST)
+    _, scheduled = find_breaks(problem.instance)
+    if len(scheduled):
+        curve, known = curve.on(_followed(curve.mesh, scheduled), STAGES), None
     for _ in range(ROUNDS):
         if known is None:
             system = System(problem, curve.mesh, STAGES, found(problem, curve))
@@ -86,7 +90,7 @@ def refine(
         if density.sum() > MOST_INTERVALS:
             break
         curve = corrected.curve if corrected else curve
-        places = np.union1d(met, [jump.time for jump in jumps])
+        places = distinct(np.concatenate([met, [jump.time for jump in jumps], scheduled]))
         followed = keep_nodes or len(places)
         mesh = _followed(_split(curve.mesh, density), places) if followed else _spread(curve.mesh, density)
         curve, known = curve.on(mesh, STAGES), None
