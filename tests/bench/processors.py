@@ -21,6 +21,9 @@ from tests.bench.children import Child, Said, serve, tell
 CORES = {"Haswell": ("avx2", "fma"), "Zen": ("avx2", "fma"), "SkylakeX": ("avx512f",), "Prescott": ()}
 """Names of OPENBLAS_CORETYPE, and the flags of a processor that can run such kernels."""
 
+WITHOUT_FMA = "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-AVX,-FMA,-FMA4"
+"""What glibc's functions then do not use: sines and exponentials differ in their last digits."""
+
 MOVED = 1e-13
 """By this share of themselves initial values are moved."""
 
@@ -172,6 +175,8 @@ def configurations() -> tuple[list[Kernels], list[str]]:
             continue
         seen[header] = one.name
         found.append(one)
+    if "fma" in flags:  # which no kernel's name shows
+        found.append(Kernels("C library without FMA", {"GLIBC_TUNABLES": WITHOUT_FMA}))
     return [*found, Kernels(f"initial values moved by {MOVED:g}", {}, MOVED)], left
 
 
