@@ -82,7 +82,7 @@ ROUNDING = 1e-14
 """Share of the arguments by which rounding may seem to move them: some tens of the last place."""
 
 NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
-"""Of functions outside their domain: roots of negative numbers are complex, which functions of floats do not take."""
+"""What functions raise outside their domain: roots of negative numbers are complex, which floats do not take."""
 
 Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
 

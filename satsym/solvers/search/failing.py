@@ -36,13 +36,13 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     if instance.tf is None:
         costs = order.costs_by_duration(instance, limits, LONGER)
         if len(costs) == len(LONGER) and all(b < a - ENDLESS * abs(a) for (_, a), (_, b) in pairwise(costs)):
-            told = ", ".join(f"{cost:.4g}" for _, cost in costs)
+            values = ", ".join(f"{cost:.4g}" for _, cost in costs)
             durations = ", ".join(f"{duration:.4g}" for duration, _ in costs)
             advice = "put a weight on time, or fix the final time"
-            return Status.NO_MINIMISER, f"longer is always cheaper: cost {told} at durations {durations}; {advice}"
+            return Status.NO_MINIMISER, f"longer is always cheaper: cost {values} at durations {durations}; {advice}"
         return Status.NOT_CONVERGED, f"{message}; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
-    if told := _undecided(instance, limits):
-        return Status.NOT_CONVERGED, told
+    if reason := _undecided(instance, limits):
+        return Status.NOT_CONVERGED, reason
     if compared := [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]:
         several = f"H may have several minimisers in {', '.join(compared)}"
         advice = "where two of them stay equally good there is no optimum (chattering)"

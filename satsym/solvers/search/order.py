@@ -332,12 +332,12 @@ def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) 
     Where that began at a smoother one, so does this: next to bounds, controls that are hardly smoothed jump from point
     to point, and are no start for finer meshes.
     """
-    old = found.programme
-    programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
-    begun = found if old.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
+    begun = found if found.programme.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
     smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
     if smoother is not None and smoother.solved:
-        one = nlp.solve(programme, smoother.unknown, limits, BESIDE, near=True)
+        one = nlp.solve(
+            replace(smoother.programme, smoothing=smoothing, kinds={}), smoother.unknown, limits, BESIDE, True
+        )
         return replace(one, smoother=smoother) if one.solved else smoother
     return _carried(found, meshes, smoothing, limits)
 
