@@ -9,13 +9,18 @@ import time
 from dataclasses import replace
 
 from satsym.instance import Instance
-from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.verdict import examined
-from satsym.solvers.constrained.convexity import convex
+from satsym.solvers.constrained.refusals import refuse
+from satsym.solvers.constrained.revision import SLACK
+from satsym.solvers.constrained.violation import violation
 from satsym.solvers.iteration import MOST, Limits, deadline_of, unsolved, watched
 from satsym.solvers.search import collocated, levels, solving
+from satsym.solvers.search.boundaries import UNMET
 from satsym.status import Verdict
+
+RELAXED = 20_000
+"""Columns that may be linearised for the extremal without path constraints."""
 
 COMPARED = 2_000_000
 """Unknowns times iterations that a search for a cheaper answer may take."""
@@ -76,20 +81,30 @@ def shooting(instance: Instance, progress: Progress | None = None) -> Solution:
 def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solution:
     """Solve an instance with path constraints, or with points on the way, by extremals in arcs.
 
+    Where the extremal without path constraints is found quickly and keeps to them, it is the answer.
+
     Parameters
     ----------
     instance
         Of a model with some of either.
     progress
-        Called after each iteration while the problem without them is solved.
+        Called after each iteration.
+
+    Raises
+    ------
+    BadInput
+        If a path constraint is violated where the motion is to start or to end.
     """
-    if instance.model.spec.interior:
-        from satsym.solvers.interior import solving as through_points
+    spec = instance.model.spec
+    if spec.path_constraints:
+        refuse(instance)
+    if not (spec.interior or spec.switching):
+        from satsym.solvers import two_point
 
-        return through_points.solve(instance, progress)
-    from satsym.solvers.constrained import solving as along_boundaries
-
-    return along_boundaries.solve(instance, progress)
+        relaxed = two_point.solve(replace(instance, work=RELAXED), progress)
+        if relaxed.status.answered and violation(relaxed) <= SLACK:
+            return replace(relaxed, instance=instance, message=f"{relaxed.message}; {UNMET}")
+    return solving.solve(instance, progress)
 
 
 def _unknown(instance: Instance) -> bool:
@@ -123,12 +138,6 @@ def instead(instance: Instance, progress: Progress | None, certified: bool) -> S
     return answer if answer.status.answered and not failed else None
 
 
-def _compared(solution: Solution) -> bool:
-    """Whether its certificate has compared an answer with what the search finds in the problem as it was stated."""
-    instance = solution.instance
-    return not instance.free and (solution.method != BOUNDARY_ARCS or convex(instance))
-
-
 def cheaper(stated: Instance, solution: Solution) -> Solution:
     """An answer, or another one that the search finds and that costs less.
 
@@ -140,7 +149,7 @@ def cheaper(stated: Instance, solution: Solution) -> Solution:
     began = time.perf_counter()
     instance = solution.instance if stated.free else stated
     spec = instance.model.spec
-    if _compared(solution) or spec.linear_quadratic or not solving.applies(instance):
+    if not instance.free or spec.linear_quadratic or not solving.applies(instance):
         return solution
     limits = Limits(MOST, deadline_of(instance), work=COMPARED)
     least = solution.objective - CHEAPER * abs(solution.objective)

@@ -113,12 +113,8 @@ def starting_from(solution: Solution) -> Instance:
 
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
     """What a saddle's descents lead to; ``None`` where that is not cheaper."""
-    if solution.method == SWITCHED:
+    if solution.method == SWITCHED or solution.instance.model.spec.in_arcs:
         return None
-    if solution.instance.model.spec.path_constraints:
-        from satsym.solvers.constrained.solving import cheaper
-
-        return cheaper(solution, deadline)
     for start in departures(solution):
         found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)
         if found is not None:

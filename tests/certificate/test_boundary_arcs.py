@@ -18,13 +18,13 @@ from sympy import sympify
 import satsym
 from satsym.solution import Event, Solution
 from satsym.solvers import two_point
+from satsym.solvers.by_search import boundary_arcs
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained import second_variation
 from satsym.solvers.certificate.constrained.conditions import _defect
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.saddle import fall
-from satsym.solvers.constrained.solving import solve as solve_arcs
 from satsym.solvers.constrained.structure import stated_arcs
 from satsym.solvers.improving import bottomless
 from satsym.status import Status, Verdict
@@ -120,6 +120,10 @@ def limited(solution: Solution, seconds: float) -> Solution:
     return replace(solution, instance=replace(solution.instance, solver=options))
 
 
+LATE = {f"time was up before: {kind}" for kind in ("seeded starts", "structure of boundary arcs")}
+"""Checks that fail where nobody had the time to compare."""
+
+
 def judged(solution: Solution, **how: Any) -> tuple[Verdict, set[str]]:
     """The verdict, and the names of checks that failed."""
     found = certify(solution, **how)
@@ -130,7 +134,7 @@ def judged(solution: Solution, **how: Any) -> tuple[Verdict, set[str]]:
 def test_nothing_is_certified_that_nobody_had_the_time_to_compare(round_the_disc: Solution):
     verdict, failed = judged(limited(round_the_disc, 1e-9))
     assert verdict is Verdict.EXTREMAL_ONLY
-    assert failed == {"time was up before: structure of boundary arcs"}
+    assert failed == LATE
     assert judged(round_the_disc, compared=False) == (Verdict.LOCAL_MINIMUM, set())
 
 
@@ -183,7 +187,7 @@ def test_what_pushes_at_the_end_is_kept_apart_from_multipliers_of_terminal_const
     again = replay(found)
     assert again is not None
     assert again.pressed == {0: pytest.approx((4 * 0.8 - 0.7) / 1.6)}  # lambda_x - S_x = zeta g_x
-    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, LATE)
     given = replace(found, instance=replace(case, final={"x": 0.8}))
     free = replay(given)
     assert free is not None
@@ -231,7 +235,7 @@ def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
     given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
     found = motion(given, (1.0, True), first=end - speed, speed=-speed)
     assert stated_arcs(found) == [(0,)]
-    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, LATE)
     beside = replace(found, x=found.x * 0.999, instance=replace(found.instance, initial=tuple(found.x[:, 0] * 0.999)))
     assert judged(beside)[0] is Verdict.FAILED
 
@@ -259,7 +263,7 @@ def test_where_rounding_grows_along_the_flow_it_is_followed_part_by_part():
         parameters={"r_min": 0.9907505085883487},
         tf=8.877432264346659,
     )
-    found = solve_arcs(given.case)
+    found = boundary_arcs(given.case)
     verdict, failing = judged(limited(found, 1e-9))
     parts = replay(found, in_segments=True)
     assert parts is not None

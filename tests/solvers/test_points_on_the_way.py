@@ -6,8 +6,8 @@ matrices; of that form the velocities at the points, and then the times, are min
 
 from __future__ import annotations
 
+import itertools
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +20,12 @@ import satsym
 from satsym.arrays import Array
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
-from satsym.solvers.constrained.newton import converged, solved
+from satsym.solvers.constrained.newton import begun as unknowns
+from satsym.solvers.constrained.newton import solved
 from satsym.solvers.constrained.solving import answered
-from satsym.solvers.interior.guesses import bases, passing
+from satsym.solvers.constrained.structure import Passage, Structure
 from satsym.solvers.iteration import watched
-from satsym.status import Status, Verdict
+from satsym.status import Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
 
@@ -66,6 +67,11 @@ def certified(found: Solution) -> list[float]:
 
 def effort(matrix: Array, inputs: Array, states: list[Array], durations: Array) -> float:
     """Least half the integral of u'u through states; what of these is NaN is left to be best."""
+    return best(matrix, inputs, states, durations)[0]
+
+
+def best(matrix: Array, inputs: Array, states: list[Array], durations: Array) -> tuple[float, Array]:
+    """The least effort, and the states row by row where it is least."""
     n, free = len(matrix), np.isnan(np.concatenate(states))
     form, z = np.zeros((len(free), len(free))), np.where(free, 0.0, np.concatenate(states))
     for place, lasting in enumerate(durations):
@@ -75,7 +81,21 @@ def effort(matrix: Array, inputs: Array, states: list[Array], durations: Array) 
         part = slice(n * place, n * (place + 2))
         form[part, part] += both.T @ np.linalg.solve(flow @ table[:n, n:], both)
     z[free] = -np.linalg.solve(form[np.ix_(free, free)], form[free] @ z)
-    return float(z @ form @ z / 2)
+    return float(z @ form @ z / 2), z.reshape(-1, n)
+
+
+def along(matrix: Array, inputs: Array, states: Array, durations: Array) -> tuple[Array, Array]:
+    """Times, and states with costates (2n, N), of the motion of least effort through states that are all given."""
+    n, whole = len(matrix), np.block([[matrix, -inputs @ inputs.T], [0 * matrix, -matrix.T]])
+    times, columns, begin = list[float](), list[Array](), 0.0
+    for (one, other), lasting in zip(itertools.pairwise(states), durations, strict=True):
+        flow = expm(whole * lasting)
+        z = np.concatenate([one, np.linalg.solve(flow[:n, n:], other - flow[:n, :n] @ one)])
+        for share in np.linspace(0.01, 0.99, 40):
+            times.append(begin + share * lasting)
+            columns.append(expm(whole * share * lasting) @ z)
+        begin += lasting
+    return np.array(times), np.array(columns).T
 
 
 def springs(stiffness: float) -> tuple[Array, Array]:
@@ -230,19 +250,19 @@ def test_a_time_at_which_the_cost_is_largest_is_no_minimum(stiffness: float):
     given = {"initial": initial, "final": ends, "time": {"tf": 9.0}, "parameters": {"k": stiffness}}
     case = satsym.Instance.of(problem, **given).case
 
-    def cost(time: float) -> float:
-        return effort(*springs(stiffness), [np.array(begun), PLACE, np.zeros(4)], np.array([time, 9.0 - time]))
+    def least(time: float) -> tuple[float, Array]:
+        return best(*springs(stiffness), [np.array(begun), PLACE, np.zeros(4)], np.array([time, 9.0 - time]))
 
-    limits, nothing = watched(case, None)[0], satsym.solve(satsym.Instance.of(problem, **given)).found
-    base = bases(case, replace(nothing, status=Status.NOT_CONVERGED))[-1]
+    limits = watched(case, None)[0]
     times = np.linspace(0.4, 8.6, 200)
-    costs = np.array([cost(time) for time in times])
+    costs = np.array([least(time)[0] for time in times])
     turns = np.flatnonzero(np.diff(np.sign(np.diff(costs)))) + 1
     seen = set()
     for turn in turns:
-        at = converged(passing(case, base, np.array([times[turn], 9.0 - times[turn]]) / 9.0, 9.0), limits)
-        assert at is not None
-        found = solved(replace(at, fixed_times=None), limits)
+        parts = np.array([times[turn], 9.0 - times[turn]])
+        near = along(*springs(stiffness), least(times[turn])[1], parts)
+        structure = Structure((), (Passage(times[turn], ((0, 0.0), (1, 0.0))),))
+        found = solved(unknowns(case, structure, (*near, np.empty(0)), 9.0), limits)
         assert found is not None
         assert found.times[1] == pytest.approx(times[turn], abs=0.1)
         minimum = bool(costs[turn] < costs[turn - 1])

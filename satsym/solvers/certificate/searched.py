@@ -45,7 +45,8 @@ class Searched:
 def kinds(instance: Instance) -> list[Kind]:
     """Kinds of starts that an instance has."""
     round_ = [Kind.REVOLUTIONS] if _angles(instance) else going_round(instance)
-    return [Kind.STARTS, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
+    times = [Kind.TIMES] if instance.model.spec.interior else []
+    return [Kind.STARTS, *times, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
 
 
 def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
@@ -70,6 +71,7 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
             break
         kind = Kind.REVOLUTIONS if one.plan.turns is not None else Kind.STARTS
         kind = Kind.DURATIONS if instance.tf is None and one.plan.scale != 1.0 and one.plan.turns is None else kind
+        kind = Kind.TIMES if one.plan.parts else kind
         costs[kind if kind in costs else Kind.STARTS].append(one.cost)
         if one.exact is not None and (better is None or one.exact.objective < better.objective):
             better = one.exact

@@ -84,7 +84,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 
-        return constrained.certify(solution, deadline, seed, compared), None
+        return constrained.certify(solution, deadline, seed, compared)
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)
@@ -104,10 +104,6 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             second = _sufficient(solution, legendre, field, close)
             if compared:
                 others = competitors.compared(solution, deadline, seed)
-                if solution.instance.model.spec.path_constraints and not others.proved:
-                    from satsym.solvers.certificate.constrained import comparison
-
-                    others = others.joined(comparison.compared(solution, deadline, seed))
                 second += others.checks
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(

@@ -1,1 +1,1 @@
-"""Inequalities on the state along the way: a regularised path, the structure that it shows, and exact arcs."""
+"""Inequalities on the state along the way: structures of contacts with boundaries, and exact arcs."""

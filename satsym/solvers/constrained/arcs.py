@@ -164,6 +164,25 @@ def depends(instance: Instance) -> NDArray[np.bool_]:
     return found
 
 
+def given_end(instance: Instance, end: float) -> Array:
+    """Final states (n,) that are given, or on the reference at the end; NaN elsewhere."""
+    found = np.full(len(instance.initial), np.nan)
+    for i, name in enumerate(instance.model.spec.state_names):
+        value = instance.final.get(name)
+        if isinstance(value, float | int):
+            found[i] = value
+        elif value == "reference":
+            found[i] = instance.model.reference(end, instance.parameters)[i]
+    return found
+
+
+def decided_at_end(instance: Instance) -> NDArray[np.bool_]:
+    """Which constraints on states given final states decide at the end, shape (h,)."""
+    free = np.isnan(given_end(instance, instance.t0 + 1.0 if instance.tf is None else instance.tf))
+    orders = np.array([one.order for one in instance.model.spec.path_constraints])
+    return np.asarray((orders > 0) & ~(depends(instance) & free).any(axis=1))
+
+
 def _row(found: Array, constraints: int, columns: int) -> Array:
     """A table of several entries for each constraint, shape (h, entries, N)."""
     table = found.reshape(constraints, -1, found.shape[-1])
@@ -179,8 +198,6 @@ class Arcs:
     intervals: tuple[int, ...]
     """Of each arc."""
     unknown: Array
-    fixed_times: tuple[float, ...] | None = None
-    """Times of points on the way, and the final time where it is free, if they are to be these; else they are found."""
     passed: tuple[tuple[float, float], ...] = ()
     """Cost, and the size of a step or how far conditions were from holding, one by one on the way here."""
 

@@ -132,8 +132,6 @@ class System:
             rows = at_end(one, arcs.active[-1], t, np.concatenate([z[:n], lam]), tuple(nu))
             if not free:
                 rows = rows[:-1]
-            elif arcs.fixed_times is not None:
-                rows[-1] = t - arcs.fixed_times[-1]
             u = np.zeros((len(one.model.spec.controls), 1))
             met = [k for k in touched if k in arcs.pressed]
             return np.concatenate([rows, values(one, t, z[:n], u)[met]])
@@ -179,13 +177,11 @@ def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
 def _passed(arcs: Arcs, junction: Junction, v: Array) -> list[NDArray[Any]]:
     """What vanishes where a point on the way is passed: its conditions, and the derivative of the cost by its time.
 
-    That is H(t-) - H(t+) + pi' N_t; where the time is fixed it is that the time is the given one.
+    The derivative is H(t-) - H(t+) + pi' N_t.
     """
     instance, n, d = arcs.instance, arcs.n, 2 * arcs.n
     left, right, t = v[:d], v[d : 2 * d], v[2 * d]
     conditions, drift = missed(instance, [which for which, _ in junction.jumps], t, left[:n])
-    if arcs.fixed_times is not None:
-        return [conditions, (t - arcs.fixed_times[junction.constraint])[None]]
     before, after = (
         hamiltonian(instance, active, t, z) for active, z in ((junction.before, left), (junction.after, right))
     )

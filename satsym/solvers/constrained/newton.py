@@ -13,8 +13,6 @@ from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.constrained.active import control
 from satsym.solvers.constrained.arcs import Arcs, gradient
 from satsym.solvers.constrained.equations import System
-from satsym.solvers.constrained.regularised.interior_point import Path
-from satsym.solvers.constrained.regularised.transcription import Program
 from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -70,16 +68,6 @@ def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
             return finer
         found = finer
     return None
-
-
-def from_path(program: Program, path: Path, structure: Structure) -> Arcs:
-    """The unknowns of a structure from a regularised path."""
-    one, at, lasting = program.instance, path.at, path.at.duration
-    middles = np.real(program.times(lasting, middle=True))
-    table = np.concatenate([(at.x[:, :-1] + at.x[:, 1:]) / 2, at.y])
-    c = len(one.model.spec.multipliers)
-    found = begun(one, structure, (middles, table, at.v[len(at.v) - c :]), one.t0 + lasting)
-    return replace(found, passed=path.passed)
 
 
 def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:

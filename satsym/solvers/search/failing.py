@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from satsym.control_set import stated_constraints
 from satsym.instance import Instance
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import order
+from satsym.solvers.search.feasibility import contradiction
 from satsym.solvers.switching.throttled import switched
 from satsym.status import Status
 
@@ -33,6 +35,10 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     if limits.late:
         return Status.TIME_LIMIT, "time was up before an extremal was found"
     message, limits = "no extremal found: no start of the search leads to one", replace(limits, meter=Meter())
+    if stated_constraints(instance.model.spec):
+        against = tried(partial(contradiction, instance, limits))
+        if against:
+            return Status.INFEASIBLE, against
     if instance.tf is None:
         costs = order.costs_by_duration(instance, limits, LONGER)
         if len(costs) == len(LONGER) and all(b < a - ENDLESS * abs(a) for (_, a), (_, b) in pairwise(costs)):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import bound_names
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.solvers.search.nlp import Found
@@ -28,8 +29,13 @@ class Motion:
         Of all points, the start first: (N + 1,), (n, N + 1), (n, N + 1).
     u
         Controls at the points but the first, (m, N).
-    eta, steps
-        Multipliers of path constraints there, (c, N), and the lengths of time that belong to the points.
+    pushes, steps
+        Multipliers of path constraints there, bounds of controls among them, each times the length of time that belongs
+        to its point, (h, N); and these lengths, (N,).
+    nu
+        Multipliers of the terminal constraints.
+    passed, jumps
+        Times of the points on the way, and multipliers of all of their conditions.
     """
 
     instance: Instance
@@ -37,9 +43,12 @@ class Motion:
     x: Array
     u: Array
     lam: Array
-    eta: Array
+    pushes: Array
     steps: Array
     cost: float
+    nu: Array
+    passed: Array
+    jumps: Array
 
 
 def motion(found: Found) -> Motion:
@@ -51,10 +60,6 @@ def motion(found: Found) -> Motion:
     lam = -rows / programme.sizes.states[:, None] / programme.weights * scale
     first = lam[:, :DEGREE] @ START
     steps = (programme.steps @ durations) * programme.weights
-    held = len(programme.points.kept)
-    eta = np.empty((0, points))
-    if held:
-        eta = found.multipliers[programme.kinds["path"].places].reshape(points, held).T * scale / steps
     instance, parameters = programme.instance, iter(free.tolist())
     for one in instance.free:
         if one.place is Place.PARAMETER:
@@ -65,4 +70,28 @@ def motion(found: Found) -> Motion:
             instance = one.at(instance, start)
     times = programme.times(durations, start)
     u = programme.controls.controls(v)
-    return Motion(instance, times, x, u, np.concatenate([first, lam], axis=1), eta, steps, found.objective)
+    nu: Array = np.zeros(len(instance.model.spec.multipliers))
+    if len(nu):
+        rows = found.multipliers[programme.kinds["ends"].places]
+        nu = rows[len(rows) - programme.points.inequalities - len(nu) :][: len(nu)] * scale
+    passed = times[DEGREE * np.cumsum([len(mesh) - 1 for mesh in programme.meshes])[:-1]]
+    jumps = found.multipliers[programme.kinds["way"].places] * scale if len(passed) else np.empty(0)
+    whole = np.concatenate([first, lam], axis=1)
+    return Motion(instance, times, x, u, whole, _pushes(found), steps, found.objective, nu, passed, jumps)
+
+
+def _pushes(found: Found) -> Array:
+    """Multipliers (h, N) of all path constraints at the points, those of bounds of controls among them."""
+    programme, spec = found.programme, found.programme.instance.model.spec
+    points, kept, scale = programme.count, programme.points.kept, programme.sizes.cost
+    pushes = np.zeros((len(spec.path_constraints), points))
+    if kept:
+        pushes[kept] = found.multipliers[programme.kinds["path"].places].reshape(points, len(kept)).T * scale
+    numbers = {one.name: number for number, one in enumerate(spec.path_constraints)}
+    variables = slice(programme.first_variable, programme.first_duration)
+    for pressures, side in zip(found.pressures[:, variables], range(2), strict=True):
+        table = pressures.reshape(points, programme.controls.count).T * scale
+        for control, names in enumerate(bound_names(spec)):
+            if names and names[side] in numbers:
+                pushes[numbers[names[side]]] = table[control] / programme.sizes.variables[control]
+    return pushes

@@ -32,6 +32,8 @@ class Found:
         Whether it is optimal, at least acceptably.
     multipliers
         Of the rows.
+    pressures
+        Multipliers of the lower and of the upper bounds of the unknowns, none below zero, shape (2, unknowns).
     objective
         The cost without what smoothing adds to it.
     smoother
@@ -41,6 +43,7 @@ class Found:
     programme: Programme
     unknown: Array
     multipliers: Array
+    pressures: Array
     objective: float
     iterations: int
     solved: bool
@@ -113,6 +116,7 @@ def solve(
         programme,
         w,
         multipliers,
+        np.array([report["mult_x_L"], report["mult_x_U"]]),
         (programme.objective(w) - programme.raised(multipliers)) * programme.sizes.cost,
         watched.iterations,
         solved,

@@ -18,6 +18,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search import nlp, starts
 from satsym.solvers.search.controls import controls_of
@@ -34,8 +35,10 @@ Answer = TypeVar("Answer")
 INTERVALS, SHORTEST = 40, 8
 """Number of intervals of the coarse mesh, and the least number in a phase."""
 
-STARTS, FAILING = 48, 8
-"""Starts that are tried at most, and in turn after which it ends where none has come to anything."""
+STARTS, FAILING, CONVEX = 48, 8, 2
+"""Starts that are tried at most, and in turn after which it ends where none has come to anything, in general and where
+the problem is convex, so that all starts come to one motion.
+"""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """Competitors in turn that show nothing new, after which it ends, and by how many more for each further cost; and in
@@ -106,6 +109,7 @@ def searched(
         A state whose given end follows from those of the others.
     """
     costs: list[float] = []
+    failing = CONVEX if convex(instance) else FAILING
     for number, (_, found) in enumerate(_started(instance, limits, loose)):
         if found.solved and not any(_same(found.objective, cost) for cost in costs):
             for at in _finer(found, limits):
@@ -113,7 +117,7 @@ def searched(
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
-        if len(costs) >= TRIED or (not costs and number + 1 >= FAILING):
+        if len(costs) >= TRIED or (not costs and number + 1 >= failing):
             break
     return None
 
@@ -243,11 +247,11 @@ def _started(
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
     known = list[tuple[float, Found]]()
-    for plan in plans:
+    for number, plan in enumerate(plans):
         if limits.expired:
             return
         with np.errstate(all="ignore"):
-            found = _less_smoothed(programmes, plan, limits, most, known)
+            found = _less_smoothed(programmes, plan, limits, most if number else ITERATIONS, known)
         yield plan, found
 
 

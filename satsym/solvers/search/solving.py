@@ -35,20 +35,20 @@ def applies(instance: Instance) -> bool:
     """Whether the search knows the kinds of arcs that an instance may have, and whether it may change its start."""
     spec = instance.model.spec
     plain = not (spec.chattering or instance.end_limits or instance.guess)
-    arcs = not (spec.in_arcs and (spec.interior or spec.switching or spec.throttled or instance.free))
+    arcs = not (spec.in_arcs and (spec.throttled or instance.free))
     timed = any(one.place is Place.TIME for one in instance.free)
     return plain and arcs and not timed and not instance.continuation
 
 
 def begins(spec: ProblemSpec) -> bool:
-    """Whether methods begin with the search: vanishing costates say nothing there of the controls."""
-    return not spec.in_arcs and (spec.switching or spec.throttled or spec.directional or spec.stationary)
+    """Whether methods begin with the search: with arcs, and where vanishing costates say nothing of the controls."""
+    return spec.in_arcs or spec.switching or spec.throttled or spec.directional or spec.stationary
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     """The extremal that a motion is near, as an answer without a certificate."""
     spec = instance.model.spec
-    if spec.path_constraints:
+    if spec.in_arcs:
         return boundaries.exact(instance, at, limits)
     extremal = None if spec.switching else reading.exact(instance, at, limits)
     if extremal is not None:
@@ -105,8 +105,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        Of a model without path constraints whose vectors are throttled, or whose controls are directions or have no
-        law in closed form.
+        Of a model with path constraints or points on the way, whose vectors are throttled, or whose controls are
+        directions or have no law in closed form.
     progress
         Called after each iteration of the interior-point code.
 

@@ -38,6 +38,9 @@ MORE, WIDER = 24, (0.3, 1.0, 3.0)
 NEXT_TO_BOUND = 0.96
 """Share of their ranges at which controls are held next to their bounds."""
 
+LENGTHS = (0.25, 4.0, 0.06)
+"""How long a phase between points on the way is, where the others have a length of one."""
+
 TURNS = (0, -1, 1, 2, 3)
 """Revolutions that are tried where the duration is free; one less than none is the other way round."""
 
@@ -64,6 +67,8 @@ class Plan:
         Whether states and controls are those that the instance guesses, as far as it does.
     at_bound
         The share of their ranges, between -1 and 1, at which controls are held all along.
+    parts
+        Shares of the duration between points on the way; empty where these are equal.
     """
 
     scale: float = 1.0
@@ -75,6 +80,7 @@ class Plan:
     drawn: int = 0
     guessed: bool = False
     at_bound: float | None = None
+    parts: tuple[float, ...] = ()
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
@@ -110,9 +116,18 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found.insert(1, Plan(coasting=True))
     if np.isnan(end).all() and len(_ranged(controls)):
         found[1:1] = [Plan(at_bound=share) for share in (NEXT_TO_BOUND, -NEXT_TO_BOUND)]
+    found[1:1] = [Plan(parts=parts) for parts in _parts(len(instance.model.spec.interior) + 1)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
+
+
+def _parts(phases: int) -> list[tuple[float, ...]]:
+    """Shares of the duration between points on the way, that before or after one point long or short in turn."""
+    if phases == 1:
+        return []
+    rows = [[length if k == place else 1.0 for k in range(phases)] for place in range(phases) for length in LENGTHS]
+    return [tuple(one / sum(row) for one in row) for row in rows]
 
 
 def _ranged(controls: Controls) -> Places:
@@ -155,7 +170,8 @@ def _swept(start: Array, end: Array, pairs: list[tuple[int, int]]) -> float:
 def begun(programme: Programme, plan: Plan) -> Array:
     """The unknowns of a programme by a plan."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
-    durations = np.full(programme.phases, plan.scale * sizes.duration / programme.phases)
+    equal = np.full(programme.phases, 1.0 / programme.phases)
+    durations = plan.scale * sizes.duration * (np.array(plan.parts) if plan.parts else equal)
     times = programme.times(durations, instance.t0)
     lasting = times[-1] - times[0]
     share = (times - times[0]) / lasting

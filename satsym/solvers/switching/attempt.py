@@ -54,7 +54,6 @@ class Origin(Enum):
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
-    PATH = "a regularised path"
     SEARCH = "a direct search"
 
 

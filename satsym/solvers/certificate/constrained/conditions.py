@@ -10,8 +10,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
-from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.comparison import Comparison, going_round
+from satsym.solvers.certificate import competitors, conditions
+from satsym.solvers.certificate.comparison import Comparison
 from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
@@ -42,14 +42,16 @@ STRICT, BESIDE = 1e-6, 1e-6
 which nobody looks."""
 
 
-def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool = True) -> Certificate:
+def certify(
+    solution: Solution, deadline: float, seed: int = 0, compared: bool = True
+) -> tuple[Certificate, Solution | None]:
     """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.verdict.examined`."""
     with np.errstate(all="ignore"):
         again = replay(solution)
         if again is None:
             missing = float("nan")
             check = Check("flow from the initial costates is finite", 1.0, 0.0)
-            return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))
+            return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,)), None
         first, again = _in_segments(solution, again)
         curved = _legendre_clebsch(solution, again)
         second: list[Check] = []
@@ -61,10 +63,11 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
             elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
-                    others = comparison.compared(solution, deadline, seed)
-                    others = others.joined(Comparison((), tuple(going_round(solution.instance))))
+                    others = competitors.compared(solution, deadline, seed)
+                    if again.meets_a_boundary(solution):
+                        others = others.joined(comparison.compared(solution, deadline))
                     second += others.checks
-    return Certificate(
+    certificate = Certificate(
         verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),
         **conditions.headlines(first),
         legendre_clebsch=curved,
@@ -73,6 +76,7 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
         competitors=tuple(kind.summary for kind in others.kinds),
         not_checked=others.not_checked,
     )
+    return certificate, others.better
 
 
 def _legendre_clebsch(solution: Solution, again: Replay) -> float:

@@ -48,7 +48,7 @@ def contacts(solution: Solution) -> list[Contact]:
     names, open_since = [one.name for one in solution.instance.model.spec.path_constraints], dict[int, float]()
     begin, end = float(solution.times[0]), float(solution.times[-1])
     found = list[Contact]()
-    for event in solution.events:
+    for event in (one for one in solution.events if one.kind != "interior"):
         which = names.index(event.name)
         if event.kind == "touch":
             found.append(Contact(which, event.t, event.t, closes=event.t >= end))

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.comparison import COST_MARGIN, UNCOMPARED, margin
 from satsym.solvers.certificate.searched import kinds, searched
@@ -35,31 +34,25 @@ class Comparison:
     """The cheapest extremal that costs less, where that is known."""
 
 
-def allowed(instance: Instance, bounded: bool = False) -> list[Kind]:
-    """Kinds of competitors that a problem has; where path constraints decided, with those of these."""
-    if bounded:
-        return [Kind.ARCS, *kinds(instance)]
-    return kinds(instance) if instance.model.spec.throttled else [Kind.NEIGHBOURS, *kinds(instance)]
+def allowed(instance: Instance) -> list[Kind]:
+    """Kinds of competitors that a problem has; neighbours are varied without path constraints only."""
+    spec = instance.model.spec
+    return kinds(instance) if spec.throttled or spec.in_arcs else [Kind.NEIGHBOURS, *kinds(instance)]
 
 
 def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     """Compare a solution with all kinds; what the clock ends is not checked."""
-    bounded, better = solution.method == BOUNDARY_ARCS, None
-    sources: list[Callable[[], Iterable[Competitors | None]]]
-    if bounded:  # others know nothing of path constraints
-        sources = [lambda: [_other_boundaries(solution, limits, seed)]]
-    else:
-        by_search = searched(solution, limits, seed)
-        sources, better = [lambda: by_search.competitors], by_search.better
-        if not solution.instance.model.spec.throttled:
-            sources += [lambda: [needles(solution, limits)], lambda: [shorter(solution, limits)]]
+    by_search = searched(solution, limits, seed)
+    sources: list[Callable[[], Iterable[Competitors | None]]] = [lambda: by_search.competitors]
+    if Kind.NEIGHBOURS in allowed(solution.instance):
+        sources += [lambda: [needles(solution, limits)], lambda: [shorter(solution, limits)]]
     found: dict[Kind, Competitors] = {}
     with np.errstate(all="ignore"):
         for source in sources:
             for one in () if limits.late else source():
                 if one is not None and not limits.late:
                     found[one.kind] = _both(found[one.kind], one) if one.kind in found else one
-    possible = allowed(solution.instance, bounded)
+    possible = allowed(solution.instance)
     missing = tuple(kind for kind in possible if kind not in found)
     checks = [_check(solution, one) for one in found.values()]
     if limits.late:
@@ -68,7 +61,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     unsolved = _unsolved(solution.instance, competitors)
     if unsolved and len(unsolved) == len(competitors):
         checks.append(Check(UNCOMPARED, 1.0, 0.0))
-    return Comparison(tuple(checks), competitors, missing + unsolved, better)
+    return Comparison(tuple(checks), competitors, missing + unsolved, by_search.better)
 
 
 def _unsolved(instance: Instance, competitors: Iterable[Competitors]) -> tuple[Kind, ...]:
@@ -88,11 +81,3 @@ def _both(one: Competitors, other: Competitors) -> Competitors:
     return Competitors(
         one.kind, one.tried + other.tried, one.solved + other.solved, min(cheapest, default=float("nan"))
     )
-
-
-def _other_boundaries(solution: Solution, limits: Limits, seed: int) -> Competitors | None:
-    """Extremals to which paths within path constraints lead that are drawn; ``None`` where time is up before."""
-    from satsym.solvers.constrained.levels.solving import others
-
-    tried, costs, interrupted = others(solution, seed + 1, limits.deadline)
-    return None if interrupted or not costs else Competitors(Kind.ARCS, tried, len(costs), min(costs))

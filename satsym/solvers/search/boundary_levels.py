@@ -1,4 +1,4 @@
-"""The levels that controls take along a regularised path: at bounds, on boundaries, and singular where neither holds.
+"""Levels that controls keep to beside path constraints, read from a motion: at bounds, on boundaries, or singular.
 
 What is active has a multiplier that is larger, in its measure and that of the cost, than its slack is in its own.
 """
@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import bound_names
-from satsym.solvers.constrained.regularised.interior_point import Path
-from satsym.solvers.constrained.regularised.slopes import rooms
-from satsym.solvers.constrained.regularised.transcription import Program, middles
+from satsym.solvers.search.contacts import Held
+from satsym.solvers.search.motion import Motion
 from satsym.solvers.switching.boundaries import acting, effects, values
 from satsym.solvers.switching.structure import (
     BOUNDARY,
@@ -30,49 +29,43 @@ from satsym.solvers.switching.trajectory import runs
 SHORT, OFF = 0.5, 1e-6
 """Of an interval, an arc at an end that no interval shows; and share of its size by which a boundary is not met."""
 
-BRIEF = 2
-"""Intervals of a singular arc that is none: a switch falls into one of them."""
+NEAR = 1e-4
+"""Share of a constraint's terms that its slacks are measured by where none is larger."""
 
 
-def recognised(program: Program, path: Path, shortest: int = BRIEF) -> Guess:
-    """The structure of a path, its times, and where it leads.
+def read(at: Motion, shortest: int) -> Guess:
+    """The structure of a motion, its times, and where it leads.
 
     Parameters
     ----------
     shortest
-        Intervals up to which arcs between bounds are none.
+        Points up to which arcs between bounds are none: a switch falls into one of them.
     """
-    instance, at = program.instance, path.at
-    edges = np.append(instance.t0, np.real(program.times(at.duration, False)))
+    held = Held(at)
+    edges = 0.5 * (at.times[1:] + at.times[:-1])
     rows, times = [], list[float]()
     for control in range(len(at.u)):
-        levels = _without_brief(_levels(program, path, control), shortest)
+        levels = _without_brief(_levels(held, control), shortest)
         switches = np.flatnonzero(np.diff(levels)) + 1
         row = [int(level) for level in levels[np.append(0, switches)]]
-        row, own = _with_ends(program, path, row, edges[switches].tolist())
-        near = np.clip(np.searchsorted(edges, own), 0, program.intervals)
-        rows.append(_with_jumps(program, path, row, np.array(own), at.x[:, near]))
+        row, own = _with_ends(held, row, edges[switches].tolist())
+        x = np.array([np.interp(own, at.times, values_of) for values_of in at.x])
+        rows.append(_with_jumps(held, row, np.array(own), x))
         times += own
-    begin, end = (at.y[:, place] + (at.y[:, place] - at.y[:, beside]) / 2.0 for place, beside in ((0, 1), (-1, -2)))
-    lam = np.column_stack([begin, at.y, end])
-    x = np.column_stack([at.x[:, 0], middles(at.x), at.x[:, -1]])
-    places = np.concatenate([edges[:1], np.real(program.times(at.duration, True)), edges[-1:]])
-    course = Course(places, np.concatenate([x, lam]))
-    return Guess(Structure(tuple(rows)), np.array(times), begin, float(edges[-1]), course, bounded=True)
+    course = Course(at.times, np.concatenate([at.x, at.lam]))
+    return Guess(Structure(tuple(rows)), np.array(times), at.lam[:, 0], float(at.times[-1]), course, bounded=True)
 
 
-def _with_ends(program: Program, path: Path, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
+def _with_ends(held: Held, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
     """With a brief arc to a boundary that the start is not on, and one away from a boundary that the end is not on."""
-    instance, x = program.instance, path.at.x
-    end = instance.t0 + path.at.duration
-    brief = SHORT * path.at.duration / program.intervals
+    instance, x, end = held.instance, held.at.x, float(held.times[-1])
     for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
-        level = row[place]
+        level, brief = row[place], SHORT * float(held.reaches[place])
         if level < BOUNDARY:
             continue
         which, state = constraint_of(level), x[:, place]
         z = np.append(state, np.zeros(len(state)))[:, None]
-        if values(instance, np.array([time]), z)[which, 0] >= -OFF * rooms(program, path.at)[which, 0]:
+        if values(instance, np.array([time]), z)[which, 0] >= -OFF * held.rooms[which]:
             continue
         push = effects(instance, which, time, state)[acting(instance, which)] * (1.0 if first else -1.0)
         level = UPPER if push > 0.0 else LOWER
@@ -80,7 +73,7 @@ def _with_ends(program: Program, path: Path, row: list[int], times: list[float])
     return row, times
 
 
-def _with_jumps(program: Program, path: Path, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
+def _with_jumps(held: Held, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
     """With jumps where a boundary is left for the bound that pushes beyond it, or reached from that which pulls away.
 
     Parameters
@@ -88,7 +81,7 @@ def _with_jumps(program: Program, path: Path, row: list[int], times: Array, x: A
     times, x
         When levels change, and states there, shapes (K,) and (n, K).
     """
-    instance, sides, found = program.instance, {LOWER: -1.0, UPPER: 1.0}, list(row)
+    instance, sides, found = held.instance, {LOWER: -1.0, UPPER: 1.0}, list(row)
     for place, level in enumerate(row):
         if level < BOUNDARY or instance.model.spec.path_constraints[which := constraint_of(level)].order > 1:
             continue
@@ -104,11 +97,11 @@ def _with_jumps(program: Program, path: Path, row: list[int], times: Array, x: A
     return tuple(found)
 
 
-def _levels(program: Program, path: Path, control: int) -> NDArray[np.int64]:
-    """The level of a control in each interval."""
-    instance, spec = program.instance, program.instance.model.spec
+def _levels(held: Held, control: int) -> NDArray[np.int64]:
+    """The level of a control at each point."""
+    instance, spec = held.instance, held.instance.model.spec
     names = [one.name for one in spec.path_constraints]
-    active = _active(program, path)
+    active = _active(held)
     low, high = (names.index(name) for name in bound_names(spec)[control])
     found = np.where(active[low], LOWER, np.where(active[high], UPPER, SINGULAR))
     for k, one in enumerate(spec.path_constraints):
@@ -119,11 +112,11 @@ def _levels(program: Program, path: Path, control: int) -> NDArray[np.int64]:
     return found
 
 
-def _active(program: Program, path: Path) -> NDArray[np.bool_]:
-    """Whether each constraint is active, shape (h, N); of those on states at the end of each interval."""
-    s, z = path.at.s, path.at.z * program.kept
-    room = np.maximum(s.max(axis=1, keepdims=True), 1e-4 * rooms(program, path.at))
-    unit = max(abs(path.cost), 1e-12) / program.intervals
+def _active(held: Held) -> NDArray[np.bool_]:
+    """Whether each constraint is active, shape (h, N)."""
+    s, z, steps = held.slacks, held.pushes, held.at.steps / held.at.steps.sum()
+    room = np.maximum(s.max(axis=1, keepdims=True), NEAR * held.rooms[:, None])
+    unit = max(abs(held.at.cost), 1e-12) * steps
     return np.asarray(z * room / unit > s / room)
 
 

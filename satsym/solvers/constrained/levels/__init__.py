@@ -1,1 +1,0 @@
-"""Path constraints where H is linear in the controls: levels at bounds, singular ones, and boundaries."""

@@ -1,0 +1,90 @@
+"""Instances that are refused: path constraints that are violated where the motion is to start or to end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained.arcs import decided_at_end, given_end, terms, values
+from satsym.status import BadInput
+
+ROUNDING = 1e-12
+"""Of a constraint that holds exactly, relative to its terms."""
+
+DURATIONS = (0.37, 1.0, 2.6)
+"""Where it is looked whether a constraint at the given end changes with time."""
+
+
+def refuse(instance: Instance) -> None:
+    """Refuse an instance whose given start or end violates a constraint, or leaves it at once.
+
+    Raises
+    ------
+    BadInput
+        At the first of them.
+    """
+    _refuse_at(instance, instance.t0, instance.initial, "initial", 1.0)
+    if instance.tf is not None and not np.isnan(ended := given_end(instance, instance.tf)).any():
+        _refuse_at(instance, instance.tf, tuple(ended.tolist()), "final", -1.0)
+        return
+    decided = decided_at_end(instance)
+    if decided.any() and (instance.tf is not None or _stands(instance, decided)):
+        end = instance.t0 + 1.0 if instance.tf is None else instance.tf
+        _refuse_values(instance, end, _end(instance, end), "final", decided)
+
+
+def _end(instance: Instance, end: float) -> tuple[float, ...]:
+    """What is given of the final state, zero where nothing is."""
+    return tuple(np.nan_to_num(given_end(instance, end)).tolist())
+
+
+def _stands(instance: Instance, which: NDArray[np.bool_]) -> bool:
+    """Whether these constraints have the same value at the given end whenever that is reached."""
+    rest = np.zeros((len(instance.model.spec.controls), 1))
+    ends = [instance.t0 + duration for duration in DURATIONS]
+    found = [values(instance, np.array([t]), np.array(_end(instance, t))[:, None], rest)[which, 0] for t in ends]
+    return all(np.array_equal(one, found[0]) for one in found)
+
+
+def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
+    """At a state that is known as a whole; what is rounding of its terms is nothing."""
+    model, p = instance.model, instance.parameters
+    _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
+    t, x, rest = np.array([time]), np.array(state)[:, None], np.zeros((len(model.spec.controls), 1))
+    g, size = values(instance, t, x, rest)[:, 0], terms(instance, t, x, rest)[:, 0]
+
+    def rates_at(at: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(model.path_rates_batch(t, at, rest.astype(at.dtype), p)).reshape(len(g), 2, -1)[:, 0, 0]
+
+    moved = x + 1j * COMPLEX_STEP * np.eye(len(x))
+    slopes = np.column_stack([np.imag(rates_at(moved[:, [j]])) for j in range(len(x))]) / COMPLEX_STEP
+    faint = ROUNDING * np.abs(slopes) @ np.abs(x)[:, 0]
+    for one, value, scale, rate, nothing in zip(model.spec.path_constraints, g, size, rates_at(x), faint, strict=True):
+        if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
+            when = "after the start" if direction > 0 else "before the end"
+            raise BadInput(
+                f"{instance.called}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
+                f"control changes at once, so it is violated right {when}; change the velocity there"
+            )
+
+
+def _refuse_values(
+    instance: Instance,
+    time: float,
+    state: tuple[float, ...],
+    key: str,
+    which: NDArray[np.bool_],
+) -> None:
+    spec, place = instance.model.spec, (np.array([time]), np.array(state)[:, None])
+    rest = np.zeros((len(spec.controls), 1))
+    g, size = values(instance, *place, rest)[:, 0], terms(instance, *place, rest)[:, 0]
+    for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
+        if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
+            raise BadInput(
+                f"{instance.called}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
+                "change that state, or the constraint's parameters"
+            )

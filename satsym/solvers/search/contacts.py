@@ -1,0 +1,203 @@
+"""Contacts with the boundaries of path constraints, read from a motion: where multipliers outweigh slacks.
+
+Multipliers and slacks are each compared in their own measure. Neighbouring points make an arc, a few of them alone a
+touch point. Two touch points between which the multiplier of a boundary arc vanishes are taken for one arc later
+(:mod:`satsym.solvers.constrained.revision`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solvers.constrained.arcs import conditions, decided_at_end, effects, given_end, gradients, values
+from satsym.solvers.constrained.structure import Contact, Passage, Structure, ordered
+from satsym.solvers.search.motion import Motion
+from satsym.solvers.switching.trajectory import runs
+
+CLOSE = 1e-3
+"""A slack of this share of the largest is small: points meet a boundary only nearly."""
+
+SMALL = 1e-4
+"""Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
+
+NOTHING = 1e-6
+"""Share of the costates below which what a constraint adds to them is nothing."""
+
+ON_BOUNDARY = 1e-9
+"""Share of its size along the way by which a constraint may be off its boundary where a motion starts on it."""
+
+INSTANT = 2
+"""Steps from point to point within which multipliers of a touch point are spread."""
+
+PARALLEL = 1.0 - 1e-6
+"""Squared cosine of the effects of two constraints on the controls from which on they are the same, or opposed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Path constraints along a motion, at its points but the first."""
+
+    at: Motion
+
+    @property
+    def instance(self) -> Instance:
+        """With the values that were found for what it leaves free."""
+        return self.at.instance
+
+    @property
+    def times(self) -> Array:
+        """Of the points, shape (N,)."""
+        return self.at.times[1:]
+
+    @cached_property
+    def kept(self) -> Array:
+        """Which constraints count where, ones and zeros (h, N): not at an end at which given states decide them."""
+        table = np.ones(self.at.pushes.shape)
+        table[decided_at_end(self.instance), -1] = 0.0
+        return table
+
+    @cached_property
+    def pushes(self) -> Array:
+        """Multipliers times the lengths of time that belong to the points, shape (h, N)."""
+        return np.maximum(self.at.pushes, 0.0) * self.kept
+
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """Gradients by states and by controls, shapes (h, n, N) and (h, m, N)."""
+        place = self.instance, self.times, self.at.x[:, 1:], self.at.u
+        return gradients(*place), effects(*place)
+
+    @cached_property
+    def slacks(self) -> Array:
+        """By how much constraints are below zero, shape (h, N)."""
+        return np.maximum(-values(self.instance, self.times, self.at.x[:, 1:], self.at.u), 0.0)
+
+    @cached_property
+    def rooms(self) -> Array:
+        """What each constraint is measured by, shape (h,): itself or, where these are larger, its terms."""
+        by_x, by_u = self.slopes
+        terms = (np.abs(by_x) * np.abs(self.at.x[:, 1:])).sum(axis=1) + (np.abs(by_u) * np.abs(self.at.u)).sum(axis=1)
+        found = np.maximum(self.slacks, terms).max(axis=1)
+        return np.where(found > 0.0, found, 1.0)
+
+    @cached_property
+    def reaches(self) -> Array:
+        """The longer of the steps to the neighbours of each point, shape (N,)."""
+        steps = np.diff(self.at.times)
+        return np.maximum(steps, np.append(steps[1:], 0.0))
+
+
+def read(at: Motion, resting: bool = False) -> Structure:
+    """The structure that a motion shows.
+
+    Parameters
+    ----------
+    resting
+        Whether contacts between which slacks stay small are one, though multipliers vanish there.
+    """
+    held, found = Held(at), list[Contact]()
+    by_x, costates = held.slopes[0], np.abs(at.lam).max(axis=1)[:, None]
+    for k, one in enumerate(held.instance.model.spec.path_constraints):
+        s, z = held.slacks[k], held.pushes[k]
+        room = max(float(s.max()), SMALL * float(held.rooms[k]))
+        near = (s < CLOSE * room) & (held.kept[k] > 0.0)
+        pushing = (np.abs(by_x[k]) * z / np.maximum(costates, NOTHING * costates.max() + 1e-300)).max(axis=0)
+        counts = near & (z / max(float(z.max()), 1e-300) > s / room)
+        for first, last in _spans(near, counts) if resting else runs(_bridged(counts)):
+            if one.order == 0 or pushing[first : last + 1].sum() > NOTHING:
+                found.append(_contact(held, k, one.order, first, last))
+    return ordered([_with_ends(held, one) for one in _meeting(held, found)], _passages(at))
+
+
+def _passages(at: Motion) -> tuple[Passage, ...]:
+    """The points on the way, when they are passed, and by how much costates jump there."""
+    which, first = conditions(at.instance), len(at.instance.model.spec.path_constraints)
+    jumps = (tuple((k, float(at.jumps[k - first])) for k in own) for own in which)
+    return tuple(Passage(time, own) for time, own in zip(at.passed.tolist(), jumps, strict=True))
+
+
+def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """With single gaps closed."""
+    found = flags.copy()
+    found[1:-1] |= flags[:-2] & flags[2:]
+    return found
+
+
+def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """From the first to the last place that counts, in each run of those that are near."""
+    inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
+    return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
+
+
+def _contact(held: Held, constraint: int, order: int, begins: int, ends: int) -> Contact:
+    """An arc or a touch point where multipliers count."""
+    times, z = held.times, held.pushes[constraint]
+    if order > 1 and ends - begins <= INSTANT:
+        weight = z[begins : ends + 1]
+        time = float(times[begins : ends + 1] @ weight / weight.sum())
+        return Contact(constraint, time, time, (float(weight.sum()), 0.0))
+    step = float(held.reaches[begins])
+    jumps = (float(z[begins : begins + 3].sum()), float(z[max(ends - 2, begins + 1) : ends + 1].sum()))
+    start, end = float(times[begins]), float(times[ends])
+    if end - start < step:
+        start, end = start - step, end + step
+    return Contact(constraint, start, end, jumps)
+
+
+def _with_ends(held: Held, contact: Contact) -> Contact:
+    """A contact that holds from the start on, or until the end, if it does."""
+    one, order = held.instance, held.instance.model.spec.path_constraints[contact.constraint].order
+    opens = not contact.touches and contact.start - one.t0 < 1.5 * held.reaches[0] and _on_boundary(held, contact)
+    end, step = float(held.times[-1]), 1.5 * float(held.reaches[-1])
+    away = not _on_boundary_at_end(held, contact)
+    if away or end - contact.end >= step or (order > 1 and not contact.touches):
+        return replace(contact, opens=opens)
+    start = end if end - contact.start <= step else contact.start
+    return replace(contact, start=start, end=end, opens=opens and start < end, closes=True)
+
+
+def _meeting(held: Held, contacts: list[Contact]) -> list[Contact]:
+    """Without the gaps of a step between constraints that hold controls and follow each other.
+
+    Those do that cannot be active at once: they push controls the same way, or against each other.
+    """
+    found, effect = sorted(contacts, key=lambda one: one.middle), held.slopes[1]
+    orders = [one.order for one in held.instance.model.spec.path_constraints]
+    for j, k in combinations(range(len(found)), 2):
+        one, other = found[j], found[k]
+        middle = 0.5 * (one.end + other.start)
+        place = int(np.abs(held.times - middle).argmin())
+        both = orders[one.constraint] == 0 == orders[other.constraint] and one.constraint != other.constraint
+        if both and abs(other.start - one.end) < 1.5 * held.reaches[place]:
+            e, f = effect[[one.constraint, other.constraint], :, place]
+            along = (e @ f) ** 2 >= PARALLEL * (e @ e) * (f @ f)
+            if along and one.start < middle < other.end:
+                found[j], found[k] = replace(one, end=middle), replace(other, start=middle)
+    return found
+
+
+def _on_boundary_at_end(held: Held, contact: Contact) -> bool:
+    """Whether a constraint may be on its boundary at the end, where given states alone may decide that it is not."""
+    one, constraint = held.instance, contact.constraint
+    if one.tf is None or held.kept[constraint, -1] > 0.0:
+        return True
+    x = np.nan_to_num(given_end(one, one.tf))[:, None]
+    ended = values(one, np.array([one.tf]), x, np.zeros((len(one.model.spec.controls), 1)))[constraint, 0]
+    return bool(abs(ended) <= ON_BOUNDARY * held.rooms[constraint])
+
+
+def _on_boundary(held: Held, contact: Contact) -> bool:
+    """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
+    one, constraint = held.instance, contact.constraint
+    if one.model.spec.path_constraints[constraint].order == 0:
+        return True
+    u = np.zeros((len(one.model.spec.controls), 1))
+    begun = values(one, np.array([one.t0]), np.array(one.initial)[:, None], u)[constraint, 0]
+    return bool(abs(begun) <= ON_BOUNDARY * held.rooms[constraint])
