@@ -15,8 +15,9 @@ from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.constrained.revision import SLACK
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.iteration import MOST, Limits, deadline_of, unsolved, watched
-from satsym.solvers.search import collocated, levels, solving
-from satsym.solvers.search.boundaries import UNMET
+from satsym.solvers.search import failing, solving
+from satsym.solvers.search.reading import collocated
+from satsym.solvers.search.reading.boundaries import UNMET
 from satsym.status import Verdict
 
 RELAXED = 20_000
@@ -43,7 +44,7 @@ def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
         return solving.solve(instance, progress)
     from satsym.solvers.switching import solving as switching
 
-    return switching.solve(instance, progress, levels.searched)
+    return switching.solve(instance, progress, switching.Search(solving.exact_arcs, failing.why))
 
 
 def collocation(instance: Instance, progress: Progress | None = None) -> Solution:

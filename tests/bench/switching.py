@@ -19,8 +19,8 @@ from machine import described
 from switching_closed_forms import minimum_time
 
 from satsym import instance
+from satsym.solvers.by_search import bang_bang
 from satsym.solvers.certificate import certify
-from satsym.solvers.switching import solving
 
 
 def main(count: int, certified: bool) -> None:
@@ -30,7 +30,7 @@ def main(count: int, certified: bool) -> None:
     seconds, worst, unsolved, uncertified = [], np.zeros(2), 0, 0
     for q, v in starts.tolist():
         begun = time.process_time()
-        found = solving.solve(replace(base, initial=(q, v)))
+        found = bang_bang(replace(base, initial=(q, v)))
         seconds.append(time.process_time() - begun)
         known = minimum_time(q, v)
         if not found.status.answered or len(found.switching_times[0]) != 1:

@@ -13,10 +13,10 @@ from satsym import solvers as solve
 from satsym.report.results.objects import solution_object
 from satsym.solution import Solution
 from satsym.solvers import certificate
+from satsym.solvers.by_search import bang_bang
 from satsym.solvers.certificate.switching.conditions import _terms
 from satsym.solvers.certificate.switching.replay import replay
 from satsym.solvers.certificate.switching.variation import Variation, variation
-from satsym.solvers.switching import solving
 from satsym.solvers.switching.trajectory import PANELS, POINTS, _panels
 from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
@@ -24,7 +24,7 @@ from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_
 @pytest.fixture(scope="module")
 def fuel() -> Solution:
     """The shipped problem of least fuel, solved."""
-    return solving.solve(case(FUEL))
+    return bang_bang(case(FUEL))
 
 
 @pytest.mark.parametrize("start", starts(3))
@@ -91,7 +91,7 @@ def test_a_control_that_does_not_minimise_h_fails(fuel: Solution) -> None:
 
 def test_an_extremal_that_is_no_minimum_is_not_certified() -> None:
     # With the signs of the control and of the costates changed, the motion is one of greatest time.
-    found = solving.solve(case(TIME))
+    found = bang_bang(case(TIME))
     failures(replace(found, lam=-found.lam))
 
 
@@ -99,7 +99,7 @@ def test_the_second_variation_is_that_of_the_closed_form() -> None:
     # With time weighed against fuel, the final time is chosen: along the controls that arrive the cost is
     # c T + a(T) + b(T), and its second derivative must be what the reduced Hessian says along the same direction.
     weight = 0.7
-    found = solving.solve(case(FUEL, initial=(1.3, 0.4), tf=None, parameters=(weight,)))
+    found = bang_bang(case(FUEL, initial=(1.3, 0.4), tf=None, parameters=(weight,)))
     again = replay(found)
     assert again is not None
     second = variation(found.instance, again)
@@ -135,7 +135,7 @@ def test_a_shift_in_time_is_the_reason_where_the_form_vanishes_along_it_alone() 
 
 def test_h_is_compared_with_its_own_terms_at_one_time() -> None:
     """Along a double integrator they are the costates times speed and force."""
-    found = solving.solve(case(TIME))
+    found = bang_bang(case(TIME))
     times = np.linspace(found.times[0], found.times[-1], 301)
     x, lam, u = (
         np.array([np.interp(times, found.times, row) for row in each]) for each in (found.x, found.lam, found.u)

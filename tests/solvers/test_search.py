@@ -22,10 +22,11 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import answer, levels, nlp, order, reading, solving, starts
+from satsym.solvers.search import answer, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.reading import extremals, levels
 from satsym.solvers.search.sizes import sizes_of
 from satsym.status import Status, Verdict
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, symbols_of, t
@@ -135,7 +136,7 @@ def test_rates_by_nodes_are_rates(problem: Problem, control: dict) -> None:
 def test_extremals_are_those_of_collocation(name: str, error: float) -> None:
     case = instances.load(name)
     known = solvers.solve(case, examined=False)
-    found = order.searched(case, LIMITS, partial(reading.exact, case))
+    found = order.searched(case, LIMITS, partial(extremals.exact, case))
     assert found is not None
     assert found.cost == pytest.approx(known.objective, rel=error, abs=1e-15)
     assert answer.answered(case, found).lam[:, 0] == pytest.approx(known.lam[:, 0], rel=1e-7, abs=1e-10)
@@ -277,7 +278,7 @@ def test_the_smallest_engine_that_arrives_is_found_with_its_parameter() -> None:
     end = {"x": 100.0, "y": 0.0, "z": 20.0, "vx": 0.0, "vy": -0.21560140309046522, "vz": 0.0}
     given = {"parameters": {"am": "free"}, "guess": {"parameter": {"am": 0.002}}, "control": {"max_norm": 1.0}}
     case = satsym.Instance.of(relative(), initial=start, final=end, tf=800.0, **given).case
-    found = order.searched(case, LIMITS, partial(reading.exact, case))
+    found = order.searched(case, LIMITS, partial(extremals.exact, case))
     assert found is not None
     solution = answer.answered(case, found)
     assert solution.objective == pytest.approx(8.1526e-4, rel=1e-4)
@@ -348,7 +349,7 @@ def test_corners_next_to_a_node_of_every_mesh_are_junctions() -> None:
     held = Problem(name="held", title="H", model=model, running_cost=(w**2 + s**2) / 2, control_set="box")
     case = satsym.Instance.of(held, initial={"s": 2.0}, tf=2.0, control={"w": [-1.0, 1.0]}).case
     left = brentq(lambda at: at * np.tanh(at) - 1.0, 0.5, 2.0, xtol=1e-15)  # how much time is left, and the state then
-    found = order.searched(case, LIMITS, partial(reading.exact, case))
+    found = order.searched(case, LIMITS, partial(extremals.exact, case))
     assert found is not None
     assert found.times == pytest.approx([0.0, 2.0 - left, 2.0], abs=1e-12)
     box = ((8.0 - left**3) / 3.0 + 2.0 - left) / 2.0 + np.tanh(left) * left**2 / 2.0

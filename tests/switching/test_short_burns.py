@@ -10,7 +10,8 @@ import pytest
 import satsym
 from satsym.front.instance import as_case
 from satsym.solvers.iteration import watched
-from satsym.solvers.search import levels, order
+from satsym.solvers.search import order
+from satsym.solvers.search.reading import levels
 from satsym.status import Status
 
 FARTHER, EXHAUST, STRONGEST = 1.0295, 0.3836, 0.0768

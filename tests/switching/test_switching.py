@@ -19,7 +19,7 @@ from satsym.instance import Instance
 from satsym.report.results import sets, trajectory
 from satsym.report.results.objects import solution_object
 from satsym.solution import Iteration, Solution
-from satsym.solvers.switching import solving
+from satsym.solvers.by_search import bang_bang
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -48,12 +48,12 @@ def assert_known(found: Solution, known: Known) -> None:
 
 def test_least_times_from_random_starts_are_those_of_the_closed_form() -> None:
     for start in starts(SAMPLED):
-        assert_known(solving.solve(case(TIME, initial=start)), minimum_time(*start))
+        assert_known(bang_bang(case(TIME, initial=start)), minimum_time(*start))
 
 
 def test_costates_of_the_least_time_are_those_of_the_closed_form() -> None:
     start = (2.0, 1.0)
-    known, found = minimum_time(*start), solving.solve(case(TIME, initial=start))
+    known, found = minimum_time(*start), bang_bang(case(TIME, initial=start))
     # The switching function is linear, vanishes at the switch and is -1 where the motion rests: H = 1 + sigma u = 0.
     slope = -1.0 / (known.duration - known.switches[0])
     assert found.lam[0] == pytest.approx(np.full(len(found.times), -slope), abs=1e-9)
@@ -64,7 +64,7 @@ def test_costates_of_the_least_time_are_those_of_the_closed_form() -> None:
 @given(speed=st.floats(0.05, 4.0), side=st.sampled_from([-1.0, 1.0]), off=st.sampled_from([0.0, 1e-12, 1e-7, -1e-5]))
 def test_on_the_switching_curve_and_next_to_it_the_least_time_is_found(speed: float, side: float, off: float) -> None:
     start = (side * speed * speed / 2.0 * (1.0 + off), -side * speed)
-    known, found = minimum_time(*start), solving.solve(case(TIME, initial=start))
+    known, found = minimum_time(*start), bang_bang(case(TIME, initial=start))
     assert found.status is Status.CONVERGED, found.message
     assert found.objective == pytest.approx(known.cost, rel=1e-5 if abs(off) < 1e-7 else 1e-9)
     assert np.abs(found.x[:, -1]).max() < 1e-9
@@ -79,7 +79,7 @@ def test_least_fuel_is_that_of_the_closed_form(number: int) -> None:
         known = least_fuel(q, v, duration)
         if known is not None:
             break
-    assert_known(solving.solve(case(FUEL, initial=(q, v), tf=duration)), known)
+    assert_known(bang_bang(case(FUEL, initial=(q, v), tf=duration)), known)
 
 
 @pytest.mark.parametrize("number", range(4))
@@ -98,7 +98,7 @@ def test_least_energy_without_bounds_is_that_of_the_closed_form(number: int) -> 
 def test_hardly_more_than_the_least_time_leaves_a_short_coast() -> None:
     known = least_fuel(1.0, 0.0, 2.0 + 1e-6)
     assert known is not None
-    found = solving.solve(case(FUEL, tf=2.0 + 1e-6))
+    found = bang_bang(case(FUEL, tf=2.0 + 1e-6))
     assert found.status is Status.CONVERGED, found.message
     assert found.switching_times[0] == pytest.approx(known.switches, abs=1e-9)
 
@@ -106,7 +106,7 @@ def test_hardly_more_than_the_least_time_leaves_a_short_coast() -> None:
 @pytest.mark.study
 def test_a_control_that_only_pushes_away_is_infeasible_and_the_nearest_end_is_told() -> None:
     # With u >= 1/2 for 3 s from q = 1 nothing ends below q = 1 + 9/4, or slower than 3/2.
-    found = solving.solve(case(FUEL, initial=(1.0, 0.0), tf=3.0, lower=(0.5,)))
+    found = bang_bang(case(FUEL, initial=(1.0, 0.0), tf=3.0, lower=(0.5,)))
     assert found.status is Status.INFEASIBLE
     assert "misses q by 3.25, q_dot by 1.5" in found.message
     assert not np.isfinite(found.x).any()
@@ -123,7 +123,7 @@ def test_a_given_time_below_the_least_is_infeasible_and_the_least_is_told(fracti
 
 
 def test_a_motion_that_arrives_by_itself_needs_no_fuel() -> None:
-    found = solving.solve(case(FUEL, initial=(0.0, 0.0)))
+    found = bang_bang(case(FUEL, initial=(0.0, 0.0)))
     assert (found.status, found.objective) == (Status.CONVERGED, 0.0)
     assert not found.u.any()
 
@@ -140,7 +140,7 @@ def test_where_any_brake_costs_the_same_the_cost_is_found_and_no_strict_minimum_
 
 @pytest.mark.study
 def test_fuel_without_a_weight_on_time_has_no_minimiser() -> None:
-    assert solving.solve(case(FUEL, tf=None)).status is Status.NO_MINIMISER
+    assert bang_bang(case(FUEL, tf=None)).status is Status.NO_MINIMISER
 
 
 @pytest.mark.parametrize(
@@ -162,20 +162,20 @@ def test_what_cannot_be_solved_so_is_refused_in_one_line(one: Instance, complain
 
 
 def test_time_that_is_up_is_said() -> None:
-    found = solving.solve(with_solver(case(FUEL), max_seconds=1e-3))
+    found = bang_bang(with_solver(case(FUEL), max_seconds=1e-3))
     assert found.status is Status.TIME_LIMIT
     assert not found.status.answered
 
 
 def test_progress_is_reported() -> None:
     seen: list[Iteration] = []
-    found = solving.solve(case(FUEL), seen.append)
+    found = bang_bang(case(FUEL), seen.append)
     assert len(seen) > 2
     assert tuple(seen) == found.history
 
 
 def test_the_trajectory_jumps_at_the_exact_switching_times() -> None:
-    found = solving.solve(case(FUEL))
+    found = bang_bang(case(FUEL))
     for switch, before, after in zip(found.switching_times[0], (-1.0, 0.0), (0.0, 1.0), strict=True):
         (left, right) = np.flatnonzero(found.times == switch)
         assert right == left + 1
@@ -184,7 +184,7 @@ def test_the_trajectory_jumps_at_the_exact_switching_times() -> None:
 
 
 def test_the_table_of_the_trajectory_holds_both_sides_of_a_switch(tmp_path: Path) -> None:
-    found = solving.solve(case(TIME))
+    found = bang_bang(case(TIME))
     sets.write(tmp_path, {}, trajectory.contents(found))
     with (tmp_path / "trajectory.csv").open() as stream:
         rows = [row for row in csv.DictReader(stream) if float(row["t [s]"]) == found.switching_times[0][0]]
@@ -214,7 +214,7 @@ def test_the_machinery_does_not_know_the_problem_by_its_name_or_its_states(tmp_p
         f"[initial]\nalpha = {2 * start[0] + start[1]}\nbeta = {start[1] - 3 * start[0]}\n"
         '[final]\nalpha = 0.0\nbeta = 0.0\n[time]\ntf = "free"\n[control]\nforce = [-10.0, 10.0]\n'
     )
-    found, known = solving.solve(build(tmp_path, turned, text)), minimum_time(*start)
+    found, known = bang_bang(build(tmp_path, turned, text)), minimum_time(*start)
     assert found.objective == pytest.approx(known.cost, abs=1e-9)
     assert found.switching_times[0] == pytest.approx(known.switches, abs=1e-10)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from satsym.solvers.switching import solving
+from satsym.solvers.by_search import bang_bang
 from satsym.status import Status
 from tests.support.switching_closed_forms import TIME, case
 
@@ -21,7 +21,7 @@ from tests.support.switching_closed_forms import TIME, case
 )
 def test_a_soft_push_and_a_hard_brake_take_the_time_of_the_closed_form(push: float, brake: float) -> None:
     # From q = 1 at rest: with -push until s and +brake from there; the speeds meet, and so do the ways.
-    found = solving.solve(case(TIME, initial=(1.0, 0.0), lower=(-push,), upper=(brake,)))
+    found = bang_bang(case(TIME, initial=(1.0, 0.0), lower=(-push,), upper=(brake,)))
     switch = (2.0 / (push * (1.0 + push / brake))) ** 0.5
     assert found.status in (Status.CONVERGED, Status.NOT_CONVERGED), found.message
     if max(push, brake) / min(push, brake) < 1e5:

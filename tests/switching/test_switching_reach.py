@@ -16,9 +16,9 @@ from sympy import Abs, Integer
 from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.solution import Solution
+from satsym.solvers.by_search import bang_bang
 from satsym.solvers.certificate import certify
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import attempt
 from satsym.solvers.switching.linear.linear_motion import exponential, linear_motion
@@ -89,7 +89,7 @@ def test_ends_in_motion_are_reached_in_the_least_of_all_times() -> None:
     several = 0
     for _ in range(15):
         one = moving(rng)
-        found = solving.solve(one)
+        found = bang_bang(one)
         assert found.status is Status.CONVERGED, found.message
         assert found.objective == pytest.approx(known(one)[0], rel=1e-9)
         several += len(known(one)) > 1
@@ -129,7 +129,7 @@ def test_least_fuel_of_ends_in_motion_is_that_of_a_linear_programme(number: int)
     rng = np.random.default_rng(number)
     one = moving(rng, FUEL)
     one = replace(one, tf=float(rng.uniform(0.5, 1.6)) * float(rng.choice(known(one))))
-    found, expected = solving.solve(one), least_fuel(one, [[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]])
+    found, expected = bang_bang(one), least_fuel(one, [[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]])
     if expected is None:
         assert found.status is Status.INFEASIBLE, found.message
     else:
@@ -141,7 +141,7 @@ def test_durations_that_lead_to_an_end_need_not_be_an_interval(weak: Instance) -
     first, second, third = known(weak)
     for tf, reached in ((0.99 * first, False), (3.294, True), (1.2 * second, False), (1.05 * third, True)):
         one = case(FUEL, initial=START, final=GOAL, tf=tf, **WEAK)
-        found, expected = solving.solve(one), least_fuel(one, [[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]])
+        found, expected = bang_bang(one), least_fuel(one, [[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]])
         assert (expected is not None) is reached
         assert found.status is (Status.CONVERGED if reached else Status.INFEASIBLE), found.message
         if expected is not None:
@@ -241,7 +241,7 @@ def test_a_chain_of_three_is_led_back_by_the_arcs_that_led_it_away(tmp_path: Pat
         for k in (2, 1, 0):
             u, t = (low, high)[(k + sign) % 2], -lengths[k]
             state = expm(t * np.eye(3, k=1)) @ state + u * np.array([t**3 / 6.0, t**2 / 2.0, t])
-        found = solving.solve(replace(base, initial=tuple(state.tolist()), lower=(low,), upper=(high,)))
+        found = bang_bang(replace(base, initial=tuple(state.tolist()), lower=(low,), upper=(high,)))
         assert found.status is Status.CONVERGED, found.message
         assert found.objective == pytest.approx(lengths.sum(), rel=1e-8)
         assert found.switching_times[0] == pytest.approx(np.cumsum(lengths)[:2], rel=1e-6)
@@ -274,7 +274,7 @@ def test_time_is_weighed_against_fuel_where_every_control_brakes_as_well() -> No
     assert found.status is Status.CONVERGED, found.message
     assert_certified(found)
     for fraction in (0.9, 1.1):
-        fixed = solving.solve(case(FUEL, initial=(2.0, 1.0), tf=fraction * float(found.times[-1])))
+        fixed = bang_bang(case(FUEL, initial=(2.0, 1.0), tf=fraction * float(found.times[-1])))
         assert fixed.objective + 0.2 * fixed.times[-1] > found.objective
 
 

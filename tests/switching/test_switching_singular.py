@@ -17,10 +17,10 @@ from sympy import cos, sin, sqrt
 from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.solvers import certificate, iteration
+from satsym.solvers.by_search import bang_bang
 from satsym.solvers.certificate.switching import conditions as certifying
 from satsym.solvers.certificate.switching import replay as replaying
 from satsym.solvers.certificate.switching.integration import Integration, OutOfTime
-from satsym.solvers.switching import solving
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR
 from satsym.status import Status
@@ -109,7 +109,7 @@ def test_van_der_pols_oscillator_ends_in_a_singular_arc_within_its_bounds(
 def test_a_certificate_that_takes_too_much_work_fails_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = solving.solve(instance(tmp_path, problem("regulator", {x: v}, x**2 / 2, ("v",)), (1.2,), 3.0))
+    found = bang_bang(instance(tmp_path, problem("regulator", {x: v}, x**2 / 2, ("v",)), (1.2,), 3.0))
     monkeypatch.setattr(replaying, "EVALUATIONS", 50)
     monkeypatch.setattr(certifying, "EVALUATIONS", 50)
     verdict = certificate.certify(found)
@@ -120,7 +120,7 @@ def test_a_certificate_that_takes_too_much_work_fails_and_says_so(
 
 
 def test_time_that_ends_while_checks_are_made_neither_certifies_nor_fails() -> None:
-    found = solving.solve(shipped_case(TIME))
+    found = bang_bang(shipped_case(TIME))
     for seconds in (0.0, 0.02):
         hurried = replace(found.instance, solver=msgspec.structs.replace(found.instance.solver, max_seconds=seconds))
         verdict = certificate.certify(replace(found, instance=hurried, wall_s=0.0))
@@ -156,7 +156,7 @@ def test_a_cheaper_arc_at_rest_is_found_beside_a_control_held_at_a_bound(tmp_pat
 
 @pytest.mark.slow
 def test_running_away_is_not_certified_where_coming_to_rest_is_cheaper(tmp_path: Path) -> None:
-    base = solving.solve(instance(tmp_path, HUMP, (1.2,), 10.0))
+    base = bang_bang(instance(tmp_path, HUMP, (1.2,), 10.0))
     cost = sp.lambdify(x, HUMP.running_cost)
     times = np.linspace(0.0, 10.0, 201)
     away = replace(
@@ -185,7 +185,7 @@ def test_a_corner_beyond_the_domain_of_the_cost_does_not_end_the_search(tmp_path
 def test_a_replay_sees_two_changes_of_sign_within_one_step(tmp_path: Path) -> None:
     # Held at its bound, the switching function would dip below zero for a moment only.
     wide = replace(instance(tmp_path, VAN_DER_POL, (1.45, 1.03), 1.26), lower=(-2.0,), upper=(2.0,))
-    found = solving.solve(wide)
+    found = bang_bang(wide)
     assert found.status is Status.CONVERGED, found.message
     again = replaying.replay(found)
     assert again is not None

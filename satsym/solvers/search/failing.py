@@ -16,6 +16,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import order
 from satsym.solvers.search.feasibility import contradiction
+from satsym.solvers.switching.solving import NOT_FOUND
 from satsym.solvers.switching.throttled import switched
 from satsym.status import Status
 
@@ -34,7 +35,7 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     """The status of an instance of which no start leads to an extremal, and a message."""
     if limits.late:
         return Status.TIME_LIMIT, "time was up before an extremal was found"
-    message, limits = "no extremal found: no start of the search leads to one", replace(limits, meter=Meter())
+    message, limits = NOT_FOUND, replace(limits, meter=Meter())
     if stated_constraints(instance.model.spec):
         against = tried(partial(contradiction, instance, limits))
         if against:

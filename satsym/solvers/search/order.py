@@ -2,7 +2,7 @@
 
 1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through, each solved on a coarse mesh.
 2. What a start came to is solved on finer meshes until its cost settles. Its arcs are read after each mesh
-   (:mod:`~satsym.solvers.search.reading`, :mod:`~satsym.solvers.search.levels`).
+   (:mod:`~satsym.solvers.search.reading`).
 3. The first arcs that Newton's method makes exact are the answer: :func:`searched`.
 4. The starts that are left are competitors of an answer, whoever found it: :func:`others`. They end when a number of
    them in turn has shown nothing new; that number grows with the number of different costs that were found.

@@ -15,13 +15,15 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.methods import automatic
 from satsym.solution import Progress, Solution
-from satsym.solvers.iteration import Limits, unsolved, watched
+from satsym.solvers.iteration import Limits, Meter, unsolved, watched
 from satsym.solvers.redundant_ends import Redundant, redundant
-from satsym.solvers.search import boundaries, collocated, failing, levels, order, reading
+from satsym.solvers.search import failing, order
 from satsym.solvers.search.answer import answered
 from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.nlp import ACCEPTABLE
 from satsym.solvers.search.order import Tried
+from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
+from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.refusals import refuse_angles
 
 if TYPE_CHECKING:
@@ -50,7 +52,7 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     spec = instance.model.spec
     if spec.in_arcs:
         return boundaries.exact(instance, at, limits)
-    extremal = None if spec.switching else reading.exact(instance, at, limits)
+    extremal = None if spec.switching else extremals.exact(instance, at, limits)
     if extremal is not None:
         return answered(instance, extremal)
     if instance.free:
@@ -58,6 +60,11 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     if spec.switching or spec.throttled:
         return levels.exact(instance, at, limits)
     return collocated.exact(instance, at)
+
+
+def exact_arcs(instance: Instance, limits: Limits) -> Exact | None:
+    """The extremal of exact arcs of controls that switch to which the first start leads that leads to one."""
+    return order.searched(instance, replace(limits, work=WORK, meter=Meter()), partial(levels.arcs, instance))
 
 
 def searched(instance: Instance, limits: Limits) -> Solution | None:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
-from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, watched
-from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.by_smoothing import smoothed
@@ -26,8 +24,25 @@ from satsym.solvers.switching.refusals import refuse
 from satsym.solvers.switching.structure import REST, Guess, Structure
 from satsym.status import Status
 
-Search = Callable[[Instance, Limits], Exact | None]
-"""Finds exact arcs from a cold start."""
+NOT_FOUND = "no extremal found: no start of the search leads to one"
+"""What is said where that is all that is known."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """The direct search, as it is asked where the motion is not linear and controls do not chatter.
+
+    Attributes
+    ----------
+    arcs
+        Finds exact arcs from a cold start.
+    why
+        The status where there are none, and a message.
+    """
+
+    arcs: Callable[[Instance, Limits], Exact | None]
+    why: Callable[[Instance, Limits], tuple[Status, str]]
+
 
 ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""
@@ -37,7 +52,7 @@ LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
 time scale where none was."""
 
 
-def solve(instance: Instance, progress: Progress | None = None, search: Search | None = None) -> Solution:
+def solve(instance: Instance, progress: Progress | None, search: Search) -> Solution:
     """Solve a switching problem.
 
     Parameters
@@ -47,7 +62,7 @@ def solve(instance: Instance, progress: Progress | None = None, search: Search |
     progress
         Called after each step of the continuation, and each attempt at exact arcs.
     search
-        Finds exact arcs where the motion is not linear and controls do not chatter; else smoothed problems show them.
+        What is asked where the motion is not linear and controls do not chatter.
 
     Returns
     -------
@@ -71,7 +86,9 @@ def solve(instance: Instance, progress: Progress | None = None, search: Search |
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits, search)
         if isinstance(found, homotopy.Stopped):
-            return without(instance, _advised(instance, _out_of_reach(found, limits)), tuple(history), began)
+            return without(
+                instance, _advised(instance, _explained(instance, found, limits, search)), tuple(history), began
+            )
         return _finished(instance, found, limits, history, began)
 
 
@@ -106,7 +123,7 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
 
 
 def _by_least_time(
-    instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search | None
+    instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search
 ) -> Exact | homotopy.Stopped:
     """What the least time says: a structure where the given one is hardly longer, or that it is too short.
 
@@ -132,15 +149,13 @@ def _by_least_time(
     return replace(stopped, message=message)
 
 
-def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped:
+def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search) -> homotopy.Stopped:
     """Why there is no answer: where the final time is given, perhaps that no control arrives."""
-    if stopped.status is not Status.NOT_CONVERGED or stopped.problem is None or stopped.curve is None:
+    if stopped.status is not Status.NOT_CONVERGED:
         return stopped
-    problem, curve = stopped.problem, stopped.curve
-    near = tried(lambda: nearest(problem, curve, limits))
-    if near is None or near.arrives or near.undecided or limits.expired:
-        return stopped
-    return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
+    status, message = search.why(instance, limits)
+    more = stopped.message.removeprefix(NOT_FOUND).removeprefix("; ")
+    return replace(stopped, status=status, message="; ".join(part for part in (message, more) if part))
 
 
 def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
@@ -151,7 +166,7 @@ def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
     return replace(stopped, message=f"{stopped.message}; {advice}")
 
 
-def _found(instance: Instance, limits: Limits, search: Search | None) -> Exact | homotopy.Stopped:
+def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homotopy.Stopped:
     """Exact arcs, or why there are none."""
     resting = _resting(instance)
     found = attempt(instance, resting, limits) if resting else None
@@ -161,8 +176,9 @@ def _found(instance: Instance, limits: Limits, search: Search | None) -> Exact |
         return replace(exact, origin=Origin.REACH)
     if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
-    found = search(instance, limits) if search and not instance.model.spec.chattering else None
-    return found or smoothed(instance, limits)
+    if instance.model.spec.chattering:
+        return smoothed(instance, limits)
+    return search.arcs(instance, limits) or homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
 
 
 def _resting(instance: Instance) -> Guess | None:

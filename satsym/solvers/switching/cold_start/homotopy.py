@@ -72,28 +72,20 @@ class Stopped(Exception):
     """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
 
-def path(
-    instance: Instance, limits: Limits, most: int = LEVELS, begun: tuple[TwoPoint, Curve] | None = None
-) -> Iterator[Smoothed]:
-    """Smoothed extremals, less and less smoothed, that many times.
-
-    Parameters
-    ----------
-    begun
-        The first without the weight of |u|, if it is known.
+def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
+    """Smoothed extremals, less and less smoothed.
 
     Raises
     ------
     Stopped
         Where there is none, or the way to the bounds is blocked.
     """
-    first = _weighed(instance, limits, begun)
-    yield from less_and_less(instance, first, limits, most)
+    yield from less_and_less(instance, _weighed(instance, limits), limits)
 
 
-def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None) -> Smoothed:
+def _weighed(instance: Instance, limits: Limits) -> Smoothed:
     """Well smoothed within the bounds, with the weight of |u|."""
-    problem, curve = begun or (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
+    problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
     def weighed(fraction: float) -> TwoPoint:
@@ -105,8 +97,8 @@ def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] |
     return Smoothed(weighed(1.0), curve)
 
 
-def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
-    """A smoothed extremal, and then so many others, less and less smoothed.
+def less_and_less(instance: Instance, first: Smoothed, limits: Limits) -> Iterator[Smoothed]:
+    """A smoothed extremal, and then others, less and less smoothed.
 
     Raises
     ------
@@ -116,7 +108,7 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int
     problem, curve = first.problem, first.curve
     smoothing = problem.control_set.smoothing
     yield first
-    for _ in range(most):
+    for _ in range(2 * LEVELS):
         before = smoothing
 
         def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:

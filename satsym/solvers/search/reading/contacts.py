@@ -24,7 +24,7 @@ from satsym.solvers.switching.trajectory import runs
 CLOSE = 1e-3
 """A slack of this share of the largest is small: points meet a boundary only nearly."""
 
-SMALL = 1e-4
+SMALL = 1e-2
 """Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
 
 NOTHING = 1e-6
@@ -41,7 +41,7 @@ PARALLEL = 1.0 - 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class Along:
     """Path constraints along a motion, at its points but the first."""
 
     at: Motion
@@ -102,7 +102,7 @@ def read(at: Motion, resting: bool = False) -> Structure:
     resting
         Whether contacts between which slacks stay small are one, though multipliers vanish there.
     """
-    held, found = Held(at), list[Contact]()
+    held, found = Along(at), list[Contact]()
     by_x, costates = held.slopes[0], np.abs(at.lam).max(axis=1)[:, None]
     for k, one in enumerate(held.instance.model.spec.path_constraints):
         s, z = held.slacks[k], held.pushes[k]
@@ -136,7 +136,7 @@ def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int
     return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 
 
-def _contact(held: Held, constraint: int, order: int, begins: int, ends: int) -> Contact:
+def _contact(held: Along, constraint: int, order: int, begins: int, ends: int) -> Contact:
     """An arc or a touch point where multipliers count."""
     times, z = held.times, held.pushes[constraint]
     if order > 1 and ends - begins <= INSTANT:
@@ -151,7 +151,7 @@ def _contact(held: Held, constraint: int, order: int, begins: int, ends: int) ->
     return Contact(constraint, start, end, jumps)
 
 
-def _with_ends(held: Held, contact: Contact) -> Contact:
+def _with_ends(held: Along, contact: Contact) -> Contact:
     """A contact that holds from the start on, or until the end, if it does."""
     one, order = held.instance, held.instance.model.spec.path_constraints[contact.constraint].order
     opens = not contact.touches and contact.start - one.t0 < 1.5 * held.reaches[0] and _on_boundary(held, contact)
@@ -163,7 +163,7 @@ def _with_ends(held: Held, contact: Contact) -> Contact:
     return replace(contact, start=start, end=end, opens=opens and start < end, closes=True)
 
 
-def _meeting(held: Held, contacts: list[Contact]) -> list[Contact]:
+def _meeting(held: Along, contacts: list[Contact]) -> list[Contact]:
     """Without the gaps of a step between constraints that hold controls and follow each other.
 
     Those do that cannot be active at once: they push controls the same way, or against each other.
@@ -183,7 +183,7 @@ def _meeting(held: Held, contacts: list[Contact]) -> list[Contact]:
     return found
 
 
-def _on_boundary_at_end(held: Held, contact: Contact) -> bool:
+def _on_boundary_at_end(held: Along, contact: Contact) -> bool:
     """Whether a constraint may be on its boundary at the end, where given states alone may decide that it is not."""
     one, constraint = held.instance, contact.constraint
     if one.tf is None or held.kept[constraint, -1] > 0.0:
@@ -193,7 +193,7 @@ def _on_boundary_at_end(held: Held, contact: Contact) -> bool:
     return bool(abs(ended) <= ON_BOUNDARY * held.rooms[constraint])
 
 
-def _on_boundary(held: Held, contact: Contact) -> bool:
+def _on_boundary(held: Along, contact: Contact) -> bool:
     """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
     one, constraint = held.instance, contact.constraint
     if one.model.spec.path_constraints[constraint].order == 0:

@@ -19,8 +19,8 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.multipoint.equations import Problem, begun, between
 from satsym.solvers.multipoint.laws import Junction, Law, Parameters, derived
 from satsym.solvers.multipoint.newton import Extremal, solved
-from satsym.solvers.search import corners
 from satsym.solvers.search.motion import Motion
+from satsym.solvers.search.reading import corners
 from satsym.solvers.search.transcription import DEGREE
 
 FEWEST, DENSITY = 4, 1.0

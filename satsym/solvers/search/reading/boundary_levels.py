@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import bound_names
-from satsym.solvers.search.contacts import Held
 from satsym.solvers.search.motion import Motion
+from satsym.solvers.search.reading.contacts import Along
 from satsym.solvers.switching.boundaries import acting, effects, values
 from satsym.solvers.switching.structure import (
     BOUNDARY,
@@ -29,7 +29,7 @@ from satsym.solvers.switching.trajectory import runs
 SHORT, OFF = 0.5, 1e-6
 """Of an interval, an arc at an end that no interval shows; and share of its size by which a boundary is not met."""
 
-NEAR = 1e-4
+NEAR = 1e-2
 """Share of a constraint's terms that its slacks are measured by where none is larger."""
 
 
@@ -41,7 +41,7 @@ def read(at: Motion, shortest: int) -> Guess:
     shortest
         Points up to which arcs between bounds are none: a switch falls into one of them.
     """
-    held = Held(at)
+    held = Along(at)
     edges = 0.5 * (at.times[1:] + at.times[:-1])
     rows, times = [], list[float]()
     for control in range(len(at.u)):
@@ -56,7 +56,7 @@ def read(at: Motion, shortest: int) -> Guess:
     return Guess(Structure(tuple(rows)), np.array(times), at.lam[:, 0], float(at.times[-1]), course, bounded=True)
 
 
-def _with_ends(held: Held, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
+def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
     """With a brief arc to a boundary that the start is not on, and one away from a boundary that the end is not on."""
     instance, x, end = held.instance, held.at.x, float(held.times[-1])
     for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
@@ -73,7 +73,7 @@ def _with_ends(held: Held, row: list[int], times: list[float]) -> tuple[list[int
     return row, times
 
 
-def _with_jumps(held: Held, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
+def _with_jumps(held: Along, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
     """With jumps where a boundary is left for the bound that pushes beyond it, or reached from that which pulls away.
 
     Parameters
@@ -97,7 +97,7 @@ def _with_jumps(held: Held, row: list[int], times: Array, x: Array) -> tuple[int
     return tuple(found)
 
 
-def _levels(held: Held, control: int) -> NDArray[np.int64]:
+def _levels(held: Along, control: int) -> NDArray[np.int64]:
     """The level of a control at each point."""
     instance, spec = held.instance, held.instance.model.spec
     names = [one.name for one in spec.path_constraints]
@@ -112,7 +112,7 @@ def _levels(held: Held, control: int) -> NDArray[np.int64]:
     return found
 
 
-def _active(held: Held) -> NDArray[np.bool_]:
+def _active(held: Along) -> NDArray[np.bool_]:
     """Whether each constraint is active, shape (h, N)."""
     s, z, steps = held.slacks, held.pushes, held.at.steps / held.at.steps.sum()
     room = np.maximum(s.max(axis=1, keepdims=True), NEAR * held.rooms[:, None])

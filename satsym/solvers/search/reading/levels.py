@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -15,10 +14,9 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.iteration import Limits, Meter
-from satsym.solvers.search import order
+from satsym.solvers.iteration import Limits
 from satsym.solvers.search.motion import Motion
-from satsym.solvers.search.reading import read_norm
+from satsym.solvers.search.reading.extremals import read_norm
 from satsym.solvers.search.transcription import DEGREE
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
@@ -63,11 +61,6 @@ def arcs(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
                     return replace(found, origin=Origin.SEARCH)
                 known.append(one)
     return None
-
-
-def searched(instance: Instance, limits: Limits) -> Exact | None:
-    """The extremal of exact arcs to which the first start leads that leads to one."""
-    return order.searched(instance, replace(limits, work=WORK, meter=Meter()), partial(arcs, instance))
 
 
 def at_rest(instance: Instance, limits: Limits) -> Solution | None:

@@ -20,8 +20,8 @@ from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
-from satsym.solvers.search import boundary_levels, collocated, contacts, levels
 from satsym.solvers.search.motion import Motion
+from satsym.solvers.search.reading import boundary_levels, collocated, contacts, levels
 from satsym.solvers.switching.answers import answered as as_solution
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.structure import BOUNDARY, constraint_of
