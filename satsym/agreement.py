@@ -4,9 +4,10 @@ Rounding leaves two numbers that are equal a small distance apart. How small dep
 way, so that no fixed limit tells it from a mistake. It does shrink with the digits of the computation, and a mistake
 does not. Numbers that agree to 20 of 30 digits are equal. Any others are computed again with twice the digits:
 
-- they differ if their distance stays;
+- they differ if their difference stays what it was;
 - they are equal as soon as they agree to 20 digits, or both vanish as the digits grow;
-- as long as the distance shrinks and neither is the case, the digits are doubled, up to :data:`MOST`.
+- as long as neither is the case, the digits are doubled, up to :data:`MOST`: the distance shrinks, or rounding made it
+  small by chance the time before.
 
 A mistake is seen if it changes the terms that are added by more than 1e-25 of them or so. Symbolic steps, generated
 text and loaded kernels are all held to this rule.
@@ -39,6 +40,9 @@ NEARLY, SURELY = 0.4, 1.0 / 6.0
 That is half of them in arithmetic, and a third of that in routes that lose digits as they gain some.
 """
 
+SETTLED = 1e-2
+"""Largest share of itself by which a difference that is no rounding changes when the digits are doubled."""
+
 Sides: TypeAlias = tuple[Sequence[Any], Sequence[Any]]
 
 
@@ -55,13 +59,14 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
     The largest relative distance; NaN where a number is none.
     """
     digits, worst = DIGITS, 0.0
-    before: dict[int, tuple[Any, Any]] | None = None
+    before: dict[int, tuple[Any, Any]] | None = None  # difference and size
     while True:
         pairs = list(zip(*sides(digits), strict=True))
         faint = max(FAINT * max((_size(*pair) for pair in pairs), default=0), TINY)
         still: dict[int, tuple[Any, Any]] = {}
         for k in range(len(pairs)) if before is None else before:
-            gap, size = abs(pairs[k][0] - pairs[k][1]), _size(*pairs[k])
+            difference, size = pairs[k][0] - pairs[k][1], _size(*pairs[k])
+            gap = abs(difference)
             if not gap < math.inf:
                 return math.nan
             if gap <= faint:
@@ -69,11 +74,13 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
             if gap <= LIMIT * size:
                 worst = max(worst, float(gap / size))
             elif before is None:
-                still[k] = gap, size
-            elif gap > before[k][0] * 10.0 ** (-SURELY * digits):
-                return float(gap / size)
+                still[k] = difference, size
+            elif gap > abs(before[k][0]) * 10.0 ** (-SURELY * digits):
+                if digits >= MOST or abs(difference - before[k][0]) <= SETTLED * gap:
+                    return float(gap / size)
+                still[k] = difference, size
             elif size > before[k][1] * 10.0 ** (-NEARLY * digits):
-                still[k] = gap, size
+                still[k] = difference, size
         if not still or digits >= MOST:
             return worst
         before, digits = still, 2 * digits

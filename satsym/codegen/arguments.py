@@ -21,10 +21,10 @@ Arguments = dict[str, Any]
 """By the names of arguments."""
 
 
-def symbols_at(function: Function, known: Symbols, place: Arguments, by: float = 0.0) -> dict[sp.Symbol, Any]:
-    """What the symbols of a function's arguments stand for; moved by a share of themselves, up and down in turn."""
-    values = {s: v for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True)}
-    return {s: mp.mpf(float(v)) * (1 + by * (-1) ** k) for k, (s, v) in enumerate(values.items())}
+def symbols_at(function: Function, known: Symbols, place: Arguments) -> dict[sp.Symbol, Any]:
+    """What the symbols of a function's arguments stand for."""
+    pairs = ((s, v) for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True))
+    return {s: mp.mpf(float(v)) for s, v in pairs}
 
 
 def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:

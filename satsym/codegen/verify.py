@@ -12,7 +12,7 @@ import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
@@ -33,7 +33,7 @@ from satsym.kernels import Kernels, plain
 from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.spec import ProblemSpec
-from satsym.symbolic.checks import drawn_from, numeric_along
+from satsym.symbolic.checks import drawn_from, numeric_along, slopes
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
@@ -42,9 +42,7 @@ POINTS, FEW = 12, 2
 HUGE = 1e150
 """Largest numbers that are compared: floats have their squares."""
 LIMIT = 1e-12
-"""Deviation of floats, relative to one plus the size of the number, from which on it is asked what rounding does."""
-ROUNDED = 100.0
-"""How many times as much as where it is tried rounding may do elsewhere."""
+"""Deviation of floats, relative to one plus the size of the number, from which on more digits decide."""
 
 DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
@@ -71,15 +69,11 @@ TRIES = 400
 """Random places at most, of which those serve where functions have moderate numbers."""
 EARLIER = 40
 """After so many places every other one is at a time of a tenth as before."""
-PRECISION = 53
-"""Bits of floats."""
 SHORTEST, FARTHEST = 15, 10.0
 """Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Of the loops that are compared; the first is where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
-ROUNDING = 1e-14
-"""Share of the arguments by which rounding may seem to move them: some tens of the last place."""
 
 NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
 """What functions raise outside their domain: roots of negative numbers are complex, which floats do not take."""
@@ -119,7 +113,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     for name, (argument, by, factor) in DERIVATIVES.items():
         functions = (argument,) if isinstance(argument, str) else argument
         if {name, *functions} <= names:
-            _same_derivatives(derivation.name, kernels, (name, functions, by, factor), found, places)
+            _same_derivatives(derivation.name, kernels, text, (name, functions, by, factor), found, places)
     _same_loops(derivation, known, kernels, text, rng, places[-1])
 
 
@@ -168,30 +162,43 @@ def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
 
 def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> None:
     """Compare both forms of a function at a place with its expression, with as many digits as that takes."""
-    function = of.function
+    for form in ("", BATCH):
+        try:
+            error = _text_error(of, text, place, values, form)
+        except (ArithmeticError, TypeError):  # on arrays such a place may be passed over
+            continue
+        _refuse(of.model, f"{of.function.name}{form}", error)
 
-    @cache
-    def expected(count: int) -> list[Any]:
-        return [mp.re(v) for v in (values if count == DIGITS else of.exact(symbols_at(function, of.known, place)))]
 
-    def sides(form: str, count: int) -> Sides:
+def _text_error(
+    of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any], form: str
+) -> float:
+    """How far the text of one form of a function is from its expression at a place."""
+
+    def sides(count: int) -> Sides:
         with mp.workdps(count):
-            given = [_exactly(place[a]) for a in function.arguments]
-            if not form:
-                found = text[function.name](*given)
-                return list(found) if isinstance(found, tuple) else [found], expected(count)
+            exact = values if count == DIGITS else of.exact(symbols_at(of.function, of.known, place))
+            return _values(text, [of.function], place, form), [mp.re(v) for v in exact]
+
+    return disagreement(sides)
+
+
+def _values(
+    text: Mapping[str, digits.Function], functions: Sequence[Function], place: Arguments, form: str = BATCH
+) -> list[Any]:
+    """The numbers of functions at a place, one after another, in the working precision of mpmath."""
+    found: list[Any] = []
+    for function in functions:
+        given = [_exactly(place[a]) for a in function.arguments]
+        if form:
             shape = {"scalar": (), "vector": (len(function.outputs),)}.get(function.kind, function.value.shape)
             out = np.empty(shape, dtype=object)
             text[function.name + form](*given, out)
-            return out.ravel().tolist(), expected(count)
-
-    for form in ("", BATCH):
-        try:
-            error = disagreement(partial(sides, form))
-        except (ArithmeticError, TypeError):  # on arrays such a place may be passed over
-            continue
-        if not error <= EQUAL:
-            raise DerivationError(_deviates(of.model, f"{function.name}{form}", error))
+            found += out.ravel().tolist()
+        else:
+            value = text[function.name](*given)
+            found += value if isinstance(value, tuple) else (value,)
+    return found
 
 
 def _exactly(value: Any) -> Any:
@@ -206,6 +213,7 @@ def _same_values(
     places: Sequence[Arguments],
     expected: Sequence[Sequence[Any]],
 ) -> None:
+    """Compare both forms on floats with the expression; where they are further apart than that, their very text."""
     function = of.function
     batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
     # a function of the parameters of a model that has none is one and the same at all places
@@ -215,59 +223,52 @@ def _same_values(
     for place, column, values in zip(places, columns.T, expected, strict=True):
         wanted = np.array([float(mp.re(v)) for v in values])
         scalar = np.atleast_1d(getattr(kernels, function.name)(*(place[a] for a in function.arguments)))
-        spread: Array | float = 0.0
-        if not max(_error(scalar, wanted), _error(column, wanted)) <= LIMIT:
-            spread = _rounding(of, text, place, values)
-        _refuse(of.model, f"{function.name}", scalar, wanted, spread)
-        _refuse(of.model, f"{function.name}_batch", column, wanted, spread)
-
-
-def _rounding(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> Array:
-    """What rounding may do to values: of their arguments, and of each operation."""
-    with mp.workdps(DIGITS):
-        aside = of.exact(symbols_at(of.function, of.known, place, ROUNDING))
-    moved = np.array([float(abs(v - a)) for v, a in zip(values, aside, strict=True)])
-    with mp.workprec(PRECISION), suppress(ArithmeticError, TypeError):
-        found = text[of.function.name](*(_exactly(place[a]) for a in of.function.arguments))
-        each = found if isinstance(found, tuple) else (found,)
-        moved += ROUNDED * np.array([float(abs(v - a)) for v, a in zip(values, each, strict=True)])
-    return moved
+        for form, found in (("", scalar), (BATCH, column)):
+            if not _error(found, wanted) <= LIMIT:
+                _refuse(of.model, f"{function.name}{form}", _text_error(of, text, place, values, form))
 
 
 def _same_derivatives(
     model: str,
     kernels: Kernels,
+    text: Mapping[str, digits.Function],
     relation: tuple[str, tuple[str, ...], tuple[str, ...], float],
     found: Sequence[Function],
     places: Sequence[Arguments],
 ) -> None:
+    """Compare a derivative with complex steps through what it is derived from; where they differ, texts and slopes."""
     name, of, by, factor = relation
-    signature = {f.name: f.arguments for f in found}
-
-    def both(moved: float) -> tuple[Array, Array] | None:
-        aside = [{a: np.asarray(v) * (1.0 + moved) for a, v in place.items()} for place in places]
-        arguments = {a: _stacked(a, aside) for f in (name, *of) for a in signature[f]}
-        derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
-        slopes = []
-        for argument in by:
-            for values in _moved(arguments[argument]):
-                stepped = {**arguments, argument: values}
-                stack = [getattr(kernels, f"{f}_batch")(*(stepped[a] for a in signature[f])) for f in of]
-                slopes.append(np.imag(stack[0] if len(of) == 1 else np.concatenate(stack)) / COMPLEX_STEP)
-        if not slopes:  # a model without controls
-            return None
-        columns = np.stack(slopes, axis=-2)
-        return derived.reshape(columns.shape), factor * columns
-
-    if (sides := both(0.0)) is None:
+    functions = {f.name: f for f in found}
+    arguments = {a: _stacked(a, places) for f in (name, *of) for a in functions[f].arguments}
+    derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in functions[name].arguments))
+    columns = []
+    for argument in by:
+        for values in _stepped(arguments[argument]):
+            moved = {**arguments, argument: values}
+            stack = [getattr(kernels, f"{f}_batch")(*(moved[a] for a in functions[f].arguments)) for f in of]
+            columns.append(np.imag(stack[0] if len(of) == 1 else np.concatenate(stack)) / COMPLEX_STEP)
+    if not columns:  # a model without controls
         return
-    spread: Array | float = 0.0
-    if not _error(*sides) <= LIMIT and (aside := both(ROUNDING)) is not None:
-        spread = ROUNDED * sum((np.abs(a - b) for a, b in zip(sides, aside, strict=True)), np.zeros(()))
-    _refuse(model, f"{name} (as derivative of {' and '.join(of)})", *sides, spread)
+    expected = factor * np.stack(columns, axis=-2)
+    derived = derived.reshape(expected.shape)
+
+    def sides(place: Arguments, count: int) -> Sides:
+        with mp.workdps(count):
+            rows = [
+                slopes(lambda h, a=a, k=k: _values(text, [functions[f] for f in of], _moved(place, a, k, h)))
+                for a in by
+                for k in range(np.size(place[a]))
+            ]
+            wanted = [factor * slope for row in zip(*rows, strict=True) for slope in row]
+            return _values(text, [functions[name]], place), wanted
+
+    for k, place in enumerate(places):
+        if not _error(derived[..., k], expected[..., k]) <= LIMIT:
+            claim = f"{name} (as derivative of {' and '.join(of)})"
+            _refuse(model, claim, disagreement(partial(sides, place)))
 
 
-def _moved(values: Any) -> Iterator[Any]:
+def _stepped(values: Any) -> Iterator[Any]:
     """An argument with a complex step in each of its components in turn."""
     if np.ndim(values) == 1 and not isinstance(values, tuple):
         yield values + 1j * COMPLEX_STEP
@@ -276,6 +277,15 @@ def _moved(values: Any) -> Iterator[Any]:
         moved = np.array(values, dtype=complex)
         moved[i] += 1j * COMPLEX_STEP
         yield tuple(moved) if isinstance(values, tuple) else moved
+
+
+def _moved(place: Arguments, argument: str, component: int, by: Any) -> Arguments:
+    """A place with one component of an argument moved."""
+    values = place[argument]
+    if not isinstance(values, tuple):
+        return {**place, argument: values + by}
+    moved = tuple(value + by if k == component else value for k, value in enumerate(values))
+    return {**place, argument: moved}
 
 
 def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
@@ -307,9 +317,7 @@ def _same_loops(
     else:
         raise DerivationError(f"{derivation.name}: no step, however short, is possible at random points; {LIE}")
     for name, sides in _loops(kernels.spec, text, place, (times, u, u_mid)).items():
-        error = disagreement(sides)
-        if not error <= EQUAL:
-            raise DerivationError(_deviates(derivation.name, name, error))
+        _refuse(derivation.name, name, disagreement(sides))
 
 
 def _loops(
@@ -369,17 +377,12 @@ def moderate(values: Iterable[Any]) -> bool:
     return all(abs(value) <= HUGE for value in values)
 
 
-def _refuse(model: str, what: str, found: Any, expected: Any, spread: Array | float = 0.0) -> None:
-    """Raise unless the numbers agree, but for what they are spread by."""
-    error = _error(found, expected, spread)
-    if not error <= LIMIT:
-        raise DerivationError(_deviates(model, what, error))
+def _refuse(model: str, what: str, error: float) -> None:
+    """Raise if numbers of many digits disagree."""
+    if not error <= EQUAL:
+        raise DerivationError(f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written")
 
 
-def _deviates(model: str, what: str, error: float) -> str:
-    return f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written"
-
-
-def _error(found: Any, expected: Any, spread: Array | float = 0.0) -> float:
+def _error(found: Any, expected: Any) -> float:
     a, b = np.asarray(found, float), np.asarray(expected, float)
-    return float(np.max(np.maximum(np.abs(a - b) - spread, 0.0) / (1.0 + np.abs(b)), initial=0.0))
+    return float(np.max(np.abs(a - b) / (1.0 + np.abs(b)), initial=0.0))

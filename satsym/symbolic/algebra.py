@@ -122,6 +122,12 @@ def shortened(expression: sp.Expr) -> sp.Expr:
         if form == 0 or differs_from_zero(expression):
             return shortest(expression, form)
     named, steep = _steep_named(expression)
+    inside, meant = _of_functions_named(named)
+    if meant and not differs_from_zero(expression):
+        if simplify(inside) == 0:
+            return sp.Integer(0)
+    else:
+        named, steep = inside, steep | {symbol: e.xreplace(steep) for symbol, e in meant.items()}
     alone = _alone(named)
     named, steep = named.xreplace(alone), steep | {dummy: f.xreplace(steep) for f, dummy in alone.items()}
     logarithms = {e: sp.Dummy(real=True) for e in named.atoms(sp.log)}
@@ -267,7 +273,26 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
     e^(-(x - 5/2)^2): their factors have no moderate numbers of their own.
     """
     scaled = (e for e in expression.atoms(sp.exp) if not e.args[0].is_number)
-    exponentials = [e for e in scaled if _scales_a_difference(e) or any(map(_is_steep, _coefficients(e)))]
+    return _named(expression, [e for e in scaled if _scales_a_difference(e) or any(map(_is_steep, _coefficients(e)))])
+
+
+def _of_functions_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
+    """The expression with symbols for exponentials of functions, such as e^(sin x), and these.
+
+    No identity of sines relates them to sines outside. sympy looks for one all the same, and may do so for hours.
+    """
+    exponentials = expression.atoms(sp.exp)
+    inner = set().union(*(e.args[0].atoms(sp.exp) for e in exponentials))
+    return _named(expression, [e for e in exponentials - inner if e.args[0].atoms(sp.Function)])
+
+
+def _named(expression: sp.Expr, exponentials: Iterable[sp.Expr]) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
+    """The expression with symbols for exponentials, as powers of one where exponents are small multiples of each other.
+
+    Returns
+    -------
+    The expression, and what the symbols stand for.
+    """
     families: dict[sp.Expr, dict[sp.Expr, sp.Expr]] = {}
     for e in sorted(exponentials, key=sp.default_sort_key):
         factor, exponent = sp.expand(e.args[0]).primitive()

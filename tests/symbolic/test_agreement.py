@@ -54,6 +54,17 @@ def test_numbers_are_compared_one_by_one_however_small_beside_others() -> None:
     assert disagreement(lambda _: (one, other)) > LIMIT
 
 
+def test_rounding_that_was_small_by_chance_is_no_mistake() -> None:
+    rounding = {30: 1.3e-55, 60: -1.6e-55, 120: 1e-115}
+    assert equal(lambda digits: ([mp.mpf(rounding[digits]), 1], [0, 1]))
+    assert equal(lambda digits: ([0, 1], [mp.mpf(rounding[digits]), 1]))
+    assert not equal(lambda digits: ([mp.mpf(rounding[digits]) + 1e-50, 1], [0, 1]))
+
+
+def test_what_never_settles_is_no_agreement() -> None:
+    assert not equal(lambda digits: ([1 + (digits // DIGITS) % 7], [0]))
+
+
 def test_what_is_no_number_is_no_agreement() -> None:
     assert math.isnan(disagreement(lambda _: ([mp.nan, 1], [1, 1])))
     assert math.isnan(disagreement(lambda _: ([mp.inf], [1])))

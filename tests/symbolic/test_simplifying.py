@@ -214,6 +214,24 @@ def test_a_cosine_of_what_no_other_has_is_a_letter_to_sympy(monkeypatch: pytest.
     assert shortened(sin(q) * cos(z) + cos(q) * sin(z)) == sin(q + z)
 
 
+def test_an_exponential_of_a_sine_is_a_letter_to_sympy_unless_it_may_cancel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its search for identities of what stands in the exponent and beside it may not end."""
+    asked, ask = [], sp.simplify
+    monkeypatch.setattr(sp, "simplify", lambda e: asked.append(e) or ask(e))
+    angle = (y - q / 3) / (1 + y**2)
+    steep = sp.exp(sin(angle))
+    expression = (
+        (x * (1 + y**2) * steep - cos(angle) * steep - 2 * cos(angle)) / steep / (1 + y**2) ** sp.Rational(5, 2)
+    )
+    found = shortened(expression)
+    assert not any(e.args[0].has(sin) for each in asked for e in each.atoms(sp.exp))
+    sides = numeric([found, expression])
+    with mp.workdps(30):
+        assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "letters"))
+    assert shortened(steep**2 / steep - steep) == 0
+    assert shortened(sp.exp(sin(q) ** 2) * sp.exp(cos(q) ** 2) - sp.E) == 0
+
+
 def test_sympy_simplifies_letters_in_place_of_decimals(monkeypatch: pytest.MonkeyPatch) -> None:
     third, other = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100, sp.Float("5.205", DIGITS)
     expression = third * x / (1 + sin(q) ** 2) + third / 2 * x * cos(q) ** 2 + third / 2 * x * sin(q) ** 2
