@@ -252,13 +252,12 @@ def _same_derivatives(
     expected = factor * np.stack(columns, axis=-2)
     derived = derived.reshape(expected.shape)
 
+    def moved_by(place: Arguments, a: str, k: int, by: Any) -> list[Any]:
+        return _values(text, [functions[f] for f in of], _moved(place, a, k, by))
+
     def sides(place: Arguments, count: int) -> Sides:
         with mp.workdps(count):
-            rows = [
-                slopes(lambda h, a=a, k=k: _values(text, [functions[f] for f in of], _moved(place, a, k, h)))
-                for a in by
-                for k in range(np.size(place[a]))
-            ]
+            rows = [slopes(partial(moved_by, place, a, k)) for a in by for k in range(np.size(place[a]))]
             wanted = [factor * slope for row in zip(*rows, strict=True) for slope in row]
             return _values(text, [functions[name]], place), wanted
 
