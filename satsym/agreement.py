@@ -43,6 +43,9 @@ That is half of them in arithmetic, and a third of that in routes that lose digi
 SETTLED = 1e-2
 """Largest share of itself by which a difference that is no rounding changes when the digits are doubled."""
 
+LARGEST_SIZE = 3000
+"""Digits before the point of numbers that are differentiated."""
+
 Sides: TypeAlias = tuple[Sequence[Any], Sequence[Any]]
 
 
@@ -89,6 +92,26 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
 def equal(sides: Callable[[int], Sides]) -> bool:
     """Whether the numbers of two routes are the same."""
     return disagreement(sides) <= LIMIT
+
+
+def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
+    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision.
+
+    Where the function is large, with as many digits more. NaN where it is so large that rounding hides how it changes.
+    """
+    import mpmath as mp
+
+    digits = mp.mp.dps
+    with mp.workdps(3 * digits):
+        h = mp.mpf(10) ** (-digits)
+        sides = [function(h), function(-h)]
+        extra = max((mp.mag(v) for side in sides for v in side if mp.isfinite(v) and v), default=0) * 3 // 10
+    if digits < extra < LARGEST_SIZE:
+        with mp.workdps(3 * digits + extra):
+            sides = [function(h), function(-h)]
+    most = mp.mpf(10) ** (digits + digits // 3 + (extra if extra < LARGEST_SIZE else 0))
+    with mp.workdps(3 * digits):
+        return [(a - b) / (2 * h) if abs(a) < most else mp.nan for a, b in zip(*sides, strict=True)]
 
 
 def finite(values: Iterable[Any]) -> bool:

@@ -48,7 +48,7 @@ def build(
     chain
         Named parts of the outputs that move, each in terms of those before; those not used are left out.
     """
-    chain = used(chain, outputs)
+    chain = [(s, printable(e)) for s, e in used(chain, outputs)]
     assignments: list[Assignment] = list(definitions)
     current = [printable(sp.sympify(e)) for e in outputs]
     inner = {s for s, _ in definitions}

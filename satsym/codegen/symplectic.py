@@ -18,7 +18,7 @@ from satsym.codegen.naming import Code
 from satsym.codegen.printers import ScalarPrinter
 from satsym.codegen.rk4 import unpacking
 from satsym.kernels.composition import exact_weights
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.decimals import DIGITS
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
@@ -56,7 +56,7 @@ def split(derivation: Derivation) -> Split | None:
     if used & {t, *velocities} or not used & set(pairs):
         return None
     jacobian = sp.Matrix(accelerations).jacobian(list(pairs))
-    if simplify(jacobian - jacobian.T) != sp.zeros(*jacobian.shape):
+    if not all(vanishes(e) for e in jacobian - jacobian.T):
         return None
     return Split(tuple(pairs), velocities, accelerations)
 

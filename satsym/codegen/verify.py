@@ -13,27 +13,24 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from satsym.agreement import DIGITS, Sides, disagreement
+from satsym.agreement import DIGITS, Sides, disagreement, slopes
 from satsym.agreement import LIMIT as EQUAL
-from satsym.arrays import Array
-from satsym.codegen import digits
 from satsym.codegen.arguments import Arguments, drawn, limiting, symbols_at
 from satsym.codegen.block import used
 from satsym.codegen.functions import Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.codegen.printers import WRITTEN
-from satsym.kernels import Kernels, plain
+from satsym.kernels import Kernels, digits, plain
 from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
-from satsym.spec import ProblemSpec
-from satsym.symbolic.checks import drawn_from, numeric_along, slopes
+from satsym.kernels.many_digits import NO_NUMBERS, loops
+from satsym.symbolic.checks import drawn_from, numeric_along
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
@@ -74,9 +71,6 @@ SHORTEST, FARTHEST = 15, 10.0
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Of the loops that are compared; the first is where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
-
-NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
-"""What functions raise outside their domain: roots of negative numbers are complex, which floats do not take."""
 
 Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
 
@@ -315,60 +309,8 @@ def _same_loops(
                 break
     else:
         raise DerivationError(f"{derivation.name}: no step, however short, is possible at random points; {LIE}")
-    for name, sides in _loops(kernels.spec, text, place, (times, u, u_mid)).items():
+    for name, sides in loops(kernels.spec, text, place, (times, u, u_mid)).items():
         _refuse(derivation.name, name, disagreement(sides))
-
-
-def _loops(
-    spec: ProblemSpec, text: Mapping[str, digits.Function], place: Arguments, along: tuple[Array, Array, Array]
-) -> dict[str, Callable[[int], Sides]]:
-    """Digits -> what a loop and the same one of textbooks give, by name of the loop."""
-    one: Any = SimpleNamespace(spec=spec, **text)
-    n, steps = len(spec.states), len(along[0]) - 1
-
-    def blank() -> tuple[Any, Any]:
-        return tuple([mp.nan] * (steps + 1) for _ in range(n)), tuple([mp.nan] * steps for _ in range(n))
-
-    def rows(table: Array) -> tuple[list[Any], ...]:
-        return tuple(row.tolist() for row in table)
-
-    def given() -> tuple[Any, ...]:
-        return *(_to_objects(values) for values in along), *(_exactly(place[a]) for a in ("x", "lam", "p"))
-
-    def forward(count: int) -> Sides:
-        with mp.workdps(count):
-            times, u, u_mid, x0, _, p = given()
-            x, x_mid = blank()
-            cost = text["forward"](times.tolist(), x0, rows(u), rows(u_mid), p, x, x_mid)
-            exact, exact_mid, total = plain.forward(one, times, x0, u, u_mid, p)
-            found = [v for row in (*x, *x_mid) for v in row]
-            return [*found, cost or 0], [*exact.flat, *exact_mid.flat, total]
-
-    def backward(count: int) -> Sides:
-        with mp.workdps(count):
-            times, u, u_mid, x0, lam_f, p = given()
-            x, x_mid, _ = plain.forward(one, times, x0, u, u_mid, p)
-            lam, lam_mid = blank()
-            text["backward"](times.tolist(), lam_f, *map(rows, (x, x_mid, u, u_mid)), p, lam, lam_mid)
-            exact = plain.backward(one, times, lam_f, x, x_mid, u, u_mid, p)
-            return [v for row in (*lam, *lam_mid) for v in row], [v for table in exact for v in table.flat]
-
-    def symplectic(count: int) -> Sides:
-        with mp.workdps(count):
-            times, *_, x0, _, p = given()
-            x, _ = blank()
-            text["symplectic"](times.tolist(), x0, p, x)
-            return [v for row in x for v in row], [*plain.symplectic(one, times, x0, p).flat]
-
-    found = {"forward": forward, "backward": backward, "symplectic": symplectic}
-    return {name: loop for name, loop in found.items() if name in text}
-
-
-def _to_objects(values: Array) -> Any:
-    """An array of numbers of mpmath."""
-    found = np.empty(values.size, dtype=object)
-    found[:] = [mp.mpf(float(v)) for v in values.flat]
-    return found.reshape(values.shape)
 
 
 def moderate(values: Iterable[Any]) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from math import prod
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,9 @@ _FAILED = (ArithmeticError, ValueError, TypeError)
 """What functions on floats raise beyond their domain; roots of negative numbers are complex, and no arguments."""
 
 
+Evaluating = TypeVar("Evaluating", bound=Evaluation)
+
+
 @dataclass(frozen=True)
 class Contradiction:
     """The worst disagreement of a function with others."""
@@ -60,7 +63,8 @@ class Contradiction:
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
     """The largest contradiction between the functions of a module at places; ``None`` where none is in their domain.
 
-    Where none is, but the form on floats has numbers that the one on arrays has not, that is the contradiction.
+    Where none is, but the form on floats has numbers that the one on arrays has not, that is the contradiction. What
+    floats would refuse is compared once more with many digits, if the text of the module is known.
 
     Parameters
     ----------
@@ -69,19 +73,41 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
     seed
         Of the copies aside of the places, by which sizes are told.
     """
+    found = _largest_of(_contradictions(kernels, at, seed, Evaluation, _loops))
+    if found is None or found.deviation <= LIMIT or kernels.text is None:
+        return found
+    from satsym.kernels.many_digits import LongEvaluation, of_loops  # mpmath takes a tenth of a second to be imported
+
+    every = _contradictions(kernels, at, seed, LongEvaluation, of_loops)
+    still = [each for each in every if each.function == found.function and not each.deviation <= LIMIT]
+    return _largest_of(still or every)
+
+
+def _largest_of(found: Sequence[Contradiction]) -> Contradiction | None:
+    return max(found, key=lambda each: each.deviation, default=None)
+
+
+def _contradictions(
+    kernels: Kernels,
+    at: Mapping[str, Any],
+    seed: int,
+    evaluating: Callable[[Kernels, Mapping[str, Any]], Evaluating],
+    loops: Callable[[Evaluating, Mapping[str, Any], tuple[Array, Array, Array]], Iterator[Relation]],
+) -> list[Contradiction]:
+    """How far the sides of each relation are apart, by one way to evaluate functions; none outside their domain."""
     with np.errstate(all="ignore"):
-        evaluation = Evaluation(kernels, with_copies(at, seed))
+        evaluation = evaluating(kernels, with_copies(at, seed))
         finite = _finite(evaluation)
         nowhere = not finite.any()
         if not finite.all() and not nowhere:
             at = {a: tuple(v[finite] for v in row) if a in TUPLES else row[..., finite] for a, row in at.items()}
-            evaluation = Evaluation(kernels, with_copies(at, seed))
+            evaluation = evaluating(kernels, with_copies(at, seed))
         groups: list[tuple[list[Relation], Callable[[Array], Array]]] = []
         rowwise = [*_both_forms(evaluation)]
         if not nowhere:
             together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
             groups.append((together, size))
-            rowwise += _loops(kernels, at)
+            rowwise += loops(evaluation, *_first_steps(kernels, at))
         rowwise.sort(key=_columns)
         groups += [(list(alike), _largest) for _, alike in groupby(rowwise, _columns)]
         found = [
@@ -89,8 +115,7 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             for group, scale in groups
             for each, deviation in zip(group, deviations(group, scale), strict=True)
         ]
-    largest = max(found, key=lambda each: each.deviation, default=None)
-    return None if nowhere and not (largest and largest.deviation > LIMIT) else largest
+    return [] if nowhere and all(each.deviation <= LIMIT for each in found) else found
 
 
 def _finite(of: Evaluation) -> NDArray[np.bool_]:
@@ -168,7 +193,7 @@ def _both_forms(of: Evaluation) -> Iterator[Relation]:
     for name, signature in of.signatures.items():
         everywhere = of(name)[..., : len(columns) - 1]
         rows = np.concatenate([everywhere, of.without_costates(name)], axis=-1).reshape(-1, len(columns))
-        single, known = _singly(of.kernels.functions[name], signature.arguments, columns)
+        single, known = _singly(of.single(name), signature.arguments, columns)
         if known:  # sizes are those at all places
             terms = 0.0 if len(known) == len(columns) else _largest(rows)
             yield Relation(name, "the same on floats and on arrays", single.T, rows[:, known], terms)
@@ -208,12 +233,17 @@ def _columns_of(at: Mapping[str, Any], count: int) -> list[dict[str, Any]]:
     return [{name: own[k][0] if name == "t" else tuple(own[k]) for name, own in rows.items()} for k in range(count)]
 
 
-def _loops(kernels: Kernels, at: Mapping[str, Any]) -> Iterator[Relation]:
-    """Trajectory loops over a few steps from the first place, the controls being those of the others."""
-    first = column(at, 0)
-    p, start, end, u = first["p"], first["x"], first["lam"], at["u"][:, :STEPS]
+def _first_steps(kernels: Kernels, at: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[Array, Array, Array]]:
+    """The first place, and a few times from there, with controls at and between these, which are those of others."""
+    first, u = column(at, 0), at["u"][:, :STEPS]
     times = first["t"] + _short(kernels, first) * np.array([0.0, 1.0, 1.5])
-    u_mid = 0.3 * u[:, :-1] + 0.7 * u[:, 1:]
+    return first, (times, u, 0.3 * u[:, :-1] + 0.7 * u[:, 1:])
+
+
+def _loops(of: Evaluation, first: Mapping[str, Any], along: tuple[Array, Array, Array]) -> Iterator[Relation]:
+    """Trajectory loops over a few steps from a place."""
+    kernels, (times, u, u_mid) = of.kernels, along
+    p, start, end = first["p"], first["x"], first["lam"]
     x, x_mid, cost = kernels.forward(times, start, u, u_mid, p)
     try:
         exact, exact_mid, total = plain.forward(kernels, times, start, u, u_mid, p)

@@ -20,8 +20,7 @@ from satsym.kernels.relations import Relation
 def of_sets(of: Evaluation) -> Iterator[Relation]:
     """Relations of the law, set by set, and of what the regularised problem costs."""
     law, within = of("control_law"), _within(of)
-    slope, straight = of.slope("hamiltonian", "u", u=law), np.zeros_like(law)
-    terms = np.abs(of.slope("hamiltonian", "u", u=straight)) + np.abs(slope)
+    (slope, terms), straight = slope_terms(of, law), np.zeros_like(law)
     turning = {part.turned_by for _, part in within.parts}
     for places, part in within.parts:
         if not part.directed and (part.kind == "angle" or places[0] in turning):  # what it turns may be none there
@@ -52,6 +51,13 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
     if of.has("regularised_cost"):
         expected = relaxed(of, "running_cost") + effort(of)
         yield Relation("regularised_cost", "running cost and half the squares", of("regularised_cost"), expected)
+
+
+def slope_terms(of: Evaluation, law: Array) -> tuple[Array, Array]:
+    """H_u under the law, and sizes of what it consists of: H_u without controls, and what each of these adds."""
+    slope, idle = (of.slope("hamiltonian", "u", u=u) for u in (law, np.zeros_like(law)))
+    added = np.abs(of("control_hessian", u=law) * law).sum(axis=1)
+    return slope, np.abs(idle) + np.abs(slope) + np.where(np.isfinite(added), added, 0.0)
 
 
 def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlSet) -> Array:

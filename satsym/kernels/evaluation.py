@@ -13,7 +13,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.kernels.contract import BATCH, TUPLES, Signature, pointwise, sizes
-from satsym.kernels.core import Kernels
+from satsym.kernels.core import Function, Kernels
 
 COMPLEX_STEP = 1e-30
 COPIES, ASIDE = 2, 1e-4
@@ -84,6 +84,10 @@ class Evaluation:
             found = self._value(name, self._and_without_costates, columns + 1)
             self._known[name, ""], self._known[name, "without costates"] = found[..., :-1], found[..., -1:]
         return self._known[name, ""]
+
+    def single(self, name: str) -> Function:
+        """The form on floats of a function."""
+        return self.kernels.functions[name]
 
     def without_costates(self, name: str) -> Array:
         """A function at the first place if all costates vanish there, where laws may decide nothing; a column."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
-from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed
+from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
 from satsym.kernels.evaluation import FAINT, Evaluation, size
 from satsym.kernels.path_constraints import of_path_constraints
 from satsym.kernels.relations import Relation, derivative
@@ -57,8 +57,7 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
         yield from of_sets(of)
         return
     law = of("control_law")
-    slope = of.slope("hamiltonian", "u", u=law)
-    terms = np.abs(of.slope("hamiltonian", "u", u=np.zeros_like(law))) + np.abs(slope)
+    slope, terms = slope_terms(of, law)
     limits = ControlSet.from_arguments(of.kernels.spec, [np.asarray(b) for b in of.at["bounds"]])
     if limits.kind == "box":
         low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (limits.lower, limits.upper))

@@ -142,14 +142,31 @@ def shortened(expression: sp.Expr) -> sp.Expr:
 def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
     """Letters for functions of which nothing is known together with others: sympy would look for that for minutes.
 
-    Of sines and cosines those are such of which there are no powers.
+    Of sines and cosines those are such of which there are no powers, and all of them where none multiplies another.
     """
     hyperbolic, exponentials = expression.atoms(HyperbolicFunction), expression.atoms(sp.exp)
     found = [f for f in hyperbolic if not _meets(f, (hyperbolic | exponentials) - {f})]
     turning = expression.atoms(TrigonometricFunction)
-    raised = {p.base for p in expression.atoms(sp.Pow)}
-    found += [f for f in turning - raised if not _meets(f, turning - {f})]
+    if _degree(expression, turning) <= 1 and differs_from_zero(expression):
+        found += turning
+    else:
+        raised = {p.base for p in expression.atoms(sp.Pow)}
+        found += [f for f in turning - raised if not _meets(f, turning - {f})]
     return {f: sp.Dummy(real=True) for f in sorted(found, key=sp.default_sort_key)}
+
+
+def _degree(expression: sp.Expr, functions: set[sp.Expr]) -> float:
+    """Of the polynomial in these functions that an expression is, at most; infinite where it is none."""
+    if expression in functions:
+        return 1
+    degrees = [_degree(e, functions) for e in expression.args]
+    if expression.is_Add or not any(degrees):
+        return max(degrees, default=0)
+    if expression.is_Mul:
+        return sum(degrees)
+    if expression.is_Pow and expression.exp.is_Integer and expression.exp.is_positive:
+        return degrees[0] * int(expression.exp)
+    return math.inf
 
 
 def _meets(function: sp.Expr, others: Iterable[sp.Expr]) -> bool:

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 import mpmath as mp
 import sympy as sp
 
-from satsym.agreement import DIGITS, LIMIT, Sides, disagreement, finite
+from satsym.agreement import DIGITS, LIMIT, Sides, disagreement, finite, slopes
 from satsym.spec import Variable
 from satsym.symbolic.algebra import PROVABLE, terms_of
 from satsym.symbolic.derivation import Check, DerivationError
@@ -24,9 +24,6 @@ from satsym.symbolic.functions.roots import Root
 POINTS = 5
 TRIES = 60
 """Random points at most, of which those are looked at where functions have numbers."""
-
-LARGEST_SIZE = 3000
-"""Digits before the point of numbers that are differentiated."""
 
 _TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 
@@ -237,21 +234,3 @@ def agree(
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:
     """Numeric partial derivatives of a vector function by central differences in high precision."""
     return slopes(lambda h: function({**point, symbol: point[symbol] + h}))
-
-
-def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
-    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision.
-
-    Where the function is large, with as many digits more. NaN where it is so large that rounding hides how it changes.
-    """
-    digits = mp.mp.dps
-    with mp.workdps(3 * digits):
-        h = mp.mpf(10) ** (-digits)
-        sides = [function(h), function(-h)]
-        extra = max((mp.mag(v) for side in sides for v in side if mp.isfinite(v) and v), default=0) * 3 // 10
-    if digits < extra < LARGEST_SIZE:
-        with mp.workdps(3 * digits + extra):
-            sides = [function(h), function(-h)]
-    most = mp.mpf(10) ** (digits + digits // 3 + (extra if extra < LARGEST_SIZE else 0))
-    with mp.workdps(3 * digits):
-        return [(a - b) / (2 * h) if abs(a) < most else mp.nan for a, b in zip(*sides, strict=True)]

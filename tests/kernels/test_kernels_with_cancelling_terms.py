@@ -41,7 +41,7 @@ def test_the_multiplier_of_a_boundary_may_cancel_all_of_the_costates_rate(rate: 
         out[...] = found  # type: ignore[index]
         return out
 
-    wrong = replace(kernels, functions={**kernels.functions, "path_multiplier_batch": doubled})
+    wrong = replace(kernels, functions={**kernels.functions, "path_multiplier_batch": doubled}, text=None)
     found = consistency.worst(wrong, places)
     assert found is not None
     assert found.deviation > consistency.LIMIT

@@ -232,6 +232,18 @@ def test_an_exponential_of_a_sine_is_a_letter_to_sympy_unless_it_may_cancel(monk
     assert shortened(sp.exp(sin(q) ** 2) * sp.exp(cos(q) ** 2) - sp.E) == 0
 
 
+def test_sines_of_which_none_multiplies_another_are_letters_to_sympy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would seek angles of sums in vain, and factors of all that comes of it."""
+    asked, ask = [], sp.simplify
+    monkeypatch.setattr(sp, "simplify", lambda e: asked.append(e) or ask(e))
+    expression = y * sin(q) + x * sin(1 / (q**2 + y**2)) * q / (q**4 + y) + q / sqrt(1 + q**2)
+    found = shortened(expression)
+    assert not asked[-1].has(sin)
+    assert vanishes(found - expression)
+    assert shortened(sin(q) ** 2 + y * cos(q) + cos(q) ** 2) == 1 + y * cos(q)
+    assert shortened(2 * sin(q + x) - 2 * sin(x + q)) == 0
+
+
 def test_sympy_simplifies_letters_in_place_of_decimals(monkeypatch: pytest.MonkeyPatch) -> None:
     third, other = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100, sp.Float("5.205", DIGITS)
     expression = third * x / (1 + sin(q) ** 2) + third / 2 * x * cos(q) ** 2 + third / 2 * x * sin(q) ** 2

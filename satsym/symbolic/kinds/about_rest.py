@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 import mpmath as mp
 import sympy as sp
 
+from satsym.agreement import slopes
 from satsym.spec import ModeGroup, Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
-from satsym.symbolic.checks import Point, compare, identity, numeric, numeric_along, slopes
+from satsym.symbolic.checks import Point, compare, identity, numeric, numeric_along
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.factoring import factored

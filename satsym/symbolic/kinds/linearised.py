@@ -198,7 +198,7 @@ def original_states(so_far: Derivation) -> Step:
         solutions = []
     zero, about = dict.fromkeys(stated, sp.Integer(0)), _about(model)
     fitting = [
-        s for s in solutions if set(s) == set(old) and all(simplify(s[o].xreplace(zero) - about[o]) == 0 for o in old)
+        s for s in solutions if set(s) == set(old) and all(vanishes(s[o].xreplace(zero) - about[o]) for o in old)
     ]
     if len(fitting) != 1:
         raise DerivationError(f"{model.name}: the deviations cannot be solved for the variables of {model.of.name}")

@@ -10,7 +10,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import constants_of, simplified, simplify, tidy, total_derivative
+from satsym.symbolic.algebra import constants_of, simplified, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
@@ -230,7 +230,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
     unknown = [n.acceleration_of(q) for q in model.coordinates]
     law = [e.lhs - e.rhs for e in so_far.step("newton").equations]
     mass, load = sp.linear_eq_to_matrix(law, unknown)
-    if mass.rows != mass.cols or simplify(mass.det()) == 0:
+    if mass.rows != mass.cols or vanishes(mass.det()):
         raise DerivationError(f"{model.name}: Newton's law does not determine {', '.join(a.name for a in unknown)}")
     controls = symbols_of(model.controls)
     simple = [simplified(s) for s in mass.LUsolve(load)]

@@ -9,7 +9,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.spec import MOST_LETTERS
-from satsym.symbolic.algebra import definitions_of, simplify
+from satsym.symbolic.algebra import definitions_of, vanishes
 from satsym.symbolic.analysis.field import NotExact, exact
 from satsym.symbolic.analysis.system import LinearSystem
 from satsym.symbolic.checks import numeric
@@ -34,7 +34,7 @@ def coefficients_of(derivation: Derivation) -> Coefficients | None:
     ]
     at_rest = derivation.rhs("first_order").xreplace(dict.fromkeys(moving, sp.Integer(0)))
     at_rest = at_rest.xreplace(definitions_of(model))
-    if any(e.free_symbols & moving for e in matrices) or any(simplify(e) != 0 for e in at_rest):
+    if any(e.free_symbols & moving for e in matrices) or not all(vanishes(e) for e in at_rest):
         return None
     return "varying" if any(e.has(t) for e in matrices) else "constant"
 

@@ -17,7 +17,7 @@ import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from satsym.control_part import DIRECTED, Branch
-from satsym.symbolic.algebra import gradient, simplified, simplify, tidy
+from satsym.symbolic.algebra import gradient, simplified, simplify, tidy, vanishes
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
 from satsym.symbolic.principle.circle import by_circle
@@ -128,7 +128,7 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
         circle = by_circle(h, angle)
         if circle is None or not any(e.has(u) for e in circle[1:]) or by_circle(h, u):
             continue
-        if simplify(sp.diff(h, u, 2)) == 0:
+        if vanishes(sp.diff(h, u, 2)):
             found |= _turned(name, circle, turned, beside, side)
             continue
         arc = ends_of(turned, angle) if turned.kind == "box" else None
@@ -151,7 +151,7 @@ def _turned(
     """A magnitude and the angle of what it multiplies: the best angle, and a magnitude that switches."""
     (angle,), (u,) = turned.symbols, beside.symbols
     rest, *pair = circle
-    alone = any(simplify(e.xreplace({u: sp.Integer(0)})) != 0 for e in pair)
+    alone = not all(vanishes(e.xreplace({u: sp.Integer(0)})) for e in pair)
     if alone or beside.kind != "box":
         raise DerivationError(
             f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; this needs "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import depends
 
 
 def by_circle(expression: sp.Expr, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
@@ -16,7 +16,7 @@ def by_circle(expression: sp.Expr, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr, 
 
     turned = sp.sympify(expression).replace(lambda e: e.func in (sp.sin, sp.cos, sp.tan) and e.has(angle), apart)
     slopes = [sp.diff(turned, v) for v in (along, across)]
-    if turned.has(angle) or any(simplify(s).has(along, across) for s in slopes if s.has(along, across)):
+    if turned.has(angle) or any(depends(s, [along, across]) for s in slopes):
         return None
     none = {along: sp.Integer(0), across: sp.Integer(0)}
     return (turned.xreplace(none), *(s.xreplace(none) for s in slopes))

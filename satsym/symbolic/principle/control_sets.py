@@ -15,7 +15,7 @@ import sympy as sp
 
 from satsym.control_part import PartKind
 from satsym.spec import ControlSetKind, Variable
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.functions.minimisers import Clip, Shorten
 
@@ -71,7 +71,7 @@ def project(
 def refuse_unequal(hessian: sp.Matrix) -> None:
     """Refuse an H_uu that is not a multiple of the identity."""
     m = hessian.rows
-    if simplify(hessian - hessian[0, 0] * sp.eye(m)) != sp.zeros(m, m):
+    if not all(vanishes(e) for e in hessian - hessian[0, 0] * sp.eye(m)):
         raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
 
 
@@ -83,10 +83,10 @@ def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], he
     hessian
         H_uu of them.
     """
-    if simplify(hessian.det()) != 0:
+    if not vanishes(hessian.det()):
         return
     names = ", ".join(u.name for u in controls)
-    linear = [u.name for k, u in enumerate(controls) if all(simplify(entry) == 0 for entry in hessian.row(k))]
+    linear = [u.name for k, u in enumerate(controls) if all(vanishes(entry) for entry in hessian.row(k))]
     if linear and kind == "free":
         message = f"H is linear in {', '.join(linear)}, which nothing limits; state a Box or a Ball"
         raise DerivationError(f"{name}: {message}")

@@ -16,7 +16,7 @@ import sympy as sp
 
 from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import depends, simplify, vanishes
 from satsym.symbolic.chain import named_parts
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
@@ -58,22 +58,22 @@ def applies(so_far: Derivation) -> bool:
         return True
     controls = symbols_of(problem.model.controls)
     kept = [sp.diff(g, u) for g in problem.path_constraints.values() for u in controls]
-    if any(simplify(sp.diff(slope, u)) != 0 for slope in kept for u in controls if slope.has(u)):
+    if any(not vanishes(sp.diff(slope, u)) for slope in kept for u in controls):
         return True  # on the boundary of such a constraint no law is in closed form
     stated = [with_norms(e, parts_of(problem)) for e in (problem.running_cost, *so_far.rhs("first_order"))]
     if problem.control_set != "ball":
         if any(e.has(sp.Abs) for e in stated):
             return False
         cost, *rates = stated
-        if problem.control_set == "box" and any(simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
+        if problem.control_set == "box" and any(not vanishes(sp.diff(f, u, 2)) for f in rates for u in controls):
             return True  # the costates decide whether H is convex
         if problem.control_set == "box" and any(_falls(so_far, cost, u) for u in controls):
             return True  # the better end is the minimiser
         slopes = [sp.diff(e, u) for e in stated for u in controls]
-        return any(simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
+        return any(not vanishes(sp.diff(s, u, v)) for s in slopes for u in controls for v in controls)
     if len(controls) == 1:
         return False
-    return not any(simplify(sp.diff(e, u, v)) != 0 for e in stated for u in controls for v in controls)
+    return all(vanishes(sp.diff(e, u, v)) for e in stated for u in controls for v in controls)
 
 
 def _falls(so_far: Derivation, cost: sp.Expr, u: sp.Symbol) -> bool:
@@ -124,7 +124,7 @@ def _linear(so_far: Derivation, stated: Problem) -> set[str]:
     for part in parts_of(stated):
         for u in part.symbols if part.kind == "box" else ():
             slopes = [sp.diff(e, u) for e in given]
-            if all(simplify(sp.diff(slope, v)) == 0 for slope in slopes for v in part.symbols if slope.has(v)):
+            if not any(depends(slope, part.symbols) for slope in slopes):
                 found.add(u.name)
     return found
 

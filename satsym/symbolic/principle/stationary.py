@@ -16,7 +16,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.agreement import DIGITS, equal, finite
-from satsym.symbolic.algebra import simplify, tidy
+from satsym.symbolic.algebra import simplify, tidy, vanishes
 from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.factoring import as_factors
@@ -76,7 +76,9 @@ def with_angle(
     """The control and the angle at which H is least, where the control multiplies what the angle turns.
 
     ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is the lesser of ``c + l m`` and
-    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser.
+    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser. Which one is
+    less is asked of a product: where both are equal because the controls are opposite, a factor of it vanishes, while
+    rounding would be left of a sum.
 
     Parameters
     ----------
@@ -94,7 +96,7 @@ def with_angle(
         return None
     sine *= ratio
     length = sp.Dummy("length", real=True)
-    laws, turns, values = [], [], []
+    laws, turns, sizes = [], [], []
     for side in (1, -1):
         turn = Bearing(-side * sine, -side * cosine) if arc is None else nearest_angle(side * cosine, side * sine, arc)
         size = -side * sp.sqrt(tidy(cosine**2 + sine**2))
@@ -103,9 +105,14 @@ def with_angle(
         value = moved + one * length
         law = minimiser(name, value, u, ends)
         laws.append(law.xreplace({length: size}))
-        values.append(value.xreplace({u: law}).xreplace({length: size}))
+        sizes.append(size)
         turns.append(turn)
-    excess = values[0] - values[1]
+    controls, lengths = sp.symbols("u:2", cls=sp.Dummy, real=True), [*sp.symbols("l:2", cls=sp.Dummy, real=True)]
+    if arc is None:
+        lengths[1], sizes = -lengths[0], sizes[:1]
+    one_value, other_value = (value.xreplace({u: v, length: s}) for v, s in zip(controls, lengths, strict=True))
+    excess = as_factors(one_value - other_value)
+    excess = excess.xreplace(dict(zip(controls, laws, strict=True))).xreplace(dict(zip(lengths, sizes, strict=False)))
     return Choice(excess, *laws), Choice(excess, *turns)
 
 
@@ -145,7 +152,7 @@ def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
     found: dict[sp.Expr, sp.Expr] = {}
     for factor, function in parts:
         found[function] = found.get(function, sp.Integer(0)) + factor
-    return {function: tidy(factor) for function, factor in found.items() if simplify(factor) != 0}
+    return {function: tidy(factor) for function, factor in found.items() if not vanishes(factor)}
 
 
 def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:

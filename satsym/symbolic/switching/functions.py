@@ -17,9 +17,10 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
+from satsym.agreement import slopes
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import simplify, tidy
-from satsym.symbolic.checks import Point, compare, never_below, numeric, slopes
+from satsym.symbolic.algebra import tidy, vanishes
+from satsym.symbolic.checks import Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.functions.minimisers import Clip, Shrink, Switch
@@ -314,5 +315,5 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
                 f"{name}: the weight of |{u.name}| in the cost, {weight}, may be negative, which is not supported; "
                 "declare positive what it is made of"
             )
-        if weight == 0 and all(simplify(sp.diff(e, u)) == 0 for e in (cost, *f)):
+        if weight == 0 and all(vanishes(sp.diff(e, u)) for e in (cost, *f)):
             raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from satsym.spec import Variable
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import depends
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
 from satsym.symbolic.model import Model, Problem, symbols_of
 from satsym.symbolic.notation import named
@@ -92,7 +92,7 @@ def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> 
     for expression in expressions:
         plain = sp.sympify(expression).xreplace(stands_for)
         slopes = [sp.diff(plain, v) for v in entries]
-        if any(slope.free_symbols & set(entries) and simplify(slope).free_symbols & set(entries) for slope in slopes):
+        if any(depends(slope, entries) for slope in slopes):
             return False
     return True
 

@@ -8,7 +8,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import simplify, tidy
+from satsym.symbolic.algebra import simplify, tidy, vanishes
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.factoring import as_factors
@@ -23,7 +23,7 @@ def linearised_about_rest(so_far: Derivation) -> Step:
     states, control = symbols_of(model.states), control_of(model)
     rates = so_far.rhs("original_equations")
     rest = dict.fromkeys((*states, control), sp.Integer(0))
-    if any(simplify(e) != 0 for e in rates.xreplace(rest)):
+    if not all(vanishes(e) for e in rates.xreplace(rest)):
         raise DerivationError(f"{model.name}: rest is not a motion of {model.of.name}")
     linear = rates.jacobian([*states, control]).xreplace(rest) * sp.Matrix([*states, control])
     equations = tuple(Equation(x.name, n.rate_of(x), tidy(f)) for x, f in zip(states, linear, strict=True))

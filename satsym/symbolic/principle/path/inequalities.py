@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic.algebra import simplify
+from satsym.symbolic.algebra import depends
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle.path import mixed_constraints, path_constraints
@@ -33,7 +33,7 @@ def linear_quadratic(so_far: Derivation) -> bool:
         for _ in range(order):
             table = [sp.diff(e, v) for e in table for v in moving]
         varying = {*moving, t} if order > 1 else set(moving)  # weights are looked at once
-        return not any(simplify(e).free_symbols & varying for e in table)
+        return not any(depends(e, varying) for e in table)
 
     return (
         settled(list(so_far.rhs("first_order")), 1)

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, shortest, simplified, simplify, tidy, total_derivative
+from satsym.symbolic.algebra import depends, gradient, shortest, simplified, simplify, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
@@ -161,7 +161,7 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         if found.order == 1:
             moved, stays = _moved_by_jump(so_far, found, before)
             kept += stays
-            if all(simplify(m) == 0 for m in moved):
+            if all(vanishes(m) for m in moved):
                 raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
             equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
             continue
@@ -235,7 +235,7 @@ def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: 
     """Whether no control enters any rate: further ones say nothing new once there are as many as states."""
     for _ in motion:
         rate = total_derivative(rate, motion)
-        if simplify(rate).free_symbols & controls:
+        if depends(rate, controls):
             return False
     return True
 

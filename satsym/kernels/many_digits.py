@@ -1,0 +1,191 @@
+"""The functions of a module with many digits, rounded to floats in the end, for what floats cannot decide.
+
+Where terms cancel, floats keep nothing but rounding, which is neither the same in two forms of a function nor the
+derivative of anything. The text of the functions tells what they are without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from types import SimpleNamespace
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+
+from satsym.agreement import FAINT, Sides, slopes
+from satsym.arrays import Array
+from satsym.kernels import plain
+from satsym.kernels.contract import BATCH
+from satsym.kernels.core import Function
+from satsym.kernels.digits import functions_of
+from satsym.kernels.evaluation import Evaluation
+from satsym.kernels.relations import Relation
+from satsym.spec import ProblemSpec
+
+DIGITS = 60
+"""Of derivatives; values have twice as many."""
+
+NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
+"""What functions raise outside their domain: roots of negative numbers are complex, which have no order."""
+
+Place = Mapping[str, Any]
+"""Arguments by name: numbers, and tuples of numbers."""
+
+
+@dataclass(frozen=True, eq=False)
+class LongEvaluation(Evaluation):
+    """An evaluation whose values and derivatives have many digits until they are rounded.
+
+    Floats stay where the text has no numbers: what arrays compute beyond a condition, and do not use, may be none.
+    """
+
+    @cached_property
+    def text(self) -> dict[str, Function]:
+        """The functions by name, in the working precision of mpmath."""
+        return functions_of(self.kernels.text or "", {})
+
+    def single(self, name: str) -> Function:
+        """The form on floats of a function."""
+
+        def function(*given: Any) -> tuple[float, ...]:
+            with mp.workdps(2 * DIGITS):
+                found = self.text[name](*map(_exactly, given))
+            return tuple(_rounded(found if isinstance(found, tuple) else (found,)))
+
+        return function
+
+    def _value(self, name: str, at: Mapping[str, Any], columns: int) -> Array:
+        found = super()._value(name, at, columns)
+        for k in range(columns):
+            self._put(found[..., k], 2 * DIGITS, partial(self._numbers, name, self._place(name, at, k, columns)))
+        return found
+
+    def _slopes(self, name: str, by: Sequence[str], instead: Mapping[str, Any]) -> dict[str, Array]:
+        found = super()._slopes(name, by, instead)
+        columns = len(self.at["t"])
+        for k in range(columns):
+            place = self._place(name, {**self.at, **instead}, k, columns)
+            for argument, table in found.items():
+                for component in range(table.shape[-2]):
+                    moved = partial(self._moved, name, place, argument, component)
+                    self._put(table[..., component, k], DIGITS, partial(slopes, moved))
+        return found
+
+    def _place(self, name: str, at: Mapping[str, Any], column: int, columns: int) -> dict[str, Any]:
+        """The arguments of a function in one column, in numbers of mpmath."""
+        found: dict[str, Any] = {}
+        for a in self.signatures[name].arguments:
+            table = np.asarray(at[a], dtype=float).reshape(-1, columns)[:, column]
+            found[a] = mp.mpf(table[0]) if a == "t" else tuple(map(mp.mpf, table))
+        return found
+
+    def _numbers(self, name: str, place: Place) -> list[Any]:
+        out = np.empty(self._shapes[name], dtype=object)
+        self.text[name + BATCH](*place.values(), out)
+        return out.ravel().tolist()
+
+    def _moved(self, name: str, place: Place, argument: str, component: int, by: Any) -> list[Any]:
+        """The numbers of a function where one component of an argument is another."""
+        value = place[argument]
+        if isinstance(value, tuple):
+            moved: Any = tuple(v + by if i == component else v for i, v in enumerate(value))
+        else:
+            moved = value + by
+        return self._numbers(name, {**place, argument: moved})
+
+    @staticmethod
+    def _put(into: Array, digits: int, numbers: Callable[[], Sequence[Any]]) -> None:
+        """Round numbers into a part of a table, if there are such."""
+        try:
+            with mp.workdps(digits):
+                found = _rounded(numbers())
+        except NO_NUMBERS:
+            return
+        if not any(map(np.isnan, found)):
+            into[...] = np.reshape(found, into.shape)
+
+
+def of_loops(of: LongEvaluation, place: Place, along: tuple[Array, Array, Array]) -> Iterator[Relation]:
+    """Loops and those of textbooks, as :func:`loops`, where the rates have numbers."""
+    for name, sides in loops(of.kernels.spec, of.text, place, along).items():
+        try:
+            left, right = (np.array([_rounded(side)]).T for side in sides(2 * DIGITS))
+        except NO_NUMBERS:
+            continue
+        yield Relation(name, "the loop of textbooks", left, right)
+
+
+def loops(
+    spec: ProblemSpec, text: Mapping[str, Function], place: Place, along: tuple[Array, Array, Array]
+) -> dict[str, Callable[[int], Sides]]:
+    """Digits -> what a loop and the same one of textbooks give, by name of the loop.
+
+    Parameters
+    ----------
+    text
+        The functions by name, as :func:`satsym.kernels.digits.functions_of` makes them.
+    place
+        Where states and costates begin, and parameters.
+    along
+        Times, and controls at these and between them, shapes (N+1,), (m, N+1) and (m, N).
+    """
+    one: Any = SimpleNamespace(spec=spec, **text)
+    n, steps = len(spec.states), len(along[0]) - 1
+
+    def blank() -> tuple[Any, Any]:
+        return tuple([mp.nan] * (steps + 1) for _ in range(n)), tuple([mp.nan] * steps for _ in range(n))
+
+    def rows(table: Array) -> tuple[list[Any], ...]:
+        return tuple(row.tolist() for row in table)
+
+    def given() -> tuple[Any, ...]:
+        return *(_to_objects(values) for values in along), *(_exactly(place[a]) for a in ("x", "lam", "p"))
+
+    def forward(count: int) -> Sides:
+        with mp.workdps(count):
+            times, u, u_mid, x0, _, p = given()
+            x, x_mid = blank()
+            cost = text["forward"](times.tolist(), x0, rows(u), rows(u_mid), p, x, x_mid)
+            exact, exact_mid, total = plain.forward(one, times, x0, u, u_mid, p)
+            found = [v for row in (*x, *x_mid) for v in row]
+            return [*found, cost or 0], [*exact.flat, *exact_mid.flat, total]
+
+    def backward(count: int) -> Sides:
+        with mp.workdps(count):
+            times, u, u_mid, x0, lam_f, p = given()
+            x, x_mid, _ = plain.forward(one, times, x0, u, u_mid, p)
+            lam, lam_mid = blank()
+            text["backward"](times.tolist(), lam_f, *map(rows, (x, x_mid, u, u_mid)), p, lam, lam_mid)
+            exact = plain.backward(one, times, lam_f, x, x_mid, u, u_mid, p)
+            return [v for row in (*lam, *lam_mid) for v in row], [v for table in exact for v in table.flat]
+
+    def symplectic(count: int) -> Sides:
+        with mp.workdps(count):
+            times, *_, x0, _, p = given()
+            x, _ = blank()
+            text["symplectic"](times.tolist(), x0, p, x)
+            return [v for row in x for v in row], [*plain.symplectic(one, times, x0, p).flat]
+
+    found = {"forward": forward, "backward": backward, "symplectic": symplectic}
+    return {name: loop for name, loop in found.items() if name in text}
+
+
+def _exactly(value: Any) -> Any:
+    """A number, or several, of mpmath."""
+    return tuple(map(mp.mpf, value)) if isinstance(value, tuple) else mp.mpf(value)
+
+
+def _to_objects(values: Array) -> Any:
+    """An array of numbers of mpmath."""
+    found = np.empty(values.size, dtype=object)
+    found[:] = [mp.mpf(float(v)) for v in values.flat]
+    return found.reshape(values.shape)
+
+
+def _rounded(values: Sequence[Any]) -> list[float]:
+    """Floats; what is next to nothing beside one and the largest of them is what cancelling leaves, and zero."""
+    faint = FAINT * max((abs(v) for v in values if abs(v) < mp.inf), default=1)
+    return [0.0 if abs(v) <= max(faint, FAINT) else float(v) for v in values]
