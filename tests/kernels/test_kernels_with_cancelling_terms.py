@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.kernels import consistency, load
+from satsym.kernels import Kernels, consistency, load
+from satsym.kernels.core import Function
+from satsym.kernels.evaluation import Evaluation, with_copies
+from satsym.kernels.many_digits import LongEvaluation
 from satsym.report.artefacts import generated
 from satsym.spec import Variable
 from satsym.symbolic import FirstOrder, Problem, derive, symbols_of
@@ -45,3 +49,43 @@ def test_the_multiplier_of_a_boundary_may_cancel_all_of_the_costates_rate(rate: 
     found = consistency.worst(wrong, places)
     assert found is not None
     assert found.deviation > consistency.LIMIT
+
+
+def with_rounding(kernels: Kernels, *names: str) -> Kernels:
+    """Kernels in which a function on floats is off, as if terms had cancelled, while its text is right."""
+
+    def off(function: Function) -> Function:
+        def found(*arguments: object, **more: object) -> object:
+            value = function(*arguments, **more)
+            return value * (1 + 1e-6) if isinstance(value, float) else tuple(v * (1 + 1e-6) for v in value)
+
+        return found
+
+    return replace(kernels, functions={**kernels.functions, **{name: off(kernels.functions[name]) for name in names}})
+
+
+def test_the_text_decides_where_floats_seem_to_contradict_each_other() -> None:
+    text, kernels = generated(derive(constrained(sp.sin(th) ** 2 + sp.Integer(10) ** 9 * (v - th) ** 3)), "bank.py")
+    rough, places = with_rounding(kernels, "dynamics", "costate_rate"), consistency.random_places(kernels)
+    seen, right = (consistency.worst(each, places) for each in (replace(rough, text=None), rough))
+    assert seen is not None
+    assert seen.deviation > 1e-7
+    assert right is not None
+    assert right.deviation < 1e-12
+    head, rate = text.split("def dynamics_batch", 1)
+    wrong = replace(rough, text=f"{head}def dynamics_batch{rate.replace('1000000000.0', '1000010000.0', 1)}")
+    found = consistency.worst(wrong, places)
+    assert wrong.text != text
+    assert found is not None
+    assert found.deviation > consistency.LIMIT
+
+
+def test_values_and_slopes_have_the_digits_that_floats_lose() -> None:
+    rate = sp.Integer(10) ** 18 * (sp.tanh(v) - sp.sinh(v) / sp.cosh(v)) + v**2 * th
+    _, kernels = generated(derive(constrained(rate)), "bank.py")
+    of = LongEvaluation(kernels, with_copies(consistency.random_places(kernels), 0))
+    angle, speed = of.at["x"][1], of.at["x"][0]
+    assert np.abs(Evaluation(kernels, of.at)("dynamics")[0] - speed**2 * angle).max() > 1.0
+    assert of("dynamics")[0] == pytest.approx(speed**2 * angle, rel=1e-15)
+    assert of.slope("dynamics", "x")[0] == pytest.approx(np.array([2 * speed * angle, speed**2]), rel=1e-15)
+    assert of.single("dynamics")(0.0, (0.5, 0.25), (0.1,), ())[0] == 0.0625

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import random
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -9,7 +11,8 @@ import mpmath as mp
 import pytest
 import sympy as sp
 
-from satsym.symbolic import Annulus, Ball, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive
+from satsym.report.artefacts import generated
+from satsym.symbolic import Angle, Annulus, Ball, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive
 from satsym.symbolic.functions.minimisers import Clip
 from satsym.symbolic.functions.roots import minimum_between
 from satsym.symbolic.principle import product
@@ -56,3 +59,35 @@ def test_what_is_least_at_an_end_is_that_end_to_the_last_digit() -> None:
         for slope, expected in ((5, -end), (-5, end)):
             assert minimum_between(lambda z, s=slope: (s + z**3, 3 * z**2), -end, end) == expected
         assert minimum_between(lambda z: (1 / z - 10, -1 / z**2 + 10), 0, 1) <= 1
+
+
+def turned(drive: sp.Expr, across: sp.Expr) -> Problem:
+    """A thrust of either sign and its angle, which two pairs of them make alike."""
+    controls = (Variable("F", "F"), Variable("b", "b", kind="angle"))
+    thrust, angle = sp.symbols("F b", real=True)
+    rates = {x: y + drive * thrust * sp.cos(angle), y: across * thrust * sp.sin(angle) - x}
+    model = FirstOrder(name="m", title="M", states=STATES, controls=controls, parameters=(), rates=rates)
+    sets = {"throttle": Box("F"), "course": Angle("b")}
+    return Problem(
+        name="task", title="Task", model=model, running_cost=sp.Rational(103984, 7) * thrust**2, control_sets=sets
+    )
+
+
+def test_rounding_does_not_choose_between_opposite_vectors_at_opposite_angles() -> None:
+    _, kernels = generated(derive(turned(sp.Integer(1), sp.atan(y) / 6)), "task.py")
+    rng = random.Random(3)
+    places = [[tuple(rng.uniform(-1.5, 1.5) for _ in range(2)) for _ in range(2)] for _ in range(200)]
+    forces = [kernels.control_law(0.0, *place, (), (-1.0, 1.0, 1.0))[0] for place in places]
+    assert all(force >= 0.0 for force in forces) or all(force <= 0.0 for force in forces)
+
+
+def test_a_law_that_has_the_magnitude_of_a_costate_is_generated() -> None:
+    stated = turned(sp.Integer(1), sp.Integer(0))
+    (thrust, angle) = sp.symbols("F b", real=True)
+    drive = thrust * (sp.cos(angle) + 14 * sp.sqrt(1 + 2 * x**2) * sp.sin(angle))
+    rates = {x: y + drive, y: -x}
+    model = replace(stated.model, rates=rates)
+    text, kernels = generated(derive(replace(stated, model=model)), "task.py")
+    law = kernels.control_law(0.0, (0.3, 0.1), (-0.7, 0.4), (), (-1.0, 1.0, 1.0))
+    assert "fabs(lambda_x)" in text
+    assert law[0] * (math.cos(law[1]) + 14 * math.sqrt(1.18) * math.sin(law[1])) > 0.0
