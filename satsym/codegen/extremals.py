@@ -83,7 +83,7 @@ def _under_the_law(derivation: Derivation, s: Symbols, parts: LawParts) -> tuple
 
 
 def _under_the_law_of_sets(derivation: Derivation, parts: LawParts) -> tuple[sp.Matrix, sp.Expr]:
-    """The same where the control set is a product of sets: of the regularised problem, where that differs."""
+    """Return rates and H under the law over a product of sets, of the regularised problem where that differs."""
     *rates, h = set_laws.relaxed(
         derivation,
         [

@@ -34,7 +34,7 @@ class Function:
     summary: str
     """Its name, and the first line of its docstring."""
     arguments: tuple[str, ...]
-    """Those of :data:`ARGUMENTS` it takes, in that order."""
+    """The names from :data:`ARGUMENTS` that it takes, in that order."""
     value: sp.Matrix
     """The expression it returns, or the matrix; a column is returned as a vector."""
     kind: str

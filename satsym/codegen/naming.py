@@ -36,7 +36,7 @@ class Code:
     symbols: Symbols
     """Behind each argument."""
     functions: tuple[Function, ...]
-    """Of the module, in its order."""
+    """Functions of the module, in its order."""
     constants: Mapping[sp.Symbol, sp.Expr]
     """Defined constants and their values."""
     chain: tuple[Assignment, ...]

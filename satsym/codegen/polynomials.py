@@ -84,7 +84,7 @@ def lines(name: str, least: Argmin, form: str, code: Callable[[sp.Expr], str]) -
 
 
 def _derivatives(coefficients: list[sp.Symbol]) -> list[sp.Poly]:
-    """Of a polynomial without a constant, the first being itself."""
+    """Return a polynomial without a constant, and all its derivatives."""
     found = [sp.Poly([*coefficients[::-1], 0], _AT)]
     for _ in coefficients:
         found.append(found[-1].diff())

@@ -13,7 +13,7 @@ from satsym.kernels.contract import BATCH, TUPLES, Signature
 FILE = Path(contract.__file__).with_name("functions.pyi")
 
 WIDTH = 120
-"""Of a line."""
+"""Characters in a line at most."""
 
 HEAD = '''"""Functions of generated modules; written by ``python -m satsym.codegen.protocol`` from the contract."""
 

@@ -27,7 +27,7 @@ class Loop:
     name: str
     summary: str
     signature: str
-    """Of the generated function."""
+    """Name, docstring and arguments of the generated function."""
     backward: bool
     """Whether it runs from the last node to the first."""
     time: sp.Symbol

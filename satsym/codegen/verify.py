@@ -26,8 +26,9 @@ from satsym.codegen.block import used
 from satsym.codegen.functions import Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.codegen.printers import WRITTEN
-from satsym.kernels import Kernels, digits, plain
+from satsym.kernels import Kernels, many_digits, plain
 from satsym.kernels.contract import BATCH, TUPLES
+from satsym.kernels.core import Function as GeneratedFunction
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.kernels.many_digits import NO_NUMBERS, loops
 from satsym.symbolic.checks import drawn_from, numeric_along
@@ -69,7 +70,7 @@ EARLIER = 40
 SHORTEST, FARTHEST = 15, 10.0
 """Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
-"""Of the loops that are compared; the first is where they begin."""
+"""Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
 
 Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
@@ -94,7 +95,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     exact = [numeric_along(chain, f.outputs)[0] for chain, f in zip(chains, found, strict=True)]
     rng = random.Random(derivation.name)
     places, expected = _places(derivation, kernels, found, exact, rng)
-    text = digits.functions_of(kernels.text or "", WRITTEN)
+    text = many_digits.functions_of(kernels.text or "", WRITTEN)
     for k, function in enumerate(found):
         of = _Of(derivation.name, function, exact[k], known)
         for place, values in zip(places[:FEW], expected, strict=False):
@@ -154,7 +155,7 @@ def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
     return None
 
 
-def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any]) -> None:
+def _same_text(of: _Of, text: Mapping[str, GeneratedFunction], place: Arguments, values: Sequence[Any]) -> None:
     """Compare both forms of a function at a place with its expression, with as many digits as that takes."""
     for form in ("", BATCH):
         try:
@@ -165,7 +166,7 @@ def _same_text(of: _Of, text: Mapping[str, digits.Function], place: Arguments, v
 
 
 def _text_error(
-    of: _Of, text: Mapping[str, digits.Function], place: Arguments, values: Sequence[Any], form: str
+    of: _Of, text: Mapping[str, GeneratedFunction], place: Arguments, values: Sequence[Any], form: str
 ) -> float:
     """How far the text of one form of a function is from its expression at a place."""
 
@@ -178,7 +179,7 @@ def _text_error(
 
 
 def _values(
-    text: Mapping[str, digits.Function], functions: Sequence[Function], place: Arguments, form: str = BATCH
+    text: Mapping[str, GeneratedFunction], functions: Sequence[Function], place: Arguments, form: str = BATCH
 ) -> list[Any]:
     """The numbers of functions at a place, one after another, in the working precision of mpmath."""
     found: list[Any] = []
@@ -203,7 +204,7 @@ def _exactly(value: Any) -> Any:
 def _same_values(
     of: _Of,
     kernels: Kernels,
-    text: Mapping[str, digits.Function],
+    text: Mapping[str, GeneratedFunction],
     places: Sequence[Arguments],
     expected: Sequence[Sequence[Any]],
 ) -> None:
@@ -225,7 +226,7 @@ def _same_values(
 def _same_derivatives(
     model: str,
     kernels: Kernels,
-    text: Mapping[str, digits.Function],
+    text: Mapping[str, GeneratedFunction],
     relation: tuple[str, tuple[str, ...], tuple[str, ...], float],
     found: Sequence[Function],
     places: Sequence[Arguments],
@@ -291,7 +292,7 @@ def _same_loops(
     derivation: Derivation,
     known: Symbols,
     kernels: Kernels,
-    text: Mapping[str, digits.Function],
+    text: Mapping[str, GeneratedFunction],
     rng: random.Random,
     place: Arguments,
 ) -> None:

@@ -22,7 +22,7 @@ class Active(Kernels):
     whole: Kernels | None = None
     """With all of them as they were stated."""
     names: frozenset[str] = frozenset()
-    """Of those that are active."""
+    """Names of the constraints that are active."""
 
     def compiled(self) -> Kernels:
         """As of any kernels; rows are left out in Python."""
@@ -69,7 +69,7 @@ def _with_fewer(function: Function, count: int, kept: list[int], wanted: list[in
 
 
 def _with_fewer_in_batches(function: Function, count: int, kept: list[int], wanted: tuple[Any, ...]) -> Function:
-    """The same for columns of arrays."""
+    """Leave out rows of a batch form that belong to constraints which are not active."""
 
     def fewer(t: Any, x: Any, lam: Any, nu: Any, *others: Any, out: Any = None) -> Any:
         found = np.asarray(function(t, x, lam, _padded(nu, count, kept), *others))[wanted]

@@ -32,7 +32,7 @@ LIMIT = 1e-9
 """Largest difference of what must be equal, relative to the size of what it is made of; rounding stays far below."""
 
 PLACES = 24
-"""Of random ones."""
+"""Number of random places at which functions are compared."""
 
 STEPS, FRACTION = 3, 0.1
 """Nodes over which loops are followed, and by which share of themselves states change in a step."""
@@ -266,7 +266,7 @@ def _columns(each: Relation) -> int:
 
 
 def _largest(rows: Array) -> Array:
-    """Of the finite numbers of each row."""
+    """Return the largest magnitude of the finite numbers in each row, shape (rows, 1)."""
     return np.asarray(np.abs(np.where(np.isfinite(rows), rows, 0.0)).max(axis=-1, initial=0.0, keepdims=True))
 
 

@@ -49,7 +49,7 @@ class Kernels(Functions):
     origin: tuple[str, Path | None] | None = None
     """What :func:`satsym.kernels.load` was given, so that another process can load it again."""
     text: str | None = None
-    """Of a module that is not a shipped one: from it another process makes the same, wherever it was read."""
+    """Text of a module that is not a shipped one; another process makes the same kernels from it."""
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.
@@ -187,7 +187,7 @@ class Kernels(Functions):
         return all(bool((rows[i] > 0.0).all()) for i, state in enumerate(self.spec.states) if state.positive)
 
     def compiled(self) -> Kernels:
-        """The same functions compiled with numba (extra ``fast``), from the very same code; made once.
+        """Compile the functions with numba (extra ``fast``) from the very same code; they are made once.
 
         Raises
         ------

@@ -47,7 +47,7 @@ class Evaluation:
 
     @cached_property
     def signatures(self) -> dict[str, Signature]:
-        """Of the functions that the model has."""
+        """Signatures of the functions that the model has."""
         return pointwise(self.kernels.spec)
 
     def has(self, *names: str) -> bool:
@@ -56,7 +56,7 @@ class Evaluation:
 
     @cached_property
     def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of a value at one place."""
+        """Shapes of the functions' values at one place."""
         counts = sizes(self.kernels.spec)
         return {name: tuple(counts[k] for k in signature.shape) for name, signature in self.signatures.items()}
 
@@ -137,7 +137,7 @@ class Evaluation:
 
     @cached_property
     def _sizes(self) -> dict[tuple[str, str], Array]:
-        """Of functions at the columns themselves, and of arguments, in one go."""
+        """Sizes of functions at the columns themselves, and of arguments, told in one go."""
         tables = {(name, ""): self(name) for name in self.signatures} | {("", a): self._table(a, {}) for a in self.at}
         columns, found, end = len(self.at["t"]), dict[tuple[str, str], Array](), 0
         every = size(np.concatenate([table.reshape(-1, columns) for table in tables.values()]))

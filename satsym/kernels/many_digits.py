@@ -1,11 +1,13 @@
-"""The functions of a module with many digits, rounded to floats in the end, for what floats cannot decide.
+"""Generated functions with any number of digits: their very text, with mpmath in the place of ``math`` and ``np``.
 
 Where terms cancel, floats keep nothing but rounding, which is neither the same in two forms of a function nor the
-derivative of anything. The text of the functions tells what they are without it.
+derivative of anything. The text of the functions tells what they are without it. A constant is the number that the
+generator wrote down, of which the text has the first 17 digits, or the decimal that stands there.
 """
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -15,24 +17,46 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from satsym.agreement import FAINT, Sides, slopes
+from satsym.agreement import FAINT, MOST, Sides, slopes
 from satsym.arrays import Array
 from satsym.kernels import plain
 from satsym.kernels.contract import BATCH
 from satsym.kernels.core import Function
-from satsym.kernels.digits import functions_of
 from satsym.kernels.evaluation import Evaluation
 from satsym.kernels.relations import Relation
 from satsym.spec import ProblemSpec
 
 DIGITS = 60
-"""Of derivatives; values have twice as many."""
+"""Digits of derivatives; values have twice as many."""
 
 NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
 """What functions raise outside their domain: roots of negative numbers are complex, which have no order."""
 
 Place = Mapping[str, Any]
 """Arguments by name: numbers, and tuples of numbers."""
+
+
+def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]:
+    """The functions of a module by name, in the working precision of mpmath.
+
+    Parameters
+    ----------
+    text
+        Of a module that :func:`satsym.kernels.from_text` has accepted.
+    written
+        Floats -> the numbers that they are the nearest ones of, where these are known.
+    """
+    constants = _Constants(written)
+    body = [constants.visit(node) for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
+    module = ast.fix_missing_locations(ast.Module(body, []))
+    names: dict[str, Any] = {
+        "__builtins__": {"len": len, "range": range},
+        "math": SimpleNamespace(**_SHARED, **_OF_FLOATS),
+        "np": SimpleNamespace(**_SHARED, **_OF_ARRAYS),
+        **constants.values,
+    }
+    exec(compile(module, "<generated>", "exec"), names)  # noqa: S102 - definitions only, each of them checked
+    return {node.name: names[node.name] for node in body}
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +150,7 @@ def loops(
     Parameters
     ----------
     text
-        The functions by name, as :func:`satsym.kernels.digits.functions_of` makes them.
+        The functions by name, as :func:`functions_of` makes them.
     place
         Where states and costates begin, and parameters.
     along
@@ -189,3 +213,58 @@ def _rounded(values: Sequence[Any]) -> list[float]:
     """Floats; what is next to nothing beside one and the largest of them is what cancelling leaves, and zero."""
     faint = FAINT * max((abs(v) for v in values if abs(v) < mp.inf), default=1)
     return [0.0 if abs(v) <= max(faint, FAINT) else float(v) for v in values]
+
+
+class _Constants(ast.NodeTransformer):
+    """Gives floats in a text names, by which they are found with all their digits."""
+
+    def __init__(self, written: Mapping[float, Any]) -> None:
+        self.written = written
+        self.values: dict[str, Any] = {}
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        """A name in the place of a float."""
+        if not isinstance(node.value, float):
+            return node
+        name = f"_number_{node.value!r}".replace(".", "_").replace("-", "_minus_").replace("+", "")
+        if name not in self.values:
+            with mp.workdps(2 * MOST):
+                self.values[name] = self.written.get(node.value, mp.mpf(repr(node.value)))
+        return ast.copy_location(ast.Name(name, ast.Load()), node)
+
+
+def _real(function: Function) -> Function:
+    """No number where the function has no real one."""
+
+    def value(*arguments: Any) -> Any:
+        found = function(*arguments)
+        return mp.nan if mp.im(found) else mp.re(found)
+
+    return value
+
+
+def _heaviside(value: Any, at_zero: Any) -> Any:
+    return at_zero if value == 0 else mp.nan if value != value else mp.mpf(value > 0)
+
+
+_SHARED = {name: _real(getattr(mp, name)) for name in "sin cos tan sinh cosh tanh exp log sqrt".split()}
+_SHARED["pi"] = mp.pi
+_OF_FLOATS = {
+    "asin": _real(mp.asin),
+    "acos": _real(mp.acos),
+    "atan": mp.atan,
+    "atan2": mp.atan2,
+    "fabs": abs,
+}
+_OF_ARRAYS = {
+    "arcsin": _real(mp.asin),
+    "arccos": _real(mp.acos),
+    "arctan": mp.atan,
+    "arctan2": mp.atan2,
+    "abs": abs,
+    "real": mp.re,
+    "minimum": lambda a, b: b if b < a or b != b else a,
+    "maximum": lambda a, b: b if b > a or b != b else a,
+    "where": lambda condition, one, other: one if condition else other,
+    "heaviside": _heaviside,
+}

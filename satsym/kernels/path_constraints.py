@@ -59,7 +59,7 @@ def _none(of: Evaluation) -> Any:
 
 
 def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
-    """Of a constraint that holds controls: with its multiplier they are stationary, and keep it zero."""
+    """Relate a constraint that holds controls with its multiplier: they make H stationary, and keep it zero."""
     u = of("boundary_control")[which]
     eta, effect = of("path_multiplier")[which], of("path_effect", u=u)[which]
     kept, sizes = of("path_constraints", u=u)[which], np.abs(effect * u).sum(axis=0)
@@ -72,7 +72,7 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
 
 
 def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
-    """Of a constraint on states alone."""
+    """Relate a constraint on states alone with its multiplier: what vanishes on the boundary keeps vanishing."""
     vanishing = of("path_vanishing", u=_law(of))
     found, terms = _rates_on_boundary(of, which)
     if order > 1:

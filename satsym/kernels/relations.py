@@ -28,7 +28,7 @@ class Relation:
     """What it must be."""
     left: Array
     right: Array
-    """Of one shape, the last axis for columns."""
+    """The two sides that must be equal, of one shape; the last axis counts columns."""
     terms: Array | float = 0.0
     """Sizes of what the sides are sums of, where these may cancel; broadcast against the sides."""
 

@@ -156,7 +156,7 @@ def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
 
 
 def _degree(expression: sp.Expr, functions: set[sp.Expr]) -> float:
-    """Of the polynomial in these functions that an expression is, at most; infinite where it is none."""
+    """Largest possible degree of an expression as a polynomial in these functions; infinite where it is none."""
     if expression in functions:
         return 1
     degrees = [_degree(e, functions) for e in expression.args]

@@ -86,7 +86,7 @@ def _compiled(expressions: tuple[sp.Expr, ...]) -> tuple[list[sp.Symbol], Callab
 def numeric_along(
     chain: Iterable[tuple[sp.Symbol, sp.Expr]], expressions: Iterable[sp.Expr]
 ) -> tuple[Callable[[Mapping[sp.Symbol, Any]], list[Any]], list[sp.Symbol]]:
-    """The same for expressions in named parts, each of which may use those before it; and the symbols it needs."""
+    """Evaluate expressions in named parts, each of which may use those before it; and name the symbols it needs."""
     parts, values = list(chain), list(expressions)
     free = set().union(*(e.free_symbols for _, e in parts), *(e.free_symbols for e in values)) - {s for s, _ in parts}
     symbols = sorted(free, key=lambda s: s.name)

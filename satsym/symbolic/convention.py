@@ -31,7 +31,7 @@ def worded(key: str, problem: Problem) -> str:
 
 
 def in_convention(subject: Problem | Model, convention: Convention | None) -> Problem | Model:
-    """The same problem with that convention; a model without a cost is what it is, and so is anything for ``None``."""
+    """Return a problem with a convention; a model without a cost stays as it is, and so does anything for ``None``."""
     return replace(subject, convention=convention) if convention and isinstance(subject, Problem) else subject
 
 

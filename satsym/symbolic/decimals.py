@@ -23,7 +23,7 @@ DIGITS = 2 * MOST
 """Twice as many as numbers have in checks at most."""
 
 CERTAIN = 400
-"""Of these, how many are right after a few multiplications."""
+"""Digits of a long decimal that are right after a few multiplications."""
 
 SMALL = 20
 """Numbers in the ratio of two decimals that are multiples of one."""

@@ -24,7 +24,7 @@ Requirement: TypeAlias = "Callable[..., Dimension | None]"
 """What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has."""
 
 Convention = Literal["minimum", "maximum"]
-"""Of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
+"""Form of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
 
 t = sp.Symbol("t", real=True)
 """Time. In a terminal cost it stands for the final time."""
@@ -76,7 +76,7 @@ class Line:
 
     @property
     def components(self) -> tuple[sp.Expr, ...]:
-        """Those of a vector."""
+        """The entries of the right-hand side where it is a vector or a matrix; none where it is a number."""
         return tuple(self.right) if isinstance(self.right, sp.MatrixBase) else ()
 
 
@@ -147,7 +147,7 @@ class Model:
         return None
 
     def particle(self) -> Particle | None:
-        """The same model, where it states how a particle moves."""
+        """The model itself where it states how a particle moves; ``None`` otherwise."""
         return None
 
     def brings(self) -> tuple[Variable, ...]:

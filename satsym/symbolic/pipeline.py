@@ -140,7 +140,7 @@ def derive(subject: Problem | Model) -> Derivation:
 
 
 def _in_pieces(subject: Problem | Model) -> Problem | Model:
-    """The same with what is stated of time piece by piece in the form that is derived with."""
+    """Return a problem or model in which what is stated of time piece by piece has the form that is derived with."""
     model = subject.model if isinstance(subject, Problem) else subject
     moving = {v.symbol for one in with_origins(model) for v in (*one.states, *one.controls)}
     return everywhere(subject, lambda e: in_pieces(e, n.TIME, moving))
@@ -243,7 +243,7 @@ def _kinds(of: type[Model]) -> list[type[Model]]:
 
 
 def _with_quantities(derivation: Derivation) -> Derivation:
-    """The same, the cost in terms of states and controls where it names quantities that were derived."""
+    """Return the derivation with derived quantities, where the cost names them, in terms of states and controls."""
     problem = derivation.problem
     if problem is None or "quantities" not in derivation:
         return derivation

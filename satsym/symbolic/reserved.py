@@ -21,7 +21,7 @@ _KINDS: tuple[ControlSetKind, ...] = ("free", "box", "ball")
 
 
 def reserved() -> list[str]:
-    """Of problems; ``STATE``, ``CONTROL``, ``OUTPUT`` and ``SET`` stand for names of theirs, ``N`` for numbers."""
+    """List the names that problems take; ``STATE``, ``CONTROL``, ``OUTPUT``, ``SET`` and ``N`` stand for parts."""
     problems = [_problem(kind, {}) for kind in _KINDS] + [_problem("free", sets) for sets in _SETS]
     names = {name for problem in problems for name in given_names(problem.model, problem)}
     return sorted({_NUMBER.sub("_N", name).replace("OTHER", "CONTROL") for name in names})

@@ -37,7 +37,7 @@ CLASSICAL: Tableau = (
 """The method of order four."""
 
 COLUMNS = 8
-"""Of an extrapolation table at most."""
+"""Columns of an extrapolation table at most."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Rows:
     name: str
     count: int
     columns: int = 0
-    """Of the derivatives by the beginning among them."""
+    """Columns of the derivatives by where the step begins, among these rows."""
 
 
 def text(spec: ProblemSpec, module: str, bounds: Sequence[float], accurate: Tableau) -> str:
@@ -117,7 +117,7 @@ class _Writer:
         return function("canonical(w, c, y, k)", over_lanes([*found.lines, *stores]))
 
     def cost(self) -> list[str]:
-        """The same of the running cost, the row after the costates."""
+        """Write the function for the slope of the running cost, the row after the costates."""
         law, step = self.inlined("control_law", "b_"), self.workspace()["h"]
         controls = [f"u_{k} = {result}" for k, result in enumerate(law.results)]
         running = self.inlined("running_cost", "d_", u=lambda k: f"u_{k}")
@@ -125,7 +125,7 @@ class _Writer:
         return function("cost(w, c, y, k)", over_lanes([*law.lines, *controls, *running.lines, store]))
 
     def varied(self) -> list[str]:
-        """The same of the derivatives by where the step begins, which are stored row by row."""
+        """Write the function for slopes of the derivatives by where the step begins, which are stored row by row."""
         found, own, rows = self.inlined("canonical_jacobian", "e_"), self.workspace(), 2 * self.n
         stores = [
             f"{element(own['slopes'], q)} = w[{own['h']} + j] * ({found.results[place]})"

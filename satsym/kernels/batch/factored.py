@@ -38,7 +38,7 @@ class Factored:
     """Another value, which never changes, that it is to be multiplied by as well."""
 
     def times(self, factor: float, power: int = 0) -> Factored:
-        """The same, multiplied by more."""
+        """Return the value with a factor, and a power of the unit, more."""
         return replace(self, factor=self.factor * factor, power=self.power + power)
 
 
@@ -108,7 +108,7 @@ class Arithmetic:
                 raise Unsuited
 
     def sum(self, a: Factored, b: Factored) -> Factored:
-        """Of two, which has the factors of the first if both change from run to run."""
+        """Add two values; the sum has the factors of the first if both change from run to run."""
         if not (a.factor and b.factor):
             return b if not a.factor else a
         if a.value is None and b.value is None:
@@ -126,7 +126,7 @@ class Arithmetic:
         return replace(a, value=self.tape.apply(np.subtract, left, right))
 
     def like(self, a: Factored, other: Factored) -> Factored:
-        """The same with the factors of another."""
+        """Return the value with the factors of another."""
         return Factored(self.plain(a.times(1.0 / other.factor, -other.power)), other.factor, other.power)
 
     def plain(self, a: Factored) -> int:
@@ -171,7 +171,7 @@ class Arithmetic:
         return replace(a, value=value, fixed=self._both(np.divide, a.fixed, b.fixed))
 
     def _both(self, function: Callable[..., Any], a: int | None, b: int | None) -> int | None:
-        """Of two values that never change, where nothing stands for one."""
+        """Combine two values that never change, ``None`` standing for one."""
         if b is None:
             return a
         if a is None:

@@ -29,7 +29,7 @@ STAGES = (("now", 0.0), ("middle", 1.0), ("middle", 1.0), ("end", 2.0))
 """The time of each, and how many units the slopes before lead on."""
 
 WEIGHTS = (1.0, 2.0, 2.0, 1.0)
-"""Of their slopes, in thirds of a unit."""
+"""Weights of the stages' slopes, in thirds of a unit."""
 
 SCALES = (2.0, 0.5)
 """By which quotients are tried to be multiplied."""
@@ -47,7 +47,7 @@ class Choice:
     """In which form a step is written."""
 
     powers: tuple[int, ...]
-    """Of the unit, by which states are multiplied."""
+    """Powers of the unit by which states are multiplied."""
     scales: tuple[float, ...] = ()
     """By which quotients are."""
     late: bool = True
@@ -73,11 +73,11 @@ class Step:
 
     tape: Tape
     powers: tuple[int, ...]
-    """Of the unit, by which states are multiplied."""
+    """Powers of the unit by which states are multiplied."""
     slopes: tuple[tuple[Slope, ...], ...]
-    """Of each stage."""
+    """Slopes of each stage."""
     ahead: tuple[int | None, ...]
-    """Of the last stage, the states of which two slopes were added to them in place."""
+    """States of the last stage to which two slopes were added in place."""
     quotients: int
     """Whose scales may be chosen."""
 
@@ -228,7 +228,7 @@ class Group:
     rows: tuple[tuple[int, ...], ...]
     """Which of the step's, for each."""
     weights: Array
-    """Of states and rows, shape (sums, states, states + rows)."""
+    """Weights of states and rows, shape (sums, states, states + rows)."""
     now: Array
     after: Array
     """States and rows before a step and after it, in turns, shape (sums, states + rows, columns)."""
@@ -337,7 +337,7 @@ Sums = dict[tuple[int, int], list[tuple[tuple[int, ...], tuple[int, ...]]]]
 
 
 def _sums(step: Step) -> Sums:
-    """Of a step."""
+    """Collect the sums that a step consists of."""
     ends = step.ends(0.7) != 0.0
     n, left = len(ends), set(range(len(ends)))
     found: Sums = {}

@@ -119,9 +119,9 @@ class Buffers:
 
     columns: int
     fixed: dict[int, Array] = field(default_factory=dict)
-    """Of values that do not change."""
+    """Arrays that hold values which do not change, by their place on the tape."""
     free: list[Array] = field(default_factory=list)
-    """That nobody needs now."""
+    """Arrays that nobody needs now."""
 
     def taken(self) -> Array:
         """One of those that are free, or a new one."""

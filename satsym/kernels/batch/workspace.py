@@ -33,7 +33,7 @@ class Workspace:
 
 
 def element(begin: int | str, row: int) -> str:
-    """Of a row, the entry of the column at hand."""
+    """Write the entry of a row in the column at hand."""
     return f"w[{begin} + {row * LANES} + j]"
 
 

@@ -42,7 +42,7 @@ class RouthArray:
     auxiliary: tuple[tuple[sp.Expr, ...], ...]
     """The polynomials (coefficients, highest power first) whose derivatives took the place of rows of zeros."""
     signs: tuple[int | None, ...]
-    """Of the first column, as the small numbers tend to zero; ``None`` where the parameters decide."""
+    """Signs of the first column as the small numbers tend to zero; ``None`` where the parameters decide."""
     right: int | None
     axis: int | None
     left: int | None

@@ -28,7 +28,7 @@ class Factor:
     polynomial: sp.Poly
     """Monic, in :data:`LAMBDA`, over the field of the entries."""
     coefficients: tuple[sp.Expr, ...]
-    """The same as expressions, highest power first."""
+    """Coefficients of the polynomial as expressions, highest power first."""
     blocks: tuple[int, ...]
     """Sizes of the Jordan blocks of each of its roots, the largest first."""
     roots: tuple[sp.Expr, ...]
@@ -66,7 +66,7 @@ class Spectrum:
     matrix: DomainMatrix
     """The matrix, exactly."""
     coefficients: tuple[sp.Expr, ...]
-    """Of the characteristic polynomial det(s I - A): monic, highest power first."""
+    """Coefficients of the characteristic polynomial det(s I - A), which is monic, highest power first."""
     factors: tuple[Factor, ...]
     """Its irreducible factors, by degree and then by name."""
     assumed: tuple[sp.Expr, ...]

@@ -35,7 +35,7 @@ class Stability:
     cause: Cause
     """What holds, and which argument shows it."""
     eigenvalues: tuple[sp.Expr, ...]
-    """Those that the argument is about; empty where they have no closed form."""
+    """Eigenvalues that the argument is about; empty where they have no closed form."""
     block: int
     """Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there."""
     conditions: tuple[sp.Expr, ...]

@@ -15,7 +15,7 @@ from satsym.symbolic.equilibria.real_roots import Solutions, solve
 from satsym.symbolic.equilibria.rest import Rest
 
 ZERO = 1e-7
-"""Of stiffnesses and eigenvalues, relative to the largest: below that they are zero."""
+"""Stiffnesses and eigenvalues count as zero below this share of the largest one."""
 
 
 class Kind(Enum):

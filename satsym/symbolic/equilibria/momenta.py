@@ -18,7 +18,7 @@ from satsym.symbolic.equilibria.rest import Rest
 
 SAMPLES = 60
 WIDTH = 1e-6
-"""Of a bracket, relative to the largest value of the parameter."""
+"""Width of a bracket, relative to the largest value of the parameter."""
 
 
 @dataclass(frozen=True)

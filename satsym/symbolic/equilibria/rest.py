@@ -34,7 +34,7 @@ class Rest:
     varied: sp.Symbol | None
 
     def at(self, numbers: Mapping[sp.Symbol, sp.Rational]) -> Rest:
-        """The same with numbers for letters."""
+        """Return the equations of rest with numbers in place of letters."""
         known = dict(numbers)
         return replace(
             self,

@@ -28,7 +28,7 @@ class Until(sp.Function):
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """That of the piece; where the excess changes sign it has no derivative."""
+        """The derivative is that of the piece at hand; where the excess changes sign there is none."""
         pair = (0, 0) if argindex == 1 else (1, 0) if argindex == 2 else (0, 1)
         return Until(self.args[0], *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)
 

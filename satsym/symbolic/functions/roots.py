@@ -31,7 +31,7 @@ class Root(sp.Function):
     is_real = True
     unknown: ClassVar[sp.Symbol]
     slope: ClassVar[sp.Expr]
-    """Of the convex function, by the unknown and the letters."""
+    """Derivative of the convex function by its unknown, in terms of unknown and letters."""
     letters: ClassVar[tuple[sp.Symbol, ...]]
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
@@ -74,7 +74,7 @@ class Convex(sp.Function):
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """That of the value."""
+        """The derivative is one by the value, and zero by what only decides whether there is one."""
         return sp.Integer(int(argindex == 1))
 
 
@@ -85,7 +85,7 @@ class Choice(sp.Function):
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """That of what is chosen; where the excess changes sign it has no derivative."""
+        """The derivative is that of the chosen argument; where the excess changes sign there is none."""
         excess, *_ = self.args
         pair = (0, 0) if argindex == 1 else (1, 0) if argindex == 2 else (0, 1)
         return Choice(excess, *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)

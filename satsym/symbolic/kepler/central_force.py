@@ -42,7 +42,7 @@ def inertial_velocity(model: Particle) -> sp.Matrix:
 
 
 def central_force(so_far: Derivation) -> Step | None:
-    """That the motion without control is Kepler's: acceleration -k r / |r|^3 with a constant k."""
+    """Show that the motion without control is Kepler's: acceleration -k r / |r|^3 with a constant k."""
     model = so_far.model.particle()
     if model is None or (found := recognised(model)) is None:
         return None

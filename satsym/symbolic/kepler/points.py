@@ -23,7 +23,7 @@ from satsym.symbolic.model import Particle, symbols_of, variables_of
 
 
 def no_equilibrium(so_far: Derivation) -> Step | None:
-    """That the uncontrolled acceleration vanishes at no distance, so that no point is an equilibrium."""
+    """Show that the uncontrolled acceleration vanishes at no distance, so that no point is an equilibrium."""
     strength = strength_of(so_far)
     if strength is None or so_far.problem is not None:
         return None

@@ -49,11 +49,11 @@ class AboutRest(SpecialCase):
         return self.motion_steps()
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """The same."""
+        """List the steps as far as the first-order form, which are all that there are."""
         return (second_order, first_order, motion.linearisation)
 
     def picture(self) -> geometry.Picture | None:
-        """Those of the bodies' axes that what is kept turns."""
+        """Return the picture of the bodies' axes that the kept states turn."""
         return self.of.pictured(self.states)
 
     def misfits(self) -> Iterator[str]:
@@ -65,7 +65,7 @@ class AboutRest(SpecialCase):
             yield "what is linearised about rest is stated by the states that are kept; leave out along"
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
-        """Those of the bodies, each with what is kept of its states, and with the rates of its coordinates."""
+        """Return the bodies' groups of modes, each with its states that are kept and the rates of its coordinates."""
         kept = {v.symbol for v in self.states}
         rates = {q.name: v.name for q, v in self.velocities.items()}
         found = []

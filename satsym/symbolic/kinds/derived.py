@@ -40,7 +40,7 @@ class Derived(Model):
         return {f"d_{v.symbol}": rf"\frac{{d {v.latex}}}{{dt}}" for v in self.of.states}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of the rates of change of the old states."""
+        """Enter the dimensions of the old states' rates of change."""
         second = SECOND if self.plain_time else known[n.TIME.name]
         for state in symbols_of(self.of.states):
             known[n.rate_of(state).name] = over(known[state.name], second)
@@ -75,7 +75,7 @@ class SpecialCase(Derived):
         yield "a special value", (*self.where.values(), *self.along.values()), old
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of the rates of the old states; special values must have those of their variables."""
+        """Enter the dimensions of the old states' rates, and refuse special values with others than their variables."""
         super().enter_dimensions(known, require)
         for symbol, value in {**self.where, **self.along}.items():
             require(f"the special {symbol.name}", value, known[symbol.name])

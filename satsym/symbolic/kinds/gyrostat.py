@@ -108,7 +108,7 @@ class Gyrostat(Model):
         return found | {n.rate_of(n.ANGULAR_MOMENTUM).name: r"\frac{d\ell}{dt}"}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of the angular momenta, which fix those of all torques."""
+        """Enter the dimensions of the angular momenta, and from these those of all torques."""
         second, momentum = known[n.TIME.name], None
         for name, (inertia, spin) in self.bodies.items():
             momentum = require(f"the angular momentum of {name}", inertia * spin, momentum)

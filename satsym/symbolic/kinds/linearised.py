@@ -109,7 +109,7 @@ class Linearised(Derived):
         return super().names(problem) | ({} if problem else results(self))
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of the rates of the old states; reference and deviations must have those of their variables."""
+        """Enter the dimensions of the old rates, and refuse a reference or deviations that have others."""
         super().enter_dimensions(known, require)
         for symbol, curve in self.about.items():
             require(f"the reference of {symbol.name}", curve, known[symbol.name])
@@ -283,7 +283,7 @@ def _defects(so_far: Derivation) -> list[sp.Expr]:
 
 
 def _transformed(so_far: Derivation, entries: list[sp.Expr]) -> Check:
-    """The same matrices by transforming the Jacobians of the original equations along the reference."""
+    """Check A and B by transforming the Jacobians of the original equations along the reference."""
     model = stated_as(Linearised, so_far)
     constants, about, stated = definitions_of(model), _about(model), _stated(model)
     states, old = symbols_of(model.states), sp.Matrix(symbols_of(model.of.states))

@@ -59,7 +59,7 @@ class Multibody(Bodies):
         return self.pictured(self.states)
 
     def pictured(self, angles: Iterable[Variable]) -> geometry.Picture | None:
-        """The same, turned by some of its angles alone."""
+        """Return the picture of the attitude in which only some of its angles turn."""
         if self.attitude is None:
             return None
         return geometry.attitude(self.attitude.subs(self.named), angles)
@@ -81,7 +81,7 @@ class Multibody(Bodies):
         return found | {f"part_{k}": f"{part}_{{{k}}}" for k in range(1, 400)}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of named functions and solved rates; the rates of the coordinates must be theirs."""
+        """Enter the dimensions of named functions and solved rates, and refuse rates of coordinates with others."""
         for symbol, value in self.named.items():
             known[symbol.name] = require(f"the function {symbol.name}", value)
         for coordinate, rate in self.coordinates.items():

@@ -92,7 +92,7 @@ class Newton(Particle):
         return found
 
     def accelerations(self) -> tuple[str, ...]:
-        """Those of the coordinates."""
+        """Return the names of the coordinates' accelerations."""
         return tuple(n.acceleration_of(q).name for q in self.coordinates)
 
     def unit_vectors(self) -> tuple[str, ...]:
@@ -100,7 +100,7 @@ class Newton(Particle):
         return tuple(self.directions)
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of position, velocity, acceleration and what is made of them; the components must agree."""
+        """Enter the dimensions of position, velocity and acceleration, whose components must agree."""
         second = known[n.TIME.name]
         for q, q_dot in self.coordinates.items():
             require(f"{q_dot.name}, the rate of {q.name},", q_dot, known[n.rate_of(q).name])

@@ -30,7 +30,7 @@ class Reduced(SpecialCase):
     """
 
     def picture(self) -> geometry.Picture | None:
-        """That of the motion, whose variables it keeps."""
+        """Return the picture of the motion that is reduced, which has the same variables."""
         return self.of.picture()
 
     def steps(self) -> tuple[MaybeStep, ...]:

@@ -99,7 +99,7 @@ class Scaled(SpecialCase):
         return super().names(problem) | new | {ORIGINAL_TIME.name: "t"}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of the old time and the old rates; what is stated must have those of its variables."""
+        """Enter the dimensions of the old time and the old rates, and refuse what is stated with others."""
         known[ORIGINAL_TIME.name] = SECOND
         require("the unit of time", self.unit_of_time, SECOND)
         super().enter_dimensions(known, require)
@@ -148,7 +148,7 @@ def original_states(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The same motion in the new variables and the new time."""
+    """Rewrite the original motion in the new variables and the new time."""
     model = stated_as(Scaled, so_far)
     states = symbols_of(model.states)
     old_states = symbols_of(model.of.states)

@@ -1,4 +1,4 @@
-"""The same expressions in shorter words, as people write them: known sums of squares, one exponential, one root."""
+"""Expressions rewritten as people write them: known sums of squares by name, one exponential, one root."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class Term:
     tex: str
     """The term without its sign."""
     pieces: tuple[Piece, ...]
-    """The same in pieces, for a term that is too long for a line."""
+    """The term in pieces without its sign, for one that is too long for a line."""
 
     def signed(self, *, first: bool) -> str:
         """With its sign, as the first term of a sum or a later one."""

@@ -95,7 +95,7 @@ def too_many_letters(system: LinearSystem) -> bool:
 
 
 MOST_ITERATIONS = 100
-"""Of Newton's method, which doubles the digits once it is near."""
+"""Iterations of Newton's method at most; it doubles the digits once it is near."""
 
 
 def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]], Any]:

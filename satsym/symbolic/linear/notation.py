@@ -152,7 +152,7 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
 
 
 COST: Dimension = {"[cost]": sp.Integer(1)}
-"""Of a running cost with weights of any unit: what is added to it must have the same."""
+"""Dimension of a running cost with weights of any unit: what is added to it must have the same."""
 
 
 def declare(known: dict[str, Dimension | None], model: Model, require: Requirement) -> None:

@@ -35,7 +35,7 @@ EARLY, LATE, LATE_DIGITS = 30, 60, 720
 DECISIVE = 50.0
 """A power of time that only exponential growth exceeds."""
 TOLERANCE = 0.4
-"""Of measured powers of time: between two whole numbers, whatever oscillations do."""
+"""By how much measured powers of time may be off: less than half of one, so that oscillations do not matter."""
 
 
 def stability(so_far: Derivation) -> Step | None:
@@ -209,5 +209,5 @@ def _verdict(found: Stability) -> Conclusion:
 
 
 def _assumed(expressions: tuple[sp.Expr, ...]) -> tuple[Conclusion, ...]:
-    """That some expressions are taken not to vanish, if any are."""
+    """State which expressions are taken not to vanish, if any are."""
     return (Conclusion("assumed", {"expressions": sp.Tuple(*expressions)}),) if expressions else ()

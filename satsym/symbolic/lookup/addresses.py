@@ -28,7 +28,7 @@ class Family:
 
     @property
     def matrix(self) -> sp.Matrix:
-        """The same without the names."""
+        """The entries without their names."""
         return sp.Matrix(self.entries)
 
 

@@ -43,7 +43,7 @@ _OF_CASES = 100
 """Points for what has cases."""
 _NOT_ZERO = 1e-12
 _MOST_COEFFICIENTS = 200_000
-"""Of a dense polynomial that is factored only to be shown shorter."""
+"""Coefficients at most of a dense polynomial that is factored only to be shown shorter."""
 _PER_COEFFICIENT = 20
 """Calls that a coefficient of a dense polynomial is charged as."""
 
@@ -138,7 +138,7 @@ def _quotient(e: sp.Expr) -> Node:
 
 
 def rational(value: Fraction) -> sp.Rational:
-    """The same number in sympy."""
+    """Return a fraction as a number of sympy."""
     return sp.Rational(value.numerator, value.denominator)
 
 

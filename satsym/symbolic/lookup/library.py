@@ -84,7 +84,7 @@ class Names:
         return self.definitions[name] if name in self.definitions else self.symbols[name]
 
     def tree(self, name: str) -> Node:
-        """The same as a tree."""
+        """Return the expression of a name as a tree."""
         return to_tree(self.expression(name))
 
 

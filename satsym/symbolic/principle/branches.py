@@ -52,9 +52,9 @@ class Minimum:
     hessian: sp.Matrix | None = None
     weight: sp.Expr = sp.Integer(0)
     laws: tuple[sp.Expr, ...] = ()
-    """Of what is neither linear nor quadratic: the minimisers, within the bounds."""
+    """Minimisers within the bounds of an H that is neither linear nor quadratic."""
     turned_by: sp.Symbol | None = None
-    """Of a magnitude, such as a thrust: the angle that turns what it multiplies."""
+    """The angle that turns what a magnitude, such as a thrust, multiplies."""
     turned_to: sp.Expr | None = None
     """The minimiser of that angle, where it has bounds."""
 

@@ -58,12 +58,12 @@ class Part:
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Those of its controls."""
+        """Symbols of the controls in this set."""
         return symbols_of(self.controls)
 
     @property
     def bounds(self) -> tuple[sp.Symbol, ...]:
-        """Those of its limits."""
+        """Symbols of the numbers that limit this set."""
         return symbols_of(self.limits)
 
 
@@ -104,7 +104,7 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
 
 
 def as_one(problem: Problem) -> Problem:
-    """The same with one control set where its sets are all boxes, or all free: the product of boxes is a box.
+    """Return the problem with one control set where its sets are all boxes, or all free: a product of boxes is a box.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def as_one(problem: Problem) -> Problem:
 
 
 def boxes_apart(problem: Problem, switched: Collection[str]) -> Problem:
-    """The same with a box for each of these controls that is in one with others; itself where none is.
+    """Return the problem with a box for each of these controls that shares one with others; itself where none does.
 
     Raises
     ------

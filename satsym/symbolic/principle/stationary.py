@@ -96,23 +96,22 @@ def with_angle(
         return None
     sine *= ratio
     length = sp.Dummy("length", real=True)
-    laws, turns, sizes = [], [], []
+    value, laws, turns, sizes, values = moved + one * length, [], [], [], []
     for side in (1, -1):
         turn = Bearing(-side * sine, -side * cosine) if arc is None else nearest_angle(side * cosine, side * sine, arc)
         size = -side * sp.sqrt(tidy(cosine**2 + sine**2))
         if arc is not None:
             size = cosine * sp.cos(turn) + sine * sp.sin(turn)
-        value = moved + one * length
         law = minimiser(name, value, u, ends)
         laws.append(law.xreplace({length: size}))
-        sizes.append(size)
+        values.append(value.xreplace({u: law}).xreplace({length: size}))
         turns.append(turn)
-    controls, lengths = sp.symbols("u:2", cls=sp.Dummy, real=True), [*sp.symbols("l:2", cls=sp.Dummy, real=True)]
+        sizes.append(size)
+    excess = values[0] - values[1]
     if arc is None:
-        lengths[1], sizes = -lengths[0], sizes[:1]
-    one_value, other_value = (value.xreplace({u: v, length: s}) for v, s in zip(controls, lengths, strict=True))
-    excess = as_factors(one_value - other_value)
-    excess = excess.xreplace(dict(zip(controls, laws, strict=True))).xreplace(dict(zip(lengths, sizes, strict=False)))
+        first, second = sp.Dummy("first", real=True), sp.Dummy("second", real=True)
+        product = as_factors(value.xreplace({u: first}) - value.xreplace({u: second, length: -length}))
+        excess = product.xreplace({first: laws[0], second: laws[1]}).xreplace({length: sizes[0]})
     return Choice(excess, *laws), Choice(excess, *turns)
 
 

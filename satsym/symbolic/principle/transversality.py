@@ -76,7 +76,7 @@ def boundary_residual(so_far: Derivation) -> Step:
 
 
 def on_a_reference(model: Model, equations: Sequence[Equation]) -> list[Equation]:
-    """The same; where the model states no reference, without what holds for states that end on it."""
+    """Return equations without what holds for states that end on a reference, where the model states none."""
     idle = {} if model.reference else {n.on_reference(x): sp.Integer(0) for x in symbols_of(model.states)}
     return [replace(e, rhs=e.rhs.xreplace(idle)) for e in equations]
 

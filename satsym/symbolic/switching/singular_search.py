@@ -82,7 +82,7 @@ class Search:
     """Where the derivatives before the last vanish, and the last one if it is without the control."""
     slope: sp.Expr = sp.Integer(0)
     singular: sp.Expr = sp.Integer(0)
-    """Of the order found: what multiplies the control, and the control, both on the surface."""
+    """What multiplies the control in the last derivative, and the control that this gives, both on the surface."""
 
     @property
     def order(self) -> int:

@@ -51,7 +51,7 @@ class ClosedLoop(Statement):
         return cn.names(self)
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Of transforms and answers; law, command and damping must have those of what they stand for."""
+        """Enter the dimensions of transforms and answers, and refuse a law, command or damping that has others."""
         super().enter_dimensions(known, require)
         second, control = known[n.TIME.name], cn.control_of(self)
         known[cn.COMMAND.name] = known[self.follows.name]

@@ -13,7 +13,7 @@ from satsym.symbolic.principle.path import mixed_constraints, path_constraints
 
 
 def every(so_far: Derivation) -> list[path_constraints.Constraint]:
-    """Those on states alone first; none where there are none."""
+    """Return all constraints along the way, first those on states alone."""
     return [*path_constraints.constraints(so_far), *mixed_constraints.constraints(so_far)]
 
 
