@@ -21,9 +21,8 @@ import sympy as sp
 
 from satsym.agreement import DIGITS, Sides, disagreement, slopes
 from satsym.agreement import LIMIT as EQUAL
-from satsym.codegen.arguments import Arguments, drawn, limiting, symbols_at
 from satsym.codegen.block import used
-from satsym.codegen.functions import Function, Symbols
+from satsym.codegen.functions import ARGUMENTS, Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.codegen.printers import WRITTEN
 from satsym.kernels import Kernels, many_digits, plain
@@ -31,7 +30,8 @@ from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.core import Function as GeneratedFunction
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.kernels.many_digits import NO_NUMBERS, loops
-from satsym.symbolic.checks import drawn_from, numeric_along
+from satsym.spec import ProblemSpec
+from satsym.symbolic.checks import drawn_from, numeric_along, random_number
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
@@ -72,6 +72,12 @@ SHORTEST, FARTHEST = 15, 10.0
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
+
+FAR = 1e9
+"""How many times as large, or as small, as at random what regularises is; bounds are so by the square of it."""
+
+Arguments: TypeAlias = dict[str, Any]
+"""Arguments of generated functions at a place, by name."""
 
 Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
 
@@ -144,6 +150,43 @@ def _places(
     raise DerivationError(
         f"{derivation.name}: at random points of size one generated functions have no numbers to compare; {LIE}"
     )
+
+
+def symbols_at(function: Function, known: Symbols, place: Arguments) -> dict[sp.Symbol, Any]:
+    """What the symbols of a function's arguments stand for."""
+    pairs = ((s, v) for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True))
+    return {s: mp.mpf(float(v)) for s, v in pairs}
+
+
+def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
+    """Random arguments; bounds that are met by some controls and not by others."""
+
+    def draw(symbol: Any) -> float:
+        return random_number(symbol, rng)
+
+    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
+    bounds = [-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"])]
+    for ring in spec.rings:
+        bounds[ring[0]], bounds[ring[1]] = sorted(bounds[i] for i in ring)
+    place["bounds"] = tuple(bounds)
+    return place | {"t": draw(known.t)}
+
+
+def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterator[Arguments]:
+    """For what has bounds, the place with such that hold no control, and with such that hold all; for laws no costates.
+
+    What only the one or the other side of a law has would not be seen elsewhere: at bounds of size one laws may always
+    be far below them, and costates never vanish. Where they do, what is made of laws may have no derivative.
+    """
+    if "bounds" not in function.arguments:
+        return
+    bounds, inner = place["bounds"], {low for low, _ in spec.rings}
+    regular = range(len(bounds) - spec.regularising, len(bounds))
+    for outer, least, smoothed in [(2, -2, -1), (-2, -2, -1), *([(2, 2, 1)] if inner or regular else [])]:
+        powers = [least if i in inner else smoothed if i in regular else outer for i in range(len(bounds))]
+        yield {**place, "bounds": tuple(b * FAR**power for b, power in zip(bounds, powers, strict=True))}
+    if function.name == "control_law":
+        yield {**place, "lam": (0.0,) * len(place["lam"])}
 
 
 def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:

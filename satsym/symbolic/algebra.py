@@ -289,8 +289,9 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
     of one symbol. So are named those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as
     e^(-(x - 5/2)^2): their factors have no moderate numbers of their own.
     """
-    scaled = (e for e in expression.atoms(sp.exp) if not e.args[0].is_number)
-    return _named(expression, [e for e in scaled if _scales_a_difference(e) or any(map(_is_steep, _coefficients(e)))])
+    scaled = [e for e in expression.atoms(sp.exp) if not e.args[0].is_number]
+    steep = {e for e in scaled if any(map(_is_steep, e.args[0].as_coefficients_dict().values()))}
+    return _named(expression, [e for e in scaled if e in steep or _scales_a_difference(e)])
 
 
 def _of_functions_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
@@ -342,10 +343,6 @@ def _scales_a_difference(exponential: sp.exp) -> bool:
     terms = sp.Add.make_args(sp.expand(exponential.args[0]))
     common = set.intersection(*(term.free_symbols for term in terms))
     return len(terms) > 1 and (bool(common) or any(term.is_number for term in terms))
-
-
-def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:
-    return exponential.args[0].as_coefficients_dict().values()
 
 
 @lru_cache(maxsize=4096)  # problems of one model ask alike

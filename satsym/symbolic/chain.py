@@ -121,7 +121,7 @@ def _solved(parts: tuple[Assignment, ...], mass: sp.ImmutableMatrix, load: sp.Im
 
 def parts_of(derivation: Derivation) -> tuple[Assignment, ...]:
     """The chain behind the first-order form: named functions, parts, and the accelerations; none for a closed form."""
-    if "kane" not in derivation or not _along_chain(derivation):
+    if "kane" not in derivation or not any(n.is_solved(e) for e in derivation.rhs("first_order")):
         return ()
     symbols = [e.rhs for e in derivation.step("first_order").equations if n.is_solved(e.rhs)]
     _, solution, parts = _solved(*_system(derivation))
@@ -167,7 +167,3 @@ def _system(derivation: Derivation) -> tuple[tuple[Assignment, ...], sp.Immutabl
     mass = sp.ImmutableMatrix(size, size, lambda i, k: entries[max(i, k) + 1, min(i, k) + 1])
     load = sp.ImmutableMatrix([known[f"force_{i}"] - known[f"bias_{i}"] for i in range(1, size + 1)])
     return tuple(chain.parts), mass, load
-
-
-def _along_chain(derivation: Derivation) -> bool:
-    return any(n.is_solved(e) for e in derivation.rhs("first_order"))

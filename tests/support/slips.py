@@ -22,7 +22,7 @@ import sympy as sp
 
 from satsym import kernels
 from satsym.agreement import DIGITS
-from satsym.codegen import arguments, verify
+from satsym.codegen import verify
 from satsym.codegen.naming import code_of
 from satsym.kernels import loading
 from satsym.kernels.digest import sealed
@@ -228,7 +228,7 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
     rng_of_places = random.Random(derivation.name)
     with drawn_from(variables_of(derivation.model)):
         known = code_of(derivation).symbols
-        places = [arguments.drawn(known, original.spec, rng_of_places) for _ in range(5)]
+        places = [verify.drawn(known, original.spec, rng_of_places) for _ in range(5)]
     for _ in range(ATTEMPTS):
         function = rng.choice(functions)
         found = _terms(function)

@@ -108,12 +108,9 @@ def text(kernels: Kernels, name: str) -> str:
     stores = [f"{element(out, k)} = {result}" for k, result in enumerate(body.results)]
     block = []
     for each, at in places.items():
-        block += _number(at) if each == "t" else loaded(at, each, rows[each])
+        time = [f"w[{at} + j] = t[at + min(j, width - 1)]"]
+        block += over_lanes(time) if each == "t" else loaded(at, each, rows[each])
     block += [*over_lanes([*body.lines, *stores]), *stored(out, "out", results)]
     head = f"many({', '.join(signature.arguments)}, out)"
     lines = function(head, [f"w = np.zeros({own.size})", *over_blocks("out.shape[1]", block)])
     return "\n".join([*compiling.HEAD, *lines]) + "\n"
-
-
-def _number(begin: int) -> list[str]:
-    return over_lanes([f"w[{begin} + j] = t[at + min(j, width - 1)]"])

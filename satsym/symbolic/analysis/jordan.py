@@ -45,12 +45,8 @@ def jordan_form(of: Spectrum) -> JordanForm | None:
                 blocks.append(JordanBlock(root, len(chain)))
                 vectors = [eigenvector(of.field, component.factor, root, component.semisimple, w) for w in chain]
                 columns += without_common_factor(vectors)
-    form = sp.diag(*(sp.eye(b.size) * b.eigenvalue + sp.Matrix(b.size, b.size, _above) for b in blocks))
+    form = sp.diag(*(sp.Matrix.jordan_block(b.size, b.eigenvalue) for b in blocks))
     return JordanForm(tuple(blocks), sp.ImmutableMatrix(form), sp.ImmutableMatrix(sp.Matrix.hstack(*columns)))
-
-
-def _above(i: int, j: int) -> int:
-    return int(j == i + 1)
 
 
 def _chains(field: Field, component: Component) -> list[list[DomainMatrix]]:

@@ -173,17 +173,15 @@ def _linear_rows(so_far: Derivation, model: AboutRest) -> list[tuple[str, sp.Exp
         active = sp.Add(*(v * small[x] for x, v in linear(known[f"force_{i}"]).items()))
         mine = [velocity[q] for q, row in zip(of.coordinates, turning, strict=True) if row[speed] != 0]
         by = [*small, *along, *along.values(), *speeding.values()]
-        sides = (_collected(e.xreplace(special), [s for s in by if s.is_Symbol]) for e in (inertial, active))
+        sides = (
+            tidy(e.xreplace(special), tuple(dict.fromkeys(s for s in by if s.is_Symbol))) for e in (inertial, active)
+        )
         rows.append((mine[0].name if len(mine) == 1 else speed.name, *sides))
     return rows
 
 
 def _is_part(equation: Equation) -> bool:
     return equation.name.startswith("part_")
-
-
-def _collected(expression: sp.Expr, by: list[sp.Symbol]) -> sp.Expr:
-    return tidy(expression, tuple(dict.fromkeys(by)))
 
 
 def _first_order_of(

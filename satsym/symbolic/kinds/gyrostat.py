@@ -254,15 +254,12 @@ def _solved(so_far: Derivation) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbo
     wanted = [*unknown, *torques]
     solutions = sp.solve([e.lhs - e.rhs for e in so_far.step("euler").equations], wanted, dict=True)
     if len(solutions) != 1 or set(solutions[0]) != set(wanted):
-        raise DerivationError(f"{model.name}: Euler's equations and the drives do not determine {_names(wanted)}")
+        names = ", ".join(s.name for s in wanted)
+        raise DerivationError(f"{model.name}: Euler's equations and the drives do not determine {names}")
     by = symbols_of(model.controls)
     solution = {s: tidy(value, by) for s, value in solutions[0].items()}
     rates = {s: model.angles[s] if s in model.angles else solution[n.rate_of(s)] for s in states}
     return rates, {s: solution[s] for s in torques}
-
-
-def _names(symbols: list[sp.Symbol]) -> str:
-    return ", ".join(s.name for s in symbols)
 
 
 def _torque_on(model: Gyrostat, body: str) -> sp.Expr:

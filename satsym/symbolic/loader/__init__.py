@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import importlib.util
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +19,6 @@ from satsym.source_files import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.loader.mistakes import said
-from satsym.symbolic.loader.places import line_of
 from satsym.symbolic.model import Model, Problem
 from satsym.wording import printable, suggestion
 
@@ -146,7 +146,7 @@ def explained(path: Path | None = None, subject: Problem | Model | None = None) 
     except DerivationError as error:
         message = " ".join(str(error).split())
         if path is not None and subject is not None:
-            line = line_of(path, subject, error.named)
+            line = _line_of(path, subject, error.named)
             message = f"{path}{'' if line is None else f':{line}'}: {message}"
         raise BadInput(message) from error
 
@@ -201,3 +201,57 @@ def _execute(path: Path, name: str) -> None:
         raise BadInput(f"{path}{f':{line}' if line else ''}: {message}") from error
     finally:
         _EXECUTING.pop()
+
+
+def _line_of(path: Path, subject: Problem | Model, named: Sequence[str]) -> int | None:
+    """The line of the statement of a problem or its model at which something stands; ``None`` where none is known.
+
+    Parameters
+    ----------
+    named
+        Fields of the statement, or symbols, that the message is about, the likeliest first. Without any, or where none
+        of them stands there, it is the line where the statement begins.
+    """
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (OSError, SyntaxError, ValueError):
+        return None
+    model = subject.model if isinstance(subject, Problem) else subject
+    calls = [call for name in (subject.name, model.name) for call in _statements(tree, name)]
+    fields = [k for name in named for call in calls for k in call.keywords if k.arg == name]
+    rows = [
+        value
+        for k in fields
+        if isinstance(k.value, ast.Dict)
+        for key, value in zip(k.value.keys, k.value.values, strict=True)
+        if isinstance(key, ast.Name) and key.id in named
+    ]
+    if rows:
+        return rows[0].lineno
+    within = [*(k.value for k in fields), *calls]
+    found = next((line for node in within for line in _mentions(node, named)), None)
+    if found is None and fields:
+        return fields[0].value.lineno
+    if found is None:
+        found = next(_mentions(tree, named), None)
+    return found if found is not None or not calls else calls[0].lineno
+
+
+def _statements(tree: ast.Module, name: str) -> Iterator[ast.Call]:
+    """Calls that state something of this name."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            keywords = {k.arg: k.value for k in node.keywords}
+            stated = keywords.get("name")
+            if isinstance(stated, ast.Constant) and stated.value == name:
+                yield node
+
+
+def _mentions(node: ast.AST, named: Collection[str]) -> Iterator[int]:
+    """Lines at which one of these names is used, as a variable or in quotes, from the top."""
+    lines = []
+    for each in ast.walk(node):
+        used = each.id if isinstance(each, ast.Name) else each.value if isinstance(each, ast.Constant) else None
+        if isinstance(used, str) and used in named and isinstance(each, ast.expr):
+            lines.append(each.lineno)
+    yield from sorted(lines)
