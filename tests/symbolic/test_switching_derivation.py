@@ -156,6 +156,18 @@ def test_a_derivative_that_cannot_vanish_excludes_the_arc() -> None:
     assert said(ramp.step("singular_arcs"))["singular arc impossible"]["value"] == -1
 
 
+def test_no_surface_is_sought_where_what_is_positive_would_vanish() -> None:
+    """A condition is costate times root of a positive state: the costate vanishes, and the root does not."""
+    states, controls = (Variable("a", "a"), Variable("b", "b", positive=True)), (Variable("u", "u"), Variable("v", "v"))
+    (a, b), (u, v) = symbols_of(states), symbols_of(controls)
+    rates = {a: b, b: 3600 / b**3 + sp.sqrt(b) * u + v}
+    model = FirstOrder(name="m", title="M", states=states, controls=controls, parameters=(), rates=rates)
+    stated = Problem(name="root", title="Root", model=model, running_cost=a**2 / 7 + 2, control_set="box")
+    found = singular_search.searches(derive(stated))
+    assert [search.outcome for search in found] == ["impossible", "impossible"]
+    assert not any(b in search.surface.solved for search in found)
+
+
 def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
     found = derived(TWO_ENGINES)
     names = [e.name for e in found.step("generalised_legendre_clebsch").equations]

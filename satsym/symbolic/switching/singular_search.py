@@ -164,10 +164,10 @@ def _search(
 
 
 def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr:
-    """A reduced condition without the factor whose vanishing would make all costates vanish, if another is left."""
+    """A reduced condition without the factor whose vanishing would make all costates vanish, if another may vanish."""
     bases = (factor.as_base_exp()[0] for factor in sp.Mul.make_args(sp.numer(condition)))
     factors = [base for base in bases if base.free_symbols]
-    others = [factor for factor in factors if not factor.free_symbols & set(lam)]
+    others = [factor for factor in factors if not (factor.free_symbols & set(lam) or factor.is_nonzero)]
     for factor in factors:
         values = [surface.solved.get(c, c).xreplace({factor: sp.Integer(0)}) for c in lam]
         if factor in lam and others and all(_simplest(v) == 0 for v in values):
