@@ -168,6 +168,16 @@ def test_no_surface_is_sought_where_what_is_positive_would_vanish() -> None:
     assert not any(b in search.surface.solved for search in found)
 
 
+def test_what_vanishes_twice_is_no_condition_that_later_ones_follow_from() -> None:
+    """The rate of lambda_b x^2 vanishes with x, and the rate of that only where the control keeps x at zero."""
+    states, controls = (Variable("x", "x"), Variable("b", "b")), (Variable("u", "u"),)
+    (x, b), (u,) = symbols_of(states), symbols_of(controls)
+    model = FirstOrder(name="m", title="M", states=states, controls=controls, parameters=(), rates={x: u, b: -3 * x**3})
+    stated = Problem(name="twice", title="Twice", model=model, running_cost=0, terminal_cost=b**2, control_set="box")
+    (found,) = singular_search.searches(derive(stated))
+    assert found.outcome == "open"
+
+
 def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
     found = derived(TWO_ENGINES)
     names = [e.name for e in found.step("generalised_legendre_clebsch").equations]

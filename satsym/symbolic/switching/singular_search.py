@@ -158,20 +158,26 @@ def _search(
             return ended("closed")
         if condition.is_nonzero:
             return ended("impossible")
-        surface.add(_with_costates(condition, surface, lam), unknowns)
+        if (needed := _with_costates(condition, surface, lam)) is None:
+            break
+        surface.add(needed, unknowns)
         last = rest  # what multiplied the control vanishes along the arc, and so do its derivatives
     return ended("open")
 
 
-def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr:
-    """A reduced condition without the factor whose vanishing would make all costates vanish, if another may vanish."""
-    bases = (factor.as_base_exp()[0] for factor in sp.Mul.make_args(sp.numer(condition)))
-    factors = [base for base in bases if base.free_symbols]
+def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr | None:
+    """A reduced condition without the factor whose vanishing would make all costates vanish, if another may vanish.
+
+    ``None`` where that other one is no simple factor: where it vanishes, so do derivatives of the condition, whatever
+    it does later.
+    """
+    powers = (factor.as_base_exp() for factor in sp.Mul.make_args(sp.numer(condition)))
+    factors = {base: exponent for base, exponent in powers if base.free_symbols}
     others = [factor for factor in factors if not (factor.free_symbols & set(lam) or factor.is_nonzero)]
     for factor in factors:
         values = [surface.solved.get(c, c).xreplace({factor: sp.Integer(0)}) for c in lam]
         if factor in lam and others and all(_simplest(v) == 0 for v in values):
-            return sp.Mul(*others)
+            return sp.Mul(*others) if all(factors[other] == 1 for other in others) else None
     return condition
 
 
