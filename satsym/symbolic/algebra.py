@@ -287,11 +287,12 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
 
     And e^(2.34 h) is the 117th power of e^(h/50). Those whose exponents are small multiples of a common one are powers
     of one symbol. So are named those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as
-    e^(-(x - 5/2)^2): their factors have no moderate numbers of their own.
+    e^(-(x - 5/2)^2): their factors have no moderate numbers of their own. Those that divide by a sum, such as
+    e^(-x^2/(x^2 + 0.7)), are steep as soon as sympy multiplies by its denominator.
     """
     scaled = [e for e in expression.atoms(sp.exp) if not e.args[0].is_number]
     steep = {e for e in scaled if any(map(_is_steep, e.args[0].as_coefficients_dict().values()))}
-    return _named(expression, [e for e in scaled if e in steep or _scales_a_difference(e)])
+    return _named(expression, [e for e in scaled if e in steep or _divides_by_a_sum(e) or _scales_a_difference(e)])
 
 
 def _of_functions_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
@@ -313,7 +314,7 @@ def _named(expression: sp.Expr, exponentials: Iterable[sp.Expr]) -> tuple[sp.Exp
     """
     families: dict[sp.Expr, dict[sp.Expr, sp.Expr]] = {}
     for e in sorted(exponentials, key=sp.default_sort_key):
-        factor, exponent = sp.expand(e.args[0]).primitive()
+        factor, exponent = (sp.cancel if _divides_by_a_sum(e) else sp.expand)(e.args[0]).primitive()
         side = -1 if exponent.could_extract_minus_sign() else 1
         families.setdefault(side * exponent, {})[e] = side * factor
     named: dict[sp.Expr, sp.Expr] = {}
@@ -332,6 +333,11 @@ def _named(expression: sp.Expr, exponentials: Iterable[sp.Expr]) -> tuple[sp.Exp
             meant[symbol] = base
             named |= {e: symbol**n for e, n in exponents.items()}
     return expression.xreplace(named), meant
+
+
+def _divides_by_a_sum(exponential: sp.exp) -> bool:
+    powers = exponential.args[0].atoms(sp.Pow)
+    return any(p.base.is_Add and p.base.free_symbols and p.exp.is_negative for p in powers)
 
 
 def _is_steep(coefficient: sp.Expr) -> bool:

@@ -232,6 +232,20 @@ def test_an_exponential_of_a_sine_is_a_letter_to_sympy_unless_it_may_cancel(monk
     assert shortened(sp.exp(sin(q) ** 2) * sp.exp(cos(q) ** 2) - sp.E) == 0
 
 
+def test_an_exponential_that_divides_by_a_sum_is_a_letter_to_sympy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Multiplied by the denominators in its exponent it would be a power of ten thousands."""
+    asked, ask = [], sp.simplify
+    monkeypatch.setattr(sp, "simplify", lambda e: asked.append(e) or ask(e))
+    bell, again = sp.exp(-(y**2) / (y**2 + sp.Rational(612359, 86400))), sp.exp(-86400 * y**2 / (86400 * y**2 + 612359))
+    expression = x * (q + 1) * (q + 3 * y) * cos(q) * again / sin(q) + 24 * (q + 1) * bell / 10
+    found = shortened(expression)
+    assert not any(each.has(sp.exp) for each in asked)
+    sides = numeric([found, expression])
+    with mp.workdps(30):
+        assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "letters"))
+    assert shortened(x * bell - x * again) == 0
+
+
 def test_sines_of_which_none_multiplies_another_are_letters_to_sympy(monkeypatch: pytest.MonkeyPatch) -> None:
     """It would seek angles of sums in vain, and factors of all that comes of it."""
     asked, ask = [], sp.simplify
