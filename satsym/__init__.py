@@ -25,6 +25,7 @@ __all__ = [
     "analyse",
     "audit",
     "derive",
+    "export",
     "load",
     "lqr",
     "simulate",
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from satsym.front.analysing import analyse, lqr
     from satsym.front.auditing import audit
     from satsym.front.derivation import derive
+    from satsym.front.exporting import export
     from satsym.front.instance import Instance, load
     from satsym.front.solution import Solution, solve
     from satsym.front.studies import study
@@ -48,6 +50,7 @@ _HOMES = {
     "front.analysing": ("analyse", "lqr"),
     "front.auditing": ("audit",),
     "front.derivation": ("derive",),
+    "front.exporting": ("export",),
     "front.instance": ("Instance", "load"),
     "front.solution": ("Solution", "solve"),
     "front.studies": ("study",),

@@ -57,6 +57,7 @@ COMMANDS = (
     "derive",
     "latex",
     "report",
+    "export",
     "audit",
     "completion",
     "doctor",

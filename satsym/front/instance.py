@@ -97,7 +97,7 @@ class Instance:
             What it is called in results; by default as its model.
         more
             The other keys of an instance file: ``title``, ``solver``, ``lqr``, ``guess``, ``classical``, ``limits``,
-            ``switching``.
+            ``switching``, ``orbit``.
 
         Raises
         ------

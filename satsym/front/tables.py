@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import numbers
 from collections.abc import Mapping
+from datetime import datetime
 from typing import Any
 
 DEEPEST = 6
@@ -16,7 +17,7 @@ def plain(value: Any, levels: int = DEEPEST) -> Any:
 
     Whatever is none of that stays as it is, to be refused with the key where it stands.
     """
-    if value is None or isinstance(value, bool | str | bytes) or not levels:
+    if value is None or isinstance(value, bool | str | bytes | datetime) or not levels:
         return value
     if isinstance(value, Mapping):
         return {name_of(key): plain(entry, levels - 1) for key, entry in value.items() if entry is not None}
@@ -75,5 +76,7 @@ def name_of(key: Any) -> str:
 def _written(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, datetime):
+        return value.isoformat()
     # JSON's texts and numbers are TOML's too; but TOML knows no surrogates, so that other letters stand as they are
     return json.dumps(value, ensure_ascii=False)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.instance import continuation, control, ends, files, numbers, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
+from satsym.instance.orbit import orbit
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
 from satsym.instance.types import Instance
@@ -141,6 +142,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         driven=driven(file.driven, spec),
         free=free,
         ranges=ends.ranges(file.final, spec),
+        orbit=orbit(file.orbit, spec),
     )
     changing = continuation.varied(file.continuation, spec, found)
     for one in changing:

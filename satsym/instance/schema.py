@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cache
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -49,6 +50,9 @@ Gains = Annotated[
 ]
 
 
+Epoch = Annotated[datetime, Meta(description="a date and a time in UTC, such as 2026-03-20T12:00:00Z")]
+
+
 class OneOf:
     """Names of which a text is one, asked for when a file is read: more may be known by then."""
 
@@ -76,6 +80,7 @@ UpToOne = Annotated[float, Meta(gt=0, le=1, description="a number above 0, at mo
 SOLVING, COMPARING, REGULATING = ("solve", "compare"), ("compare",), ("lqr", "simulate --feedback lqr")
 MOVING = (*SOLVING, "simulate")
 STUDYING = ("study",)
+EXPORTING = ("export",)
 RELAYS = ("simulate --feedback switching", "simulate --feedback pulses")
 ALL = ("all",)
 
@@ -143,6 +148,23 @@ class GuessTable(_Table, frozen=True):
     parameter: Annotated[
         dict[str, Quantity], Key("where to begin with a free parameter", SOLVING, "the model's", "PARAMETER")
     ] = {}
+
+
+class OrbitTable(_Table, frozen=True):
+    epoch: Annotated[Epoch, Key("when the model's time is zero", EXPORTING)]
+    frame: Annotated[Name, Key("the axes: EME2000, ICRF or GCRF", EXPORTING)] = "EME2000"
+    centre: Annotated[Name, Key("the body at the origin, such as Earth; pictures show it", (*EXPORTING, "plot"))] = (
+        "Earth"
+    )
+    inclination: Annotated[
+        Quantity | None, Key("of the plane of a planar model to that of the frame", EXPORTING, "rad")
+    ] = None
+    node: Annotated[
+        Quantity | None, Key("direction of its ascending node, from the first axis of the frame", EXPORTING, "rad")
+    ] = None
+    argument: Annotated[
+        Quantity | None, Key("angle in that plane from the node to the model's first axis", EXPORTING, "rad")
+    ] = None
 
 
 class StudyTable(_Table, frozen=True):
@@ -229,6 +251,7 @@ class InstanceFile(_Table, frozen=True):
         ),
     ] = {}
     study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
+    orbit: Annotated[OrbitTable | None, Key("where in the sky and when it takes place", EXPORTING)] = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

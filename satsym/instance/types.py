@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from satsym.instance.continuation import Varied
 from satsym.instance.ends import Side
 from satsym.instance.files import SHIPPED
+from satsym.instance.orbit import OrbitOptions
 from satsym.instance.schema import SolverOptions
 from satsym.instance.unknowns import Unknown
 from satsym.status import BadInput
@@ -169,6 +170,8 @@ class Instance:
         At which end of its range a final state is, once that was found; `final` then holds its value. With these are
         the inequalities at the end that are active, all at their upper end, which are constraints of `model` then; of
         those in time alone the final time follows, and is given then.
+    orbit
+        Where in the sky and when it takes place, if that is stated.
     work
         Columns at which the motion may be linearised by each search, of trial problems only.
     """
@@ -199,6 +202,7 @@ class Instance:
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     met: Mapping[str, Side] = field(default_factory=dict)
     work: float = math.inf
+    orbit: OrbitOptions | None = None
 
     def meeting(self, met: Mapping[str, Side]) -> Instance:
         """The instance whose end is at these limits, and at no other one.

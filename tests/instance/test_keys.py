@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import tomllib
+from copy import deepcopy
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,7 @@ from satsym.instance.schema import InstanceFile, check
 from satsym.report.terminal import keys as page
 from satsym.status import BadInput
 
-OF_TYPES = {"string": str, "number": int | float, "integer": int, "object": dict, "array": list}
+OF_TYPES = {"string": str | datetime, "number": int | float, "integer": int, "object": dict, "array": list}
 
 
 def faults(value: Any, schema: dict[str, Any], place: str = "") -> list[str]:
@@ -61,12 +63,12 @@ def test_every_key_is_listed_with_its_meaning_and_commands_that_there_are() -> N
 
 
 def test_every_key_can_be_written_with_its_default() -> None:
-    law = {"follows": "theta", "command": 1.0}
-    required = {"model": "a", "initial": {}, "time": {"tf": 1.0}, "classical": law, "study": {}}
+    law, sky = {"follows": "theta", "command": 1.0}, {"epoch": datetime(2026, 3, 20)}
+    required = {"model": "a", "initial": {}, "time": {"tf": 1.0}, "classical": law, "study": {}, "orbit": sky}
     plain = msgspec.to_builtins(check(required))
     for entry in entries():
         if entry.default:
-            tree = json.loads(json.dumps(required))
+            tree = deepcopy(required)
             table = tree
             for part in filter(None, entry.table.split(".")):
                 table = table.setdefault(part, {})

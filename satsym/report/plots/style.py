@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
+SKY = "#56B4E9"
+"""Of the same palette, on dark ground."""
 INK, SOFT, GREY, FAINT, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
 SHADE = 0.12
 STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE

@@ -1,0 +1,80 @@
+"""``satsym export``: a motion as other programs read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.help import command
+from satsym.cli.options import place_option, set_option, subject_argument
+from satsym.cli.output import complain, emit, live, tell
+from satsym.report.said import message
+from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+    from satsym.solution import Simulation, Solution
+
+KINDS = ("oem", "czml", "stk", "csv")
+"""Formats; here once more, because ``--help`` loads no writer of them."""
+
+EXAMPLES = """\b
+Examples:
+  satsym export return-to-geo --format oem > geo.oem    an orbit ephemeris message of CCSDS, with its manoeuvres
+  satsym export return-to-geo --format czml --out geo.czml    to be seen in Cesium
+  satsym export molniya --format stk --out molniya.e    an uncontrolled motion, for STK
+  satsym export return-to-geo --format csv --from results/return-to-geo/solve    of a saved result"""
+
+
+@command(epilog=EXAMPLES)
+@subject_argument
+@click.option(
+    "--format", "kind", type=click.Choice(KINDS), required=True, metavar="KIND", help=f"One of: {', '.join(KINDS)}."
+)
+@place_option("--out", metavar="FILE", help="Where it goes, instead of to stdout; a file of this name is replaced.")
+@place_option("--from", "source", metavar="DIR", help="A saved result of X, which is exported without solving again.")
+@set_option
+def export(subject: str, kind: str, out: Path | None, source: Path | None, values: tuple[str, ...]) -> ExitCode:
+    """Write a motion about a central body for other programs.
+
+    X is an instance as for `satsym solve`, with a table [orbit] that says where in the sky it takes place and when. It
+    is solved; where its model has no cost, the uncontrolled motion is simulated. Formats are oem (orbit ephemeris
+    message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
+    """
+    from satsym import instance
+    from satsym.instance.numbers import changed
+    from satsym.report.exchange import exported
+    from satsym.report.exchange.ephemeris import placed
+    from satsym.report.results import trajectory
+    from satsym.report.results.files import write_text
+    from satsym.report.terminal.solution import with_files
+    from satsym.studies.reading import settings
+
+    case = instance.load(subject)
+    case = changed(case, settings(case, values))
+    placed(case)  # now, rather than after a long run
+    found = trajectory.read(case, source)[0] if source else _found(case)
+    if not found.status.answered:
+        complain(f"{case.name}: {message(found.status.value)}: {message(found.message)}")
+        return ExitCode.NO_ANSWER
+    text = exported(found, kind)
+    if out is None:
+        emit(text)
+    else:
+        write_text(out, text)
+        tell(with_files(f"{case.name}: {message(found.status.value)}", [out]))
+    return ExitCode.DONE
+
+
+def _found(case: Instance) -> Solution | Simulation:
+    """The optimum, or the motion without control where nothing is to be minimised."""
+    from satsym import solvers
+    from satsym.analysis.regulator.feedback import simulate
+    from satsym.report.terminal.solution import progress_line
+
+    if not case.model.spec.has_cost:
+        return simulate(case, None)
+    with live() as line:
+        return solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
