@@ -9,7 +9,9 @@ import click
 from sphinx.application import Sphinx
 
 GROUPS = {
-    "Instances and answers": "load Instance solve Solution simulate export front.trajectory.Trajectory front.curves.Curve",
+    "Instances and answers": (
+        "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve export"
+    ),
     "What an answer is worth": "solution.Certificate solution.Check solution.Competitors",
     "Many instances": "study front.studies.Study solvers.repeated.repeated.Repeated",
     "Linear systems and orbits": "analyse lqr front.analysing.Analysis front.analysing.Regulator",
