@@ -31,7 +31,21 @@ __all__ = ["case", "run"]
 
 INDONESIAN = translations("id")
 SAME = {
-    *("linear", "radial", "periapsis", "apoapsis", "parabola", "parameter", "minimum", "orbit", "model", "status"),
+    *(
+        "linear",
+        "Venus",
+        "Mars",
+        "Uranus",
+        "radial",
+        "periapsis",
+        "apoapsis",
+        "parabola",
+        "parameter",
+        "minimum",
+        "orbit",
+        "model",
+        "status",
+    ),
     *("model <name>", "<name>, model <model>"),
 }
 """Words of both languages."""

@@ -57,3 +57,26 @@ def places(states: Sequence[Variable], rated: Sequence[tuple[int, int]]) -> tupl
             if not angular:
                 return found
     return ()
+
+
+def level(
+    model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float], found: Sequence[int]
+) -> tuple[int, ...]:
+    """Two coordinates in the order in which they are drawn: across first what the motion does not depend on.
+
+    Of a satellite near a circular orbit that is the distance along the track, of a body that falls the way it goes.
+    """
+    known = np.isfinite(x).all(axis=0) & np.isfinite(u).all(axis=0)
+    if len(found) != 2 or not known.any():
+        return tuple(found)
+    times, x, u = times[known], x[:, known], u[:, known]
+    with np.errstate(all="ignore"):
+        rates = model.dynamics_batch(times, x, u, p)
+
+        def matters(i: int) -> bool:
+            moved = x.copy()
+            moved[i] += NEAR * (np.abs(x[i]).max() or 1.0)
+            return not np.allclose(model.dynamics_batch(times, moved, u, p), rates, rtol=EXACT, atol=0.0)
+
+        first, second = found
+        return (second, first) if matters(first) and not matters(second) else (first, second)

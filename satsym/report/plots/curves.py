@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,9 +96,19 @@ def _drift(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> Array:
     return np.mean([model.dynamics_batch(times, x, u, p) for u in _opposite(model, x.shape[1])], axis=0)
 
 
-def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> Array:
+def thrust(
+    model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float], place: Callable[[Array], Array] | None = None
+) -> Array:
     """What the controls do to the motion in space, shape (2 or 3, N+1): the acceleration they add.
 
+    Parameters
+    ----------
+    place
+        From states to places, also of complex numbers; by default the position vector of the model. Of such a place
+        only accelerations are given: where the controls act on the velocity itself, zeros.
+
+    Notes
+    -----
     The generated functions know positions and rates of states, no forces. But the velocity in space is the
     derivative of the position along the dynamics, and its change along what the controls add to the dynamics is
     the acceleration that they add. Where the controls act on the velocity itself, that is what is returned.
@@ -107,12 +117,14 @@ def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float])
         added = model.dynamics_batch(times, x, u, p) - _drift(model, times, x, p)
 
         def velocity(states: Array, rates: Array) -> Array:
-            return model.position_batch(times, states + 1j * _COMPLEX_STEP * rates, p).imag / _COMPLEX_STEP
+            beside = states + 1j * _COMPLEX_STEP * rates
+            return np.imag(model.position_batch(times, beside, p) if place is None else place(beside)) / _COMPLEX_STEP
 
         direct = velocity(x, added)
         if np.nanmax(np.abs(direct), initial=0.0) > 0.0:
-            return clean(direct)
-        size = np.nanmax(np.abs(added) / np.nanmax(np.abs(x), axis=1, keepdims=True), initial=0.0)
+            return clean(direct) if place is None else np.zeros_like(direct)
+        sizes = np.nanmax(np.abs(x), axis=1, keepdims=True)  # a state that stays at zero has none
+        size = np.nanmax(np.abs(added) / np.where(sizes > 0.0, sizes, np.nanmax(sizes)), initial=0.0)
         if not 0.0 < size < np.inf:
             return np.zeros_like(direct)
         step = _REAL_STEP / size

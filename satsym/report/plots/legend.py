@@ -43,7 +43,7 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
         found.append((line(linestyle="none"), say(r"$\Delta$: minus reference")))
     if any(q.target is not None for q in quantities):
         found.append((line(**style.TARGET), say("final condition")))
-    if any(q.active is not None for q in quantities):
+    if any(q.active is not None or q.forbidden for q in quantities):
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if any(q.active is not None and q.active.any() for q in quantities):
         found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), say("saturated")))

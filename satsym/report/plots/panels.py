@@ -138,6 +138,7 @@ def _bounds(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: st
         if shown.low <= bound <= shown.high:
             axes.axhspan(bound, beyond, **style.FORBIDDEN)
             axes.axhline(bound, **style.BOUND)
+    forbidden(axes, scene, series, shown)
     if series.active is not None:
         for first, last in _runs(series.active):
             axes.axvspan(
@@ -145,6 +146,15 @@ def _bounds(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: st
             )
     for time in series.switching:
         axes.axvline(time, color=colour, **style.SWITCHING)
+
+
+def forbidden(axes: Axes, scene: Scene, series: Series, shown: Reading) -> None:
+    """Hatch what path constraints do not allow, over time."""
+    if not series.forbidden:
+        return
+    rows = np.linspace(shown.low, shown.high, style.GRID)[:, None] + np.zeros_like(scene.times)
+    for field in series.forbidden:
+        style.hatch(axes, scene.times, rows[:, 0], field(shown.value(rows)))
 
 
 def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.report.plots import legend, series, style
 from satsym.report.plots.panels import ticks
 from satsym.report.plots.reading import Reading, read
+from satsym.report.plots.restrictions import Restriction, within
 from satsym.report.plots.scene import Scene
 from satsym.report.said import say
+from satsym.solvers.collocation.scaling import final_argument
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+ROOM = 0.15
+"""Beside a path, relative to its width, for the switching curve to go on in."""
 MOST = 4
 """Planes that are drawn; states over time show more than a page of many of them."""
+
+
+Field: TypeAlias = Callable[[Array, Array], Array]
+"""From values of the two states."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +36,12 @@ class Plane:
 
     across: Reading
     up: Reading
+    forbidden: tuple[Field, ...] = ()
+    """What path constraints forbid that depend on these two states alone."""
+    switching: Field | None = None
+    """Zero on the switching curve of a problem of least time, where it is known in closed form."""
+    passed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    """Points on the way, as they are shown."""
 
     @property
     def target(self) -> tuple[float, float] | None:
@@ -40,23 +56,69 @@ def of(scene: Scene) -> list[Plane]:
     if not scene.drawable:
         return []
     states, rated = series.states(scene), scene.rated or ([(0, 1)] if len(scene.spec.states) == 2 else [])
-    return [Plane(*read([states[i]]), *read([states[j]])) for i, j in rated] if len(rated) <= MOST else []
+    if len(rated) > MOST:
+        return []
+    return [_plane(scene, i, j, *read([states[i]]), *read([states[j]])) for i, j in rated]
+
+
+def _plane(scene: Scene, i: int, j: int, across: Reading, up: Reading) -> Plane:
+    """Two states with what is drawn behind their path."""
+    if isinstance(across.datum, np.ndarray) or isinstance(up.datum, np.ndarray):
+        return Plane(across, up)  # deviations from a reference that moves
+
+    def field(one: Restriction) -> Field:
+        return lambda first, second: one.values({i: first, j: second})
+
+    forbidden = tuple(field(one) for one in within(scene.restrictions, [i, j]))
+    passed = [tuple(np.interp(scene.passed, scene.nodes, row.values).tolist()) for row in (across, up)]
+    return Plane(across, up, forbidden, _switching(scene, i, j), (passed[0], passed[1]))
+
+
+def _switching(scene: Scene, i: int, j: int) -> Field | None:
+    """How far a position lies beyond the switching curve, by position and rate."""
+    case, spec = scene.instance, scene.spec
+    if tuple(spec.switching_curve) != (spec.states[i].symbol, spec.states[j].symbol):
+        return None
+    if any(not isinstance(case.final.get(name), float) for name in spec.switching_curve):
+        return None
+    if not (np.isfinite(case.lower).all() and np.isfinite(case.upper).all()):
+        return None
+    final, start = final_argument(case), np.array(case.initial)
+
+    def beyond(first: Array, second: Array) -> Array:
+        x = np.tile(start[:, None], first.size)
+        x[i], x[j] = first.ravel(), second.ravel()
+        t, bounds = np.full(first.size, case.t0), case.control_set.arguments
+        found = case.model.beyond_switching_curve_batch(t, x, case.parameters, bounds, final)
+        return np.asarray(found).reshape(first.shape)
+
+    return beyond
 
 
 def entries(planes: list[Plane]) -> list[legend.Entry]:
     """Of a legend: what only these pictures have."""
-    found = [(legend.line(color=style.STATE, **style.START), say("start"))]
+    from matplotlib.patches import Patch
+
+    found: list[legend.Entry] = [(legend.line(color=style.STATE, **style.START), say("start"))]
     found.append((legend.line(color=style.STATE, **style.END), say("end")))
     if any(plane.target is not None for plane in planes):
         found.append((legend.line(**style.TARGET), say("final condition")))
+    if any(plane.switching is not None for plane in planes):
+        found.append((legend.line(**style.CURVE), say("switching curve")))
+    if any(plane.forbidden for plane in planes):
+        found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
+    if any(plane.passed[0] for plane in planes):
+        found.append((legend.line(**style.WAY), say("point on the way")))
     return found
 
 
 def draw(axes: Axes, plane: Plane) -> None:
     """Draw a plane."""
     across, up = plane.across, plane.up
-    axes.set_xlim(across.low, across.high)
-    axes.set_ylim(up.low, up.high)
+    for limits, one in ((axes.set_xlim, across), (axes.set_ylim, up)):
+        room = ROOM * (one.high - one.low) if plane.switching is not None else 0.0
+        limits(one.low - room, one.high + room)
+    _behind(axes, plane)
     for look, first, second in (
         (style.REFERENCE, across.reference, up.reference),
         (style.FREE, across.free, up.free),
@@ -73,3 +135,25 @@ def draw(axes: Axes, plane: Plane) -> None:
     ticks(axes.yaxis, up)
     axes.set_xlabel(across.label)
     axes.set_ylabel(up.label)
+
+
+def _behind(axes: Axes, plane: Plane) -> None:
+    """Draw what is forbidden, the switching curve and points on the way."""
+    across, up = plane.across, plane.up
+    places = [np.linspace(*limits, style.GRID) for limits in (axes.get_xlim(), axes.get_ylim())]
+    grid = np.meshgrid(*places)
+    values = across.value(grid[0]), up.value(grid[1])
+    for forbidden in plane.forbidden:
+        style.hatch(axes, places[0], places[1], forbidden(*values))
+    if plane.switching is not None:
+        look = style.CURVE
+        axes.contour(
+            *places,
+            plane.switching(*values),
+            levels=[0.0],
+            colors=[look["color"]],
+            linewidths=[style.points(look["linewidth"])],
+            linestyles=[look["linestyle"]],
+            zorder=look["zorder"],
+        )
+    axes.plot(*plane.passed, **style.WAY)

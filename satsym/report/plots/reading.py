@@ -16,10 +16,12 @@ SMALL = 0.02
 """A deviation smaller than this fraction of the value is shown itself: in the value it could not be seen."""
 BURIED = 1e-3
 """A variation smaller than this fraction of the value is counted from the first value: ticks would need many digits."""
-FURTHEST, GLIMPSE = 3.0, 1.0
+FURTHEST, GLIMPSE = 3.0, 0.4
 """Beside the main curve all is shown up to so many of its widths; of what goes beyond, only so many."""
 IN_SIGHT = 2.0
 """A bound is in sight if it is no further off than so many widths of the rest."""
+LEVELS = 400
+"""Values among which it is looked for where what is forbidden begins."""
 ROUNDING = 1e-9
 """Variation below this fraction of the size is taken for none."""
 
@@ -44,6 +46,13 @@ class Reading:
     """Whether it is the deviation from the reference."""
     turns: bool
     """Whether to mark multiples of pi."""
+    scale: float
+    datum: Array | float
+    """What is shown is the value less the datum, times the scale."""
+
+    def value(self, shown: Array) -> Array:
+        """The quantity itself, of what is shown; along the last axis at the nodes where the datum has them."""
+        return shown / self.scale + self.datum
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +119,8 @@ class _Counted:
             high=self.high * scale,
             deviation=self.deviation,
             turns=self.turns,
+            scale=self.factor * scale,
+            datum=datum,
         )
 
 
@@ -121,9 +132,12 @@ def read(quantities: Sequence[Series]) -> list[Reading]:
     counted = [_Counted.of(each) for each in quantities]
     measures: dict[int, Scale] = {}
     for apart in (False, True):
-        own = [k for k, each in enumerate(counted) if each.from_datum is apart]
+        own = [k for k, each in enumerate(counted) if each.from_datum is apart and not each.series.plain_unit]
         measures |= dict(zip(own, together([(counted[k].unit, counted[k].furthest) for k in own]), strict=True))
-    return [each.shown(Scale(0, each.unit) if each.turns else measures[k]) for k, each in enumerate(counted)]
+    return [
+        each.shown(Scale(0, each.unit) if each.turns or each.series.plain_unit else measures[k])
+        for k, each in enumerate(counted)
+    ]
 
 
 def within_reach(excess: float, width: float) -> float:
@@ -171,11 +185,29 @@ def _ends(series: Series, shown: Array, datum: Array | float, factor: float, siz
     for bound in (series.lower, series.upper):
         if math.isfinite(bound) and low - IN_SIGHT * reach <= bound <= high + IN_SIGHT * reach:
             low, high = min(low, bound), max(high, bound)
+    for edge in _edges(series, low, high, reach, datum, factor):
+        low, high = min(low, edge), max(high, edge)
     if high - low <= max(ROUNDING, series.steady) * size or high == low:
         room = 0.1 * max(abs(low), size) or 1.0
     else:
         room = 0.07 * (high - low)
     return low - room, high + room
+
+
+def _edges(series: Series, low: float, high: float, reach: float, datum: Array | float, factor: float) -> list[float]:
+    """Where what is forbidden begins, on each side of what is shown; none that is out of sight."""
+    if not series.forbidden or not math.isfinite(reach):
+        return []
+    shown = np.linspace(low - IN_SIGHT * reach, high + IN_SIGHT * reach, LEVELS)
+    values = shown[:, None] / factor + datum + np.zeros_like(series.values)
+    found = []
+    for forbidden in series.forbidden:
+        bad = forbidden(values) > 0.0
+        for above in (False, True):
+            beyond = bad[1:] & ~bad[:-1] if above else bad[:-1] & ~bad[1:]
+            where = shown[1:][beyond.any(axis=1)] if above else shown[:-1][beyond.any(axis=1)]
+            found += [float(where.min() if above else where.max())] if where.size else []
+    return found
 
 
 def _known(values: Array) -> Array:

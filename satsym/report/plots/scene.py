@@ -10,7 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
-from satsym.report.plots import coordinates, curves
+from satsym.report.plots import coordinates, curves, restrictions
 from satsym.report.said import message, say
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
@@ -96,6 +96,16 @@ class Scene:
     def rated(self) -> list[tuple[int, int]]:
         """Places of states, and of those that are their rates."""
         return coordinates.pairs(self.instance.model, self.nodes, self.x, self.u, self.instance.parameters)
+
+    @cached_property
+    def restrictions(self) -> list[restrictions.Restriction]:
+        """Path constraints on states alone."""
+        return restrictions.of(self.instance, self.nodes, self.x, self.u)
+
+    @property
+    def passed(self) -> tuple[float, ...]:
+        """Times, in the model's unit, at which points on the way are passed."""
+        return tuple(event.t for event in getattr(self.result, "events", ()) if event.kind == "interior")
 
     @property
     def history(self) -> tuple[Iteration, ...]:

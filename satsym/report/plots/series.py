@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import stated_constraints
 from satsym.report.display import formula, plain
-from satsym.report.plots import curves
+from satsym.report.plots import curves, restrictions
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.said import say
@@ -30,6 +32,9 @@ STEP = 1e-30
 
 SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
 """What is said of times of a quantity, in English."""
+
+
+Forbidden: TypeAlias = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +73,10 @@ class Series:
     """Whether to count from its first value."""
     from_zero: bool = False
     """Whether its axis must show zero."""
+    forbidden: tuple[Forbidden, ...] = ()
+    """What path constraints forbid: positive for values at the nodes, of shape (M, N+1), that are not allowed."""
+    plain_unit: bool = False
+    """Whether its unit stays as it is, so that it belongs to those beside it."""
 
     @property
     def symbol(self) -> str:
@@ -81,8 +90,7 @@ def unit_of(variable: Variable, spec: ProblemSpec) -> str:
 
 def states(scene: Scene) -> list[Series]:
     """The states, with the reference, the motion without control, and when points on the way are passed."""
-    events = getattr(scene.result, "events", ())
-    passed = tuple(event.t / scene.time_factor for event in events if event.kind == "interior")
+    passed = tuple(time / scene.time_factor for time in scene.passed)
     return [
         Series(
             v.latex,
@@ -96,9 +104,19 @@ def states(scene: Scene) -> list[Series]:
             angle=v.kind == "angle",
             switching=passed,
             said=PASSED,
+            forbidden=_forbidden(scene, i),
         )
         for i, v in enumerate(scene.spec.states)
     ]
+
+
+def _forbidden(scene: Scene, i: int) -> tuple[Forbidden, ...]:
+    """What path constraints forbid that depend on this state, and on time, alone."""
+
+    def field(one: restrictions.Restriction) -> Forbidden:
+        return lambda values: one.values({i: values}, np.broadcast_to(scene.nodes, values.shape))
+
+    return tuple(field(one) for one in restrictions.within(scene.restrictions, [i], timed=True))
 
 
 def controls(scene: Scene) -> list[Series]:
@@ -187,6 +205,7 @@ def costates(scene: Scene) -> list[Series]:
             say("costate of <name>", name=formula(v.latex, v.symbol)),
             values,
             size=worth / width,
+            plain_unit=True,
         )
         for v, values, width in zip(scene.spec.states, scene.lam, widths, strict=True)
     ]
@@ -197,7 +216,10 @@ def costates(scene: Scene) -> list[Series]:
     time = time_unit(scene.spec)
     rate = cost_per(time, scene.spec) if time else "1"
     steady = STEADY if scene.spec.autonomous else 0.0
-    return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)), steady=steady)]
+    return [
+        *found,
+        Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)), steady=steady, plain_unit=True),
+    ]
 
 
 def invariants(scene: Scene) -> list[Series]:

@@ -12,6 +12,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+from satsym.arrays import Array
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots.sheets import HIGHEST, SHEETS, WIDTH, Sheet
 from satsym.report.results import files
@@ -52,6 +53,19 @@ FORBIDDEN: dict[str, Any] = {
     "zorder": 1.2,
 }
 BOUND: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "zorder": 1.9}
+BURN: dict[str, Any] = {"color": VERMILION, "linewidth": 3.4, "zorder": 3.1, "solid_capstyle": "butt"}
+WAY: dict[str, Any] = {
+    "marker": "D",
+    "markersize": 6.5,
+    "markerfacecolor": "white",
+    "markeredgecolor": INK,
+    "markeredgewidth": 1.2,
+    "linestyle": "none",
+    "zorder": 4.1,
+}
+OTHER: dict[str, Any] = WAY | {"marker": "^", "markersize": 8.0}
+CURVE: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "linestyle": "--", "zorder": 2.2}
+BODY: dict[str, Any] = {"facecolor": "#C9D8E6", "edgecolor": "#7D93A8", "linewidth": 0.8, "zorder": 1.5}
 SWITCHING: dict[str, Any] = {"linewidth": 0.8, "linestyle": ":", "zorder": 1.8}
 ORIGIN: dict[str, Any] = {"marker": "+", "markersize": 11.0, "color": INK, "linestyle": "none", "markeredgewidth": 1.2}
 ARROW: dict[str, Any] = {
@@ -67,6 +81,8 @@ ARROW: dict[str, Any] = {
     "zorder": 2.6,
 }
 
+GRID = 241
+"""Points of a grid on which it is drawn what is forbidden, along each axis."""
 MARGIN = 1.3
 """Inches on a screen beside a panel, for its ticks and its label."""
 TITLE = 9.5
@@ -255,6 +271,27 @@ def titled(title: str, width: float, height: float) -> Figure:
         parse_math=False,
     )
     return page
+
+
+def hatch(axes: Axes, across: Array, up: Array, field: Array) -> None:
+    """Hatch where a field is positive, with its edge.
+
+    Parameters
+    ----------
+    across, up
+        Places, of a shape that contours take.
+    field
+        At these places; where it is no number nothing is drawn.
+    """
+    import numpy as np
+
+    if not (np.nan_to_num(field) > 0.0).any():
+        return
+    inside = axes.contourf(across, up, field, levels=[0.0, np.inf], colors="none", hatches=[FORBIDDEN["hatch"]])
+    inside.set(zorder=FORBIDDEN["zorder"], edgecolor=FORBIDDEN["edgecolor"], linewidth=0.0)
+    if (field < 0.0).any():
+        edge = axes.contour(across, up, field, levels=[0.0], colors=[BOUND["color"]], linewidths=[BOUND["linewidth"]])
+        edge.set(zorder=BOUND["zorder"])
 
 
 def finished(page: Figure) -> Figure:

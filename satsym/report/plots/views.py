@@ -12,6 +12,8 @@ from satsym.report.said import say
 
 FLAT = 1e-6
 """How far from a plane through the origin, relative to its size, a path is taken to lie in it."""
+AZIMUTH, ELEVATION = 35.0, 25.0
+"""From where a path in space is looked at, in degrees: about the third axis, and above the plane of the others."""
 ROUND = 1e-3
 """Relative variation of the distance below which a path has no nearest point worth looking for."""
 
@@ -26,6 +28,8 @@ class View:
     """What they are called."""
     title: str = ""
     """What the picture shows, where the labels do not say it."""
+    spatial: bool = False
+    """Whether it is looked at from aside, so that no axis of it is one of the motion."""
 
 
 def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:
@@ -60,6 +64,14 @@ def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:
     if depth > FLAT * whole or spread[1] <= FLAT**2 * spread[0]:
         return planes
     return [_along_normal(path, directions[2]), *planes]
+
+
+def from_aside(labels: Sequence[str]) -> View:
+    """From far away, a bit above the plane of the first two axes, the third one upwards."""
+    turn, height = np.radians(AZIMUTH), np.radians(ELEVATION)
+    right = np.array([-np.sin(turn), np.cos(turn), 0.0])
+    up = np.array([-np.sin(height) * np.cos(turn), -np.sin(height) * np.sin(turn), np.cos(height)])
+    return View(np.vstack([right, up]), (labels[0], labels[1]), say("in space"), spatial=True)
 
 
 def _along_normal(path: Array, normal: Array) -> View:

@@ -10,17 +10,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.display import engineering, formula, labelled, length_scale, length_unit
+from satsym.report.display import engineering, formula, labelled, length_scale, length_unit, number, plain, unit_text
 from satsym.report.plots import coordinates, curves, legend, series, style
+from satsym.report.plots.orbits import surroundings
+from satsym.report.plots.orbits.surroundings import NOTHING, Surroundings
 from satsym.report.plots.reading import BURIED, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.views import View, views
+from satsym.report.plots.views import View, from_aside, views
 from satsym.report.said import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ARROWS = 32
+MOST_VIEWS = 4
+LENGTH = 0.4
+"""Of the axes of space at most, relative to half the size of the picture."""
 LONGEST = 0.13
 """Length of the longest arrow, relative to the size of the picture."""
 CLOSED = 0.05
@@ -51,6 +56,9 @@ class Orbit:
     """Whether states tell where it is, and no position vector."""
     target: Array | None = None
     """Where it has to end, shape (2 or 3, 1)."""
+    around: Surroundings = NOTHING
+    thrusts: bool = True
+    """Whether what the controls add is called thrust."""
 
     @classmethod
     def of(cls, scene: Scene) -> Orbit | None:
@@ -65,23 +73,28 @@ class Orbit:
         states = scene.spec.states
         if (about := coordinates.polar(states)) is not None:
             return cls._of_polar(scene, *about)
-        places = list(coordinates.places(states, scene.rated))
-        if not places:
+        found = coordinates.places(states, scene.rated)
+        if not found:
             return None
+        model, p = scene.instance.model, scene.instance.parameters
+        places = list(coordinates.level(model, scene.nodes, scene.x, scene.u, p, found))
         ends = [series.target(scene, i) for i in places]
+        unit, thrust = states[places[0]].unit, _added(scene, lambda x: x[places])
         return cls(
-            states[places[0]].unit,
+            unit,
             tuple(formula(states[i].latex, states[i].symbol) for i in places),
             scene.x[places],
             None,
             None if scene.free is None else scene.free[places],
-            None,
+            thrust,
             None,
             None,
             False,
             central=False,
             by_states=True,
             target=None if any(end is None for end in ends) else np.array([ends], dtype=float).T,
+            around=Surroundings.of(scene, lambda x: x[places], unit, thrust, None, places),
+            thrusts=_thrusts(scene),
         )
 
     @classmethod
@@ -92,19 +105,22 @@ class Orbit:
             return np.array([x[distance] * np.cos(x[angle]), x[distance] * np.sin(x[angle])])
 
         given = [series.target(scene, i) for i in (distance, angle)]
+        unit, thrust = scene.spec.states[distance].unit, _added(scene, path)
         r, theta = (formula(scene.spec.states[i].latex, scene.spec.states[i].symbol) for i in (distance, angle))
         return cls(
-            scene.spec.states[distance].unit,
+            unit,
             (rf"{r}$\,\cos\,${theta}", rf"{r}$\,\sin\,${theta}"),
             path(scene.x),
             None if scene.reference is None else path(scene.reference),
             None if scene.free is None else path(scene.free),
-            None,
+            thrust,
             None,
             None,
             False,
             by_states=True,
             target=_point(*given),
+            around=Surroundings.of(scene, path, unit, thrust, (distance, angle)),
+            thrusts=_thrusts(scene),
         )
 
     @classmethod
@@ -120,22 +136,25 @@ class Orbit:
         reference, free = (None if x is None else path(x) for x in (scene.reference, scene.free))
         unit = position[0].unit if position[0].unit != "1" else length_unit(v.unit for v in scene.spec.states)
         seen = None if reference is None else curves.relative(own, reference)
+        thrust = curves.thrust(model, scene.nodes, scene.x, scene.u, p) if not scene.coasting else None
         return cls(
             unit,
             tuple(formula(v.latex, v.symbol) for v in position),
             own,
             reference,
             free,
-            curves.thrust(model, scene.nodes, scene.x, scene.u, p) if not scene.coasting else None,
+            thrust,
             seen if _near(seen, reference) else None,
             curves.relative(free, reference) if free is not None and reference is not None else None,
             seen is not None and _on_reference(scene) and _placed(scene, path),
+            around=Surroundings.of(scene, path, unit, thrust, _polar(scene, own)),
         )
 
     @property
     def views(self) -> list[View]:
-        """From where to look at it, the most telling view first."""
-        return views([c for c in (self.path, self.reference, self.free) if c is not None], self.labels)
+        """From where to look at it, the most telling view first: what is in no plane of coordinates from aside."""
+        found = views([c for c in (self.path, self.reference, self.free) if c is not None], self.labels)
+        return found if len(found) == 1 else [from_aside(self.labels), *found[: MOST_VIEWS - 1]]
 
 
 def entries(orbit: Orbit) -> list[legend.Entry]:
@@ -143,20 +162,22 @@ def entries(orbit: Orbit) -> list[legend.Entry]:
     arrow = legend.line(
         color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
     )
-    found = [(arrow, say("thrust"))] if orbit.thrust is not None else []
+    found = [(arrow, say("thrust" if orbit.thrusts else "control"))] if orbit.thrust is not None else []
     found.append((legend.line(color=style.STATE, **style.START), say("start")))
     found.append((legend.line(color=style.STATE, **style.END), say("end")))
     if orbit.target is not None or (orbit.ends_there and orbit.relative is not None):
         found.append((legend.line(**style.TARGET), say("final condition")))
-    if orbit.central:
-        found.append((legend.line(**style.ORIGIN), say("origin")))
-    return found
+    if orbit.central and not orbit.around.radius:
+        found.append((legend.line(**style.ORIGIN), plain(say(orbit.around.body or "origin"))))
+    return found + surroundings.entries(orbit.around)
 
 
 def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     """Draw the path in a plane, at equal scales."""
     seen, drawn = view.axes, [c for c in (orbit.reference, orbit.free) if c is not None]
     curve, others = seen @ orbit.path, [seen @ c for c in drawn]
+    around = orbit.around
+    others += [seen @ c for c in (around.other, around.other_start) if c is not None]
     fixed = [np.zeros((2, 1))] if orbit.central else [seen @ orbit.target] if orbit.target is not None else []
     low, high = box(curve, [*others, *fixed])
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
@@ -175,21 +196,49 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     axes.set_title(view.title)
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
     axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
+    surroundings.draw(axes, around, view, datum, scale)
     if orbit.reference is not None:
         axes.plot(*((_once(seen @ orbit.reference) - datum) * scale), **style.REFERENCE)
     if orbit.free is not None:
         axes.plot(*((seen @ orbit.free - datum) * scale), **style.FREE)
     if orbit.thrust is not None:
         _arrows(axes, curve * scale, seen @ orbit.thrust, LONGEST * 2.0 * half * scale)
-    axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
-    if orbit.central and not datum.any():
+    drawn_curve = surroundings.before(around, view, orbit.path) - datum
+    axes.plot(*(drawn_curve * scale), color=style.STATE, **style.MAIN)
+    if orbit.central and not datum.any() and not around.radius:
         axes.plot([0.0], [0.0], **style.ORIGIN)
     if orbit.target is not None:
         axes.plot(*((seen @ orbit.target - datum) * scale), **style.TARGET)
     _ends(axes, *(curve * scale))
+    if view.spatial:
+        _without_ticks(axes, orbit, view, half * scale, measure.unit)
+        return
     axes.set_xlabel(labelled(names[0], measure.unit))
     axes.set_ylabel(labelled(names[1], measure.unit))
     _few_ticks(axes)
+
+
+def _without_ticks(axes: Axes, orbit: Orbit, view: View, half: float, unit: str) -> None:
+    """In place of ticks the axes of space, of a round length, at the lower left."""
+    length = _round_below(LENGTH * half)
+    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + half * np.array([0.25, 0.12])
+    for label, way in zip(orbit.labels, view.axes.T, strict=True):
+        tip = corner + length * way
+        arrow = {"arrowstyle": "-|>", "color": style.SOFT, "linewidth": 0.9, "shrinkA": 0.0, "shrinkB": 0.0}
+        axes.annotate("", xy=tuple(tip), xytext=tuple(corner), arrowprops=arrow)
+        place = corner + (length + 0.06 * half) * way
+        axes.text(place[0], place[1], label, ha="center", va="center", color=style.SOFT, fontsize=style.points(9.5))
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.set_xlabel(say("arrows of <length>", length=f"{number(length)} {unit_text(unit)}".rstrip()))
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+
+
+def _round_below(size: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not larger."""
+    power = 10.0 ** math.floor(math.log10(size))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= size)
 
 
 def from_reference(axes: Axes, orbit: Orbit) -> None:
@@ -205,6 +254,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     axes.set_xlim(low[0] * scale, high[0] * scale)
     axes.set_ylim(low[1] * scale, high[1] * scale)
     axes.set_title(say("seen from the reference"))
+    surroundings.draw_from_reference(axes, orbit.around, scale)
     axes.axhline(0.0, **style.REFERENCE)
     if orbit.free_relative is not None:
         axes.plot(*(others[1] * scale), **style.FREE)
@@ -215,6 +265,30 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     axes.set_xlabel(labelled(say("along-track"), measure.unit))
     axes.set_ylabel(labelled(say("radial"), measure.unit))
     _few_ticks(axes)
+
+
+def _added(scene: Scene, place: Callable[[Array], Array]) -> Array | None:
+    """The acceleration that the controls add to a motion whose states tell where it is; nothing where they add none."""
+    if scene.coasting:
+        return None
+    model, p = scene.instance.model, scene.instance.parameters
+    found = curves.thrust(model, scene.nodes, scene.x, scene.u, p, place)
+    return found if np.nanmax(np.abs(found), initial=0.0) > 0.0 else None
+
+
+def _thrusts(scene: Scene) -> bool:
+    """Whether the model says of a control that it is thrust."""
+    return any("thrust" in control.meaning for control in scene.spec.controls)
+
+
+def _polar(scene: Scene, path: Array) -> tuple[int, int] | None:
+    """The states that are a distance and an angle of the position vector, if some are."""
+    found = coordinates.polar(scene.spec.states)
+    if found is None or len(path) != 2:
+        return None
+    r, theta = (scene.x[i] for i in found)
+    same = np.allclose(path, [r * np.cos(theta), r * np.sin(theta)], rtol=ROUNDING, equal_nan=True)
+    return found if same else None
 
 
 def _on_reference(scene: Scene) -> bool:
