@@ -16,6 +16,7 @@ from satsym.report.page import answer
 from satsym.report.page.derived import Derived
 from satsym.report.page.motion import SIDE, motion
 from satsym.report.page.pictures import pictures
+from satsym.report.page.problem import problem
 from satsym.report.page.prose import prose
 from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
@@ -91,6 +92,25 @@ def test_the_facts_have_the_times_of_points_on_the_way() -> None:
     assert f"<dd>interior viewpoint at {event.t:.10g} s</dd>" in answer.facts(found, load("en"))
 
 
+def test_the_problem_comes_first_and_the_derivation_after_what_it_leads_to(text: str, solution: Solution) -> None:
+    order = re.findall(r'<section id="(\w+)">', text)
+    assert order == "problem answer motion pictures certificate derivation reproduce".split()
+    problem = text.partition('<section id="problem">')[2].partition("</section>")[0]
+    assert "<math" in problem, "what is minimised"
+    for name, value in zip(solution.instance.model.spec.state_names, solution.instance.initial, strict=True):
+        assert re.search(rf'scope="row">{name}</th><td>{value:g}</td><td>free</td>', problem), name
+
+
+def test_bounds_and_ranges_are_stated_with_the_problem() -> None:
+    page = problem(instance.load("return-to-geo"), None, (), load("en"))
+    assert re.search(r'scope="row">u1</th><td>-4e-08</td><td>4e-08</td><td>km/s²</td>', page)
+    ranged = problem(instance.load("return-to-geo-window"), None, (), load("en"))
+    assert re.search(r'scope="row">theta</th><td>0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
+    assert "From time 0 s to 86400 s." in page
+    free = problem(instance.load("transfer-time"), None, (), load("en"))
+    assert "to free" in free
+
+
 def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(text: str) -> None:
     steps = derived(loader.problem("polar_orbit")[0]).steps
     text = text.partition('<section id="derivation">')[2]
@@ -103,7 +123,7 @@ def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(tex
 
 
 def test_named_constants_are_defined_before_the_steps_that_refer_to_them(text: str) -> None:
-    text = text.partition('<section id="derivation">')[2]
+    text = text.partition('<section id="problem">')[2]
     stated, steps = text.split('class="step"', 1)
     equation = stated.partition('id="polar_orbit:declared.mu"')[2]
     assert re.sub(r"\s+", "", re.sub("<[^>]*>", "", equation)).lstrip(">").startswith("μ=σ3ω2(1)")

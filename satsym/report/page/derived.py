@@ -64,8 +64,15 @@ class Derived:
     def render(self) -> Markup:
         """All of it."""
         kind = "problem" if self._derivation.problem else "model"
-        parts = [tag("h3", self._texts.get("sections", kind)), *self._statement()]
-        parts += [tag("h3", self._texts.get("sections", "motion"))]
+        return joined(tag("h3", self._texts.get("sections", kind)), self.statement(), self.steps())
+
+    def statement(self) -> Markup:
+        """What is to be minimised, what the model states, and its quantities; to stand above the steps."""
+        return joined(*self._statement())
+
+    def steps(self) -> Markup:
+        """Each step under the heading of its section; to be asked for after the statement, whose equations it cites."""
+        parts = [tag("h3", self._texts.get("sections", "motion"))]
         for number, step in enumerate(self._derivation.steps, 1):
             if step.name in SECTION_FROM:
                 parts.append(tag("h3", self._texts.get("sections", SECTION_FROM[step.name])))
@@ -73,7 +80,6 @@ class Derived:
         return joined(*parts)
 
     def _statement(self) -> Iterator[Markup]:
-        """What is to be minimised, what the model states, and its quantities."""
         problem, typeset, texts = self._derivation.problem, self._context.typeset, self._texts
         if problem is not None:
             terminal = not typeset.is_zero(problem.terminal_cost)

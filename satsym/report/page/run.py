@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from satsym.instance.files import text as text_of
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page import answer
 from satsym.report.page.motion import motion
 from satsym.report.page.pictures import pictures
+from satsym.report.page.problem import problem
 from satsym.report.plots.scene import Scene
-from satsym.report.results.objects import file_of
 from satsym.report.said import message, say, spoken
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution
 from satsym.version import __version__
 
 if TYPE_CHECKING:
+    from satsym.report.page.derived import Derived
     from satsym.symbolic import Derivation
 
 
@@ -103,36 +103,32 @@ def _sections(solution: Solution, derivation: Derivation | None, given: Given, t
     if scene.drawable:
         parts += [answer.states(solution, texts), answer.controls(solution, texts)]
     certificate = solution.certificate
+    derived = _derived(solution, derivation, texts)
     return {
+        "problem": problem(solution.instance, derived, given.values, texts),
         "answer": joined(*parts),
-        "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
         "motion": motion(scene, texts) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),
-        "instance": _instance(solution, given, texts),
-        "derivation": _derivation(solution, derivation, texts),
+        "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
+        "derivation": _derivation(derived, texts),
         "reproduce": _commands(solution, derivation, given, texts),
     }
 
 
-def _instance(solution: Solution, given: Given, texts: Texts) -> Markup:
-    """The file as it was read, and what stood in place of its numbers."""
-    file = file_of(solution.instance)
-    if file is None:
-        return Markup()
-    about = texts.get("page", "file", name=file["name"], digest=file["digest"])
-    text = tag("pre", tag("code", text_of(solution.instance.path)), tabindex="0")
-    instead = texts.get("page", "instead", values=", ".join(given.values))
-    return joined(tag("p", about), text, tag("p", instead) if given.values else Markup())
-
-
-def _derivation(solution: Solution, derivation: Derivation | None, texts: Texts) -> Markup:
+def _derived(solution: Solution, derivation: Derivation | None, texts: Texts) -> Derived | None:
+    """The derivation with the numbers of the instance."""
     if derivation is None:
-        return tag("p", texts.get("page", "no_derivation"))
+        return None
     from satsym.report.page.derived import Derived
 
     spec, values = solution.instance.model.spec, solution.instance.parameters
-    known = dict(zip((v.symbol for v in spec.parameters), values, strict=True))
-    return joined(tag("p", texts.get("page", "derivation_about")), Derived(derivation, texts, known).render())
+    return Derived(derivation, texts, dict(zip((v.symbol for v in spec.parameters), values, strict=True)))
+
+
+def _derivation(derived: Derived | None, texts: Texts) -> Markup:
+    if derived is None:
+        return tag("p", texts.get("page", "no_derivation"))
+    return joined(tag("p", texts.get("page", "derivation_about")), derived.steps())
 
 
 def _commands(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts) -> Markup:
