@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   satsym report soft-return --html soft-return.html
+  satsym report transfer-fuel --html transfer.html --interactive    with a slider over time
   satsym report my_case.toml --html my_case.html --derivation my_model.py"""
 
 
@@ -28,15 +30,30 @@ Examples:
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
+@click.option("--interactive", is_flag=True, help="With sliders, values where one points, and motion in space.")
+@place_option(
+    "--study", "study", metavar="DIR", help="With --interactive: a study of X, whose answers a slider chooses."
+)
 @set_option
-def report(subject: str, page: Path | None, stated: Path | None, values: tuple[str, ...]) -> ExitCode:
+def report(
+    subject: str,
+    page: Path | None,
+    stated: Path | None,
+    interactive: bool,
+    study: Path | None,
+    values: tuple[str, ...],
+) -> ExitCode:
     """Solve an instance, and show all of it on one page.
 
-    X is an instance as for `satsym solve`. The page holds the answer, its certificate, the motion, pictures, the
-    instance and the derivation, and needs nothing but itself. FILE.py is Python and is executed.
+    X is an instance as for `satsym solve`. The page holds the problem, the answer, its certificate, the motion,
+    pictures and the derivation, and needs nothing but itself. FILE.py is Python and is executed. With --interactive
+    scripts are inside the page, too, and without them it shows the same as otherwise. A study has answers to choose
+    from if it was made with --trajectories.
     """
     from satsym import instance, solvers
     from satsym.instance.numbers import changed
+    from satsym.report.extra import library
+    from satsym.report.page.answers import explored
     from satsym.report.page.run import Given, render
     from satsym.report.results.files import write_text
     from satsym.report.terminal.solution import progress_line, with_files
@@ -44,13 +61,19 @@ def report(subject: str, page: Path | None, stated: Path | None, values: tuple[s
 
     if page is None:
         raise click.UsageError("--html FILE says where the page goes.")
+    if study is not None and not interactive:
+        raise click.UsageError("--study DIR is shown with --interactive.")
+    if interactive:
+        library("plotly.offline", "plotly", "interactive")  # now, before solving
     case = instance.load(subject)
     case = changed(case, settings(case, values))
     with live() as line:
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
         line.show(say("drawing ..."))
-        text = render(solution, derivation, Given(subject, str(stated or ""), values), language())
+        answers = explored(solution, study) if interactive else []
+        options = f"--interactive{f' --study {shlex.quote(str(study))}' if study else ''}" if interactive else ""
+        text = render(solution, derivation, Given(subject, str(stated or ""), values, options), language(), answers)
     write_text(page, text)
     tell(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
     if not solution.status.answered:

@@ -9,8 +9,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.exchange.ephemeris import Ephemeris
-from satsym.report.exchange.extra import library
 from satsym.report.exchange.stk import burns
+from satsym.report.exchange.writers import written_by
 from satsym.report.plots import style
 from satsym.status import BadInput
 
@@ -44,7 +44,7 @@ def czml(motion: Ephemeris) -> str:
     """
     if motion.orbit.centre != GLOBE:
         raise BadInput(f"[orbit] centre: Cesium shows motions about the {GLOBE}, not {motion.orbit.centre}")
-    kit = library("czml3", "czml3")
+    kit = written_by("czml3", "czml3")
     packets = [_document(motion, kit), *_objects(motion, kit)]
     return str(kit.Document(packets=packets).dumps()) + "\n"
 
@@ -52,8 +52,8 @@ def czml(motion: Ephemeris) -> str:
 def _document(motion: Ephemeris, kit: Any) -> Any:
     first, last = motion.moment(motion.times[0]), motion.moment(motion.times[-1])
     pace = max(1.0, round(float(np.ptp(motion.times)) / SHOWN))
-    clock = library("czml3.properties", "czml3").Clock(currentTime=first, multiplier=pace)
-    interval = library("czml3.types", "czml3").IntervalValue(start=first, end=last, value=clock)
+    clock = written_by("czml3.properties", "czml3").Clock(currentTime=first, multiplier=pace)
+    interval = written_by("czml3.types", "czml3").IntervalValue(start=first, end=last, value=clock)
     return kit.Packet(id="document", name=motion.title, version="1.0", clock=interval)
 
 
@@ -83,7 +83,7 @@ def _moving(
     times: Array | None = None,
 ) -> Any:
     """A point that moves, and its path."""
-    properties, types = (library(f"czml3.{part}", "czml3") for part in ("properties", "types"))
+    properties, types = (written_by(f"czml3.{part}", "czml3") for part in ("properties", "types"))
     times = motion.times if times is None else times
     rgba = properties.Color(rgba=[*bytes.fromhex(colour[1:]), 255])
     rows = np.column_stack([np.round(times - times[0], 6), np.round(places.T * 1e3, 3)])
@@ -108,4 +108,4 @@ def _moving(
 
 def _offset(properties: Any) -> Any:
     """Where the name stands beside its point, in pixels."""
-    return library("czml3.types", "czml3").Cartesian2Value(values=[0.0, -16.0])
+    return written_by("czml3.types", "czml3").Cartesian2Value(values=[0.0, -16.0])

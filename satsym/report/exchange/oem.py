@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from satsym.report.exchange.ephemeris import Arc, Ephemeris
-from satsym.report.exchange.extra import library
 from satsym.report.exchange.stk import burns
+from satsym.report.exchange.writers import written_by
 
 ORIGINATOR = "SATSYM"
 UNKNOWN = "UNKNOWN"
@@ -38,8 +38,8 @@ def oem(motion: Ephemeris) -> str:
     BadInput
         If ccsds-ndm is not installed.
     """
-    models = library("ccsds_ndm.models.ndmxml2", "ccsds-ndm")
-    writing = library("ccsds_ndm.ndm_io", "ccsds-ndm")
+    models = written_by("ccsds_ndm.models.ndmxml2", "ccsds-ndm")
+    writing = written_by("ccsds_ndm.ndm_io", "ccsds-ndm")
     header = models.NdmHeader(
         comment=[_plain(f"{motion.name}: {motion.title}")], creation_date=_now(), originator=ORIGINATOR
     )

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page import answer
+from satsym.report.page.explore import explore, scripts
+from satsym.report.page.explored import Answer
 from satsym.report.page.motion import motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.problem import problem
@@ -36,14 +38,23 @@ class Given:
         The file that states the model, where it is none that is shipped.
     values
         Other values of its numbers, each as ``KEY=VALUE``.
+    interactive
+        Options that made the page interactive, as they were given.
     """
 
     subject: str
     stated: str = ""
     values: Sequence[str] = ()
+    interactive: str = ""
 
 
-def render(solution: Solution, derivation: Derivation | None, given: Given, language: str = "en") -> str:
+def render(
+    solution: Solution,
+    derivation: Derivation | None,
+    given: Given,
+    language: str = "en",
+    explored: Sequence[Answer] = (),
+) -> str:
     """A page that needs nothing but itself.
 
     Parameters
@@ -54,6 +65,9 @@ def render(solution: Solution, derivation: Derivation | None, given: Given, lang
         What was asked for.
     language
         Of the page; what authors of models wrote stays as it is.
+    explored
+        Answers that a script shows besides, with sliders over time and over the answers; none on a page without
+        scripts.
 
     Returns
     -------
@@ -61,14 +75,16 @@ def render(solution: Solution, derivation: Derivation | None, given: Given, lang
         HTML that depends on nothing but the arguments.
     """
     with spoken(language):
-        return _rendered(solution, derivation, given, language)
+        return _rendered(solution, derivation, given, language, explored)
 
 
-def _rendered(solution: Solution, derivation: Derivation | None, given: Given, language: str) -> str:
+def _rendered(
+    solution: Solution, derivation: Derivation | None, given: Given, language: str, explored: Sequence[Answer]
+) -> str:
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
     title = say(authored)
-    shown = {name: part for name, part in _sections(solution, derivation, given, texts).items() if part}
+    shown = {name: part for name, part in _sections(solution, derivation, given, texts, explored).items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
     sections = [tag("section", tag("h2", texts.get("page", name)), part, id=name) for name, part in shown.items()]
     found = solution.certificate
@@ -86,6 +102,7 @@ def _rendered(solution: Solution, derivation: Derivation | None, given: Given, l
             tag("nav", tag("ul", *links), aria_label=texts.get("page", "contents")),
         ),
         tag("main", *sections),
+        scripts(explored) if explored else Markup(),
     ]
     head = [
         tag("meta", charset="utf-8"),
@@ -97,7 +114,9 @@ def _rendered(solution: Solution, derivation: Derivation | None, given: Given, l
     return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
 
 
-def _sections(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts) -> dict[str, Markup]:
+def _sections(
+    solution: Solution, derivation: Derivation | None, given: Given, texts: Texts, explored: Sequence[Answer]
+) -> dict[str, Markup]:
     spec, scene = solution.instance.model.spec, Scene.of(solution)
     parts = [answer.facts(solution, texts)]
     if scene.drawable:
@@ -107,6 +126,7 @@ def _sections(solution: Solution, derivation: Derivation | None, given: Given, t
     return {
         "problem": problem(solution.instance, derived, given.values, texts),
         "answer": joined(*parts),
+        "explore": explore(explored, texts) if explored else Markup(),
         "motion": motion(scene, texts) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),
         "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
@@ -135,6 +155,7 @@ def _commands(solution: Solution, derivation: Derivation | None, given: Given, t
     stated, model = given.stated, solution.instance.model.spec.name
     name = shlex.join([given.subject, *(part for value in given.values for part in ("--set", value))])
     again = f" --derivation {shlex.quote(stated)}" if stated else ""
+    again += given.interactive and f" {given.interactive}"
     lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html{again}"]
     if derivation is not None:
         lines.append(f"satsym latex {shlex.quote(f'{stated}:{model}') if stated else model}")

@@ -12,8 +12,8 @@ from satsym.arrays import Array
 from satsym.report.plots import legend, series, style
 from satsym.report.plots.panels import ticks
 from satsym.report.plots.reading import Reading, read
-from satsym.report.plots.restrictions import Restriction, within
 from satsym.report.plots.scene import Scene
+from satsym.report.results.restrictions import Restriction, within
 from satsym.report.said import say
 from satsym.solvers.collocation.scaling import final_argument
 
@@ -108,7 +108,7 @@ def entries(planes: list[Plane]) -> list[legend.Entry]:
     if any(plane.forbidden for plane in planes):
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if any(plane.passed[0] for plane in planes):
-        found.append((legend.line(**style.WAY), say("point on the way")))
+        found.append((legend.line(**style.PASSED), say("point on the way")))
     return found
 
 
@@ -156,4 +156,4 @@ def _behind(axes: Axes, plane: Plane) -> None:
             linestyles=[look["linestyle"]],
             zorder=look["zorder"],
         )
-    axes.plot(*plane.passed, **style.WAY)
+    axes.plot(*plane.passed, **style.PASSED)

@@ -10,7 +10,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
-from satsym.report.plots import coordinates, curves, restrictions
+from satsym.report.plots import coordinates, curves
+from satsym.report.results import restrictions
 from satsym.report.said import message, say
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec

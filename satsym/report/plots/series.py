@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import stated_constraints
 from satsym.report.display import formula, plain
-from satsym.report.plots import curves, restrictions
+from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
+from satsym.report.results import restrictions
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.said import say
 from satsym.solution import Simulation

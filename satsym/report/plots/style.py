@@ -54,7 +54,7 @@ FORBIDDEN: dict[str, Any] = {
 }
 BOUND: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "zorder": 1.9}
 BURN: dict[str, Any] = {"color": VERMILION, "linewidth": 3.4, "zorder": 3.1, "solid_capstyle": "butt"}
-WAY: dict[str, Any] = {
+PASSED: dict[str, Any] = {
     "marker": "D",
     "markersize": 6.5,
     "markerfacecolor": "white",
@@ -63,7 +63,7 @@ WAY: dict[str, Any] = {
     "linestyle": "none",
     "zorder": 4.1,
 }
-OTHER: dict[str, Any] = WAY | {"marker": "^", "markersize": 8.0}
+OTHER: dict[str, Any] = PASSED | {"marker": "^", "markersize": 8.0}
 CURVE: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "linestyle": "--", "zorder": 2.2}
 BODY: dict[str, Any] = {"facecolor": "#C9D8E6", "edgecolor": "#7D93A8", "linewidth": 0.8, "zorder": 1.5}
 SWITCHING: dict[str, Any] = {"linewidth": 0.8, "linestyle": ":", "zorder": 1.8}

@@ -11,9 +11,10 @@ import numpy as np
 from satsym import units
 from satsym.arrays import Array
 from satsym.report.display import plain
-from satsym.report.plots import curves, legend, restrictions, series, style
+from satsym.report.plots import curves, legend, series, style
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View
+from satsym.report.results import restrictions
 from satsym.report.said import say
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ Placing: TypeAlias = Callable[[Array], Array]
 """From states (n, N) to places (2 or 3, N)."""
 IDLE = 1e-6
 """Thrust that is smaller than this share of the largest is none."""
-SHARE = 0.02, 0.98
+BURNING = 0.02, 0.98
 """Share of the time with thrust between which burns are drawn apart from coasts."""
 ALIKE = 1e-9
 """Relative to its size, what differs by less is the same."""
@@ -62,6 +63,8 @@ class Surroundings:
     """The uncontrolled motion that the end joins, once round."""
     other_start: Array | None = None
     """Where on it is at the start what is met at the end."""
+    moving: Array | None = None
+    """Where what is met at the end is, at even steps of time from the start to the end."""
     burns: Array | None = None
     """The path where there is thrust, NaN elsewhere; ``None`` where there always is some."""
     radius: float = 0.0
@@ -99,6 +102,7 @@ class Surroundings:
             tuple(_forbidden(scene, polar, places)),
             passed,
             other[0] if other else None,
+            other[1][:, :1] if other and other[1] is not None else None,
             other[1] if other else None,
             _burns(scene, path, thrust),
             _radius(orbit.body.radius * 1e3 / units.in_base_units(unit), path) if orbit and unit != "1" else 0.0,
@@ -135,7 +139,7 @@ def draw(axes: Axes, around: Surroundings, view: View, datum: Array, scale: floa
     if around.burns is not None:
         axes.plot(*((seen @ around.burns - datum) * scale), **style.BURN)
     if around.passed is not None:
-        axes.plot(*((seen @ around.passed - datum) * scale), **style.WAY)
+        axes.plot(*((seen @ around.passed - datum) * scale), **style.PASSED)
 
 
 def before(around: Surroundings, view: View, curve: Array) -> Array:
@@ -168,7 +172,7 @@ def entries(around: Surroundings) -> list[legend.Entry]:
     if around.other_start is not None:
         found.append((legend.line(**style.OTHER), say("target at the start")))
     if around.passed is not None:
-        found.append((legend.line(**style.WAY), say("point on the way")))
+        found.append((legend.line(**style.PASSED), say("point on the way")))
     if around.forbidden:
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if around.radius:
@@ -239,11 +243,11 @@ def _burns(scene: Scene, path: Array, thrust: Array | None) -> Array | None:
     on = size > IDLE * size.max(initial=0.0)
     spans = np.diff(scene.nodes)
     share = float((spans * (on[1:] & on[:-1])).sum() / spans.sum())
-    return np.where(on, path, np.nan) if SHARE[0] < share < SHARE[1] else None
+    return np.where(on, path, np.nan) if BURNING[0] < share < BURNING[1] else None
 
 
 def _joined(scene: Scene, place: Placing, polar: tuple[int, int]) -> tuple[Array, Array | None] | None:
-    """The uncontrolled motion that a final condition asks for; and where it is at the start, if the angle is asked for.
+    """The uncontrolled motion that a final condition asks for; and from start to end, if the angle is asked for.
 
     Every state must be given at the end but the angle, and those that do not change without control, such as a mass.
     """
@@ -270,5 +274,5 @@ def _joined(scene: Scene, place: Placing, polar: tuple[int, int]) -> tuple[Array
     if turned == 0.0:
         return None
     back = curves.uncontrolled(model, np.linspace(last, first, STEPS), end.tolist(), p)
-    start = place(back[:, -1:]) if given[angle] is not None and np.isfinite(back).all() else None
-    return np.hstack(whole), start
+    until = place(back[:, ::-1]) if given[angle] is not None and np.isfinite(back).all() else None
+    return np.hstack(whole), until

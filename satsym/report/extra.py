@@ -1,0 +1,29 @@
+"""Libraries that come with an extra: what to install where one is missing."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import ModuleType
+
+from satsym.status import BadInput
+
+
+def library(name: str, distribution: str, extra: str) -> ModuleType:
+    """A module of a library that satsym can do without, loaded now.
+
+    Parameters
+    ----------
+    name
+        Of the module.
+    distribution, extra
+        What it is installed as, and with which extra of satsym.
+
+    Raises
+    ------
+    BadInput
+        If it is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        raise BadInput(f"{distribution} is not installed; pip install 'satsym[{extra}]'") from None

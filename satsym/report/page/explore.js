@@ -1,0 +1,285 @@
+"use strict";
+// One time for all panels, for what moves and for the table; where there are several answers, one answer for all.
+(() => {
+  const section = document.getElementById("explore");
+  const source = document.getElementById("explore-data");
+  if (!section || !source || !window.Plotly) return;
+  const { answers, words, decimal } = JSON.parse(source.textContent);
+  if (!answers.length) return;
+  section.querySelector(".explorer").hidden = false;
+  const slider = document.getElementById("explore-time");
+  const chooser = document.getElementById("explore-answer");
+  const play = document.getElementById("explore-play");
+  const stated = document.getElementById("explore-stated");
+  const reading = document.getElementById("explore-reading");
+  const scenesHome = document.getElementById("explore-scenes");
+  const panelsHome = document.getElementById("explore-panels");
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const ink = css("--ink"), faint = css("--faint"), line = css("--line");
+  const plain = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
+  const SECONDS = 12, SIDE = 380, ROW = 150, GAP = 0.045;
+  const BLUE = "#0072B2", SKY = "#56B4E9", VERMILION = "#D55E00", GREEN = "#009E73";
+  let current = answers[0], time = current.t[0], running = 0, updates = [];
+
+  /** A number with six digits; what is nothing but rounding beside a size is zero. */
+  const number = (value, size = 0) => {
+    if (value === null || !Number.isFinite(value)) return "–";
+    if (Math.abs(value) < 1e-9 * size) return "0";
+    return String(Number(value.toPrecision(6))).replace("-", "−").replace(".", decimal);
+  };
+
+  /** Place of a time among the nodes: the node before, and the share of the way to the next. */
+  const place = (t) => {
+    const nodes = current.t;
+    let low = 0, high = nodes.length - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (nodes[middle] <= t) low = middle; else high = middle;
+    }
+    const span = nodes[high] - nodes[low];
+    return [low, span > 0 ? Math.min(1, Math.max(0, (t - nodes[low]) / span)) : 1];
+  };
+  const at = (row, [k, share]) => {
+    const a = row[k], b = row[Math.min(k + 1, row.length - 1)];
+    return a === null || b === null ? null : a + share * (b - a);
+  };
+
+  const layout = (more) => ({
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: 12 },
+    showlegend: false, hovermode: "closest", dragmode: "pan", ...more,
+  });
+  const axis = (more) => ({ gridcolor: line, zerolinecolor: line, linecolor: line, ...more });
+  const curve = (rows, name, look, mode = "lines") => ({
+    x: rows[0], y: rows[1], ...(rows.length > 2 ? { z: rows[2], type: "scatter3d" } : {}), mode, name,
+    hoverinfo: "skip", ...look,
+  });
+  const dot = (rows, name, colour, symbol, size) =>
+    curve(rows, name, { marker: { color: colour, size, symbol, line: { color: ink, width: 1 } } }, "markers");
+
+  /** The path in a plane or in space, and what moves on it. */
+  const drawPath = (home, scene) => {
+    const deep = scene.kind === "space";
+    const zero = scene.path.map(() => [0]);
+    const traces = [];
+    for (const field of scene.forbidden)
+      traces.push({
+        type: "contour", x: field.x, y: field.y, z: field.z, showscale: false, hoverinfo: "skip",
+        contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(138,138,138,.22)",
+        line: { color: faint, width: 1 }, name: words.inadmissible,
+      });
+    if (scene.radius && deep) traces.push(globe(scene));
+    if (scene.central && !scene.radius) traces.push(dot(zero, scene.body || words.origin, ink, "cross", deep ? 4 : 9));
+    for (const [key, look] of [
+      ["free", { line: { color: faint, width: 1 } }],
+      ["reference", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }],
+      ["other", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }],
+      ["path", { line: { color: BLUE, width: deep ? 5 : 2.5 } }],
+      ["burns", { line: { color: VERMILION, width: deep ? 8 : 5 }, connectgaps: false }],
+    ]) if (scene[key]) traces.push(curve(scene[key], words[key], look));
+    if (scene.target) traces.push(dot(scene.target, words.target, "rgba(0,0,0,0)", "circle", deep ? 6 : 12));
+    if (scene.passed) traces.push(dot(scene.passed, words.passed, "white", "diamond", deep ? 5 : 9));
+    const moving = [];
+    const follow = (key, colour, symbol, size) => {
+      if (!scene[key]) return;
+      moving.push({ index: traces.length, rows: () => scene[key].map((row) => [at(row, now())]) });
+      traces.push({ ...dot(scene[key].map((row) => [row[0]]), words[key], colour, symbol, size), hoverinfo: "name" });
+    };
+    follow("reference", "white", "circle", deep ? 5 : 9);
+    follow("moving", "white", "square", deep ? 5 : 9);
+    follow("path", BLUE, "circle", deep ? 6 : 11);
+    if (scene.thrust) {
+      moving.push({
+        index: traces.length,
+        rows: () => scene.path.map((row, i) => {
+          const from = at(row, now()), along = at(scene.thrust[i], now());
+          return [from, from === null || along === null ? null : from + along];
+        }),
+      });
+      traces.push(curve(scene.path.map(() => [0, 0]), scene.thrust_called, { line: { color: VERMILION, width: deep ? 7 : 3 } }));
+    }
+    const names = scene.labels, range = (i) => [scene.low[i], scene.high[i]];
+    const disc = scene.radius && !deep ? [{
+      type: "circle", x0: -scene.radius, x1: scene.radius, y0: -scene.radius, y1: scene.radius,
+      fillcolor: "rgba(86,180,233,.3)", line: { color: faint, width: 1 }, layer: "below",
+    }] : [];
+    const space = (i) => axis({ title: { text: names[i] }, range: range(i), showbackground: false });
+    Plotly.newPlot(home, traces, layout(deep
+      ? { height: SIDE + 60, margin: { l: 0, r: 0, t: 6, b: 0 }, scene: { xaxis: space(0), yaxis: space(1), zaxis: space(2), aspectmode: "cube" } }
+      : {
+          height: SIDE, margin: { l: 60, r: 10, t: 8, b: 44 }, shapes: disc,
+          xaxis: axis({ title: { text: names[0] }, range: range(0), constrain: "domain" }),
+          yaxis: axis({ title: { text: names[1] }, range: range(1), ...(scene.free_aspect ? {} : { scaleanchor: "x", constrain: "domain" }) }),
+        }), plain);
+    updates.push(() => {
+      const rows = moving.map((one) => one.rows());
+      const changed = { x: rows.map((r) => r[0]), y: rows.map((r) => r[1]) };
+      if (deep) changed.z = rows.map((r) => r[2]);
+      if (moving.length) Plotly.restyle(home, changed, moving.map((one) => one.index));
+    });
+  };
+
+  const globe = (scene) => {
+    const n = 24, x = [], y = [], z = [];
+    for (let i = 0; i <= n; i++) {
+      const height = Math.PI * (i / n - 0.5), rows = [[], [], []];
+      for (let j = 0; j <= 2 * n; j++) {
+        const turn = (Math.PI * j) / n;
+        rows[0].push(scene.radius * Math.cos(height) * Math.cos(turn));
+        rows[1].push(scene.radius * Math.cos(height) * Math.sin(turn));
+        rows[2].push(scene.radius * Math.sin(height));
+      }
+      x.push(rows[0]); y.push(rows[1]); z.push(rows[2]);
+    }
+    return { type: "surface", x, y, z, showscale: false, hoverinfo: "skip", opacity: 0.9, colorscale: [[0, "#9DB8CF"], [1, "#9DB8CF"]] };
+  };
+
+  /** A box with its axes, as it is turned, and the torque in its axes. */
+  const drawAttitude = (home, scene) => {
+    const half = [0.55, 0.4, 0.28], corners = [], colours = [VERMILION, GREEN, BLUE];
+    for (let k = 0; k < 8; k++) corners.push([0, 1, 2].map((i) => ((k >> i) & 1 ? half[i] : -half[i])));
+    const edges = [];
+    for (let k = 0; k < 8; k++) for (let i = 0; i < 3; i++) if (!((k >> i) & 1)) edges.push(corners[k], corners[k | (1 << i)], null);
+    const turned = (point) => {
+      const turn = scene.turns.length ? now() : [0, 0];
+      const a = scene.turns[turn[0]], b = scene.turns[Math.min(turn[0] + 1, scene.turns.length - 1)];
+      return [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, j) => sum + (a[3 * i + j] + turn[1] * (b[3 * i + j] - a[3 * i + j])) * point[j], 0));
+    };
+    const rows = (points) => {
+      const done = points.map((point) => (point ? turned(point) : [null, null, null]));
+      return [0, 1, 2].map((i) => done.map((point) => point[i]));
+    };
+    const unit = (i, size) => [0, 1, 2].map((j) => (i === j ? size : 0));
+    const bodies = [() => rows(edges), ...[0, 1, 2].map((i) => () => rows([[0, 0, 0], unit(i, 1.15)]))];
+    if (scene.torque) bodies.push(() => rows([[0, 0, 0], scene.torque.map((row) => 1.2 * (at(row, now()) ?? 0))]));
+    const looks = [
+      { line: { color: ink, width: 4 } },
+      ...colours.map((colour) => ({ line: { color: colour, width: 6 } })),
+      { line: { color: "#A6508A", width: 9 } },
+    ];
+    const names = [words.body_called, "1", "2", "3", words.torque];
+    const traces = bodies.map((body, k) => ({ ...curve(body(), names[k], looks[k]), hoverinfo: "name" }));
+    [0, 1, 2].forEach((i) => traces.push(curve([0, 1, 2].map((j) => [0, i === j ? 1.4 : 0]), words.fixed, { line: { color: faint, width: 2, dash: "dot" } })));
+    const space = { range: [-1.4, 1.4], showbackground: false, showticklabels: false, title: { text: "" }, showgrid: false, zeroline: false };
+    Plotly.newPlot(home, traces, layout({
+      height: SIDE + 20, margin: { l: 0, r: 0, t: 6, b: 0 },
+      scene: { xaxis: space, yaxis: space, zaxis: space, aspectmode: "cube", camera: { eye: { x: 1.05, y: 0.75, z: 0.6 } } },
+    }), plain);
+    updates.push(() => {
+      const found = bodies.map((body) => body());
+      Plotly.restyle(home, { x: found.map((r) => r[0]), y: found.map((r) => r[1]), z: found.map((r) => r[2]) }, found.map((_, k) => k));
+    });
+  };
+
+  /** All quantities over one time; what is hovered sets the time of all. */
+  const drawPanels = () => {
+    const left = current.panels.filter((p) => p.group === "state");
+    const right = current.panels.filter((p) => p.group !== "state");
+    const narrow = panelsHome.clientWidth < 700 || !right.length;
+    const columns = narrow ? [[...left, ...right]] : [left, right];
+    const rows = Math.max(...columns.map((column) => column.length));
+    const traces = [], cursors = [], shapes = [], annotations = [], axes = {};
+    const span = [current.t[0], current.t[current.t.length - 1]];
+    let k = 0;
+    columns.forEach((column, c) => column.forEach((panel, r) => {
+      const id = k++ ? String(k) : "";
+      const from = columns.length > 1 ? [[0, 0.46], [0.54, 1]][c] : [0, 1];
+      const top = 1 - r / column.length, bottom = 1 - (r + 1) / column.length;
+      const last = r === column.length - 1;
+      axes[`xaxis${id}`] = axis({ domain: from, anchor: `y${id}`, range: span, ...(k > 1 ? { matches: "x" } : {}), showticklabels: last, title: last ? { text: current.time, standoff: 4 } : undefined });
+      axes[`yaxis${id}`] = axis({ domain: [bottom + GAP / Math.max(1, column.length / 4), top - 0.012], anchor: `x${id}`, range: [panel.low, panel.high], title: { text: panel.label, font: { size: 11 } }, nticks: 4 });
+      const on = { xaxis: `x${id}`, yaxis: `y${id}` };
+      for (const [key, look] of [["free", { color: faint, width: 1 }], ["reference", { color: ink, width: 1, dash: "dash" }]])
+        if (panel[key]) traces.push({ ...on, x: current.t, y: panel[key], mode: "lines", line: look, hoverinfo: "skip" });
+      for (const key of ["lower", "upper"])
+        if (panel[key] !== undefined) shapes.push({ type: "rect", xref: `x${id}`, yref: `y${id}`, x0: span[0], x1: span[1], y0: panel[key], y1: key === "lower" ? panel.low : panel.high, fillcolor: "rgba(138,138,138,.2)", line: { width: 0 }, layer: "below" });
+      for (const mark of panel.marks) shapes.push({ type: "line", xref: `x${id}`, yref: `y${id}`, x0: mark, x1: mark, y0: panel.low, y1: panel.high, line: { color: panel.colour, width: 1, dash: "dot" } });
+      if (panel.target !== undefined) traces.push({ ...on, x: [span[1]], y: [panel.target], mode: "markers", marker: { color: "rgba(0,0,0,0)", size: 11, line: { color: ink, width: 1.2 } }, hoverinfo: "skip", cliponaxis: false });
+      traces.push({ ...on, x: current.t, y: panel.values, mode: "lines", line: { color: panel.colour, width: 2 }, name: panel.meaning, hovertemplate: `${panel.label}: %{y:.6g}<br>${current.time}: %{x:.6g}<extra>${panel.meaning}</extra>` });
+      cursors.push({ index: traces.length, panel });
+      traces.push({ ...on, x: [0, 0, 0], y: [panel.low, 0, panel.high], mode: "lines+markers", line: { color: faint, width: 1 }, marker: { size: [0, 8, 0], color: panel.colour }, hoverinfo: "skip" });
+    }));
+    Plotly.newPlot(panelsHome, traces, layout({ height: 70 + ROW * rows, margin: { l: 70, r: 12, t: 8, b: 44 }, hovermode: "x", shapes, annotations, ...axes }), plain);
+    panelsHome.removeAllListeners?.("plotly_hover");
+    panelsHome.on("plotly_hover", (event) => { stop(); set(Number(event.points[0].x)); });
+    updates.push(() => {
+      const there = now();
+      Plotly.restyle(panelsHome, { x: cursors.map(() => [time, time, time]), y: cursors.map(({ panel }) => [panel.low, at(panel.values, there), panel.high]) }, cursors.map((one) => one.index));
+    });
+  };
+
+  const now = () => place(time);
+  const tell = () => {
+    const there = now();
+    stated.textContent = `${number(time)}`;
+    slider.setAttribute("aria-valuetext", number(time));
+    reading.querySelectorAll("td[data-panel]").forEach((cell) => {
+      const panel = current.panels[cell.dataset.panel];
+      cell.textContent = number(at(panel.values, there), Math.max(Math.abs(panel.low), Math.abs(panel.high)));
+    });
+  };
+  const set = (t) => {
+    time = Math.min(current.t[current.t.length - 1], Math.max(current.t[0], t));
+    const span = current.t[current.t.length - 1] - current.t[0];
+    slider.value = String(span > 0 ? (1000 * (time - current.t[0])) / span : 0);
+    updates.forEach((update) => update());
+    tell();
+  };
+  const stop = () => { cancelAnimationFrame(running); running = 0; play.textContent = words.play; play.setAttribute("aria-pressed", "false"); };
+  const run = () => {
+    const span = current.t[current.t.length - 1] - current.t[0];
+    let before = performance.now();
+    const step = (moment) => {
+      const next = time + (span * (moment - before)) / (1000 * SECONDS);
+      before = moment;
+      set(next > current.t[current.t.length - 1] ? current.t[0] : next);
+      running = requestAnimationFrame(step);
+    };
+    play.textContent = words.pause;
+    play.setAttribute("aria-pressed", "true");
+    running = requestAnimationFrame(step);
+  };
+
+  const draw = () => {
+    updates = [];
+    scenesHome.querySelectorAll(".scene-plot").forEach((home) => Plotly.purge(home));
+    scenesHome.replaceChildren();
+    for (const scene of current.scenes) {
+      const figure = document.createElement("figure"), home = document.createElement("div"), caption = document.createElement("figcaption");
+      home.className = "scene-plot";
+      caption.textContent = scene.title + (scene.magnified ? `, ${words.magnified.replace("<times>", scene.magnified)}` : "");
+      figure.append(home, caption);
+      scenesHome.append(figure);
+      (scene.kind === "attitude" ? drawAttitude : drawPath)(home, scene);
+    }
+    Plotly.purge(panelsHome);
+    drawPanels();
+    const body = document.createElement("tbody");
+    current.panels.forEach((panel, k) => {
+      const row = document.createElement("tr"), name = document.createElement("th"), cell = document.createElement("td"), about = document.createElement("td");
+      name.scope = "row";
+      name.innerHTML = panel.label; // escaped where it was made, but for indices
+      cell.dataset.panel = k;
+      about.innerHTML = panel.meaning;
+      row.append(name, cell, about);
+      body.append(row);
+    });
+    reading.querySelector("tbody").replaceWith(body);
+    document.getElementById("explore-cost").textContent = [current.label, current.cost && `J = ${current.cost}`].filter(Boolean).join(", ");
+    set(time);
+  };
+
+  slider.addEventListener("input", () => {
+    stop();
+    const span = current.t[current.t.length - 1] - current.t[0];
+    set(current.t[0] + (span * Number(slider.value)) / 1000);
+  });
+  play.addEventListener("click", () => (running ? stop() : run()));
+  chooser?.addEventListener("input", () => {
+    const share = Number(slider.value) / 1000;
+    current = answers[Number(chooser.value)];
+    chooser.setAttribute("aria-valuetext", current.label);
+    time = current.t[0] + share * (current.t[current.t.length - 1] - current.t[0]);
+    draw();
+  });
+  draw();
+})();
