@@ -7,19 +7,23 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import satsym
 from satsym import instance
+from satsym.analysis.regulator.feedback import simulate
 from satsym.report.html.markup import Markup
 from satsym.report.page import answer
+from satsym.report.page.attitudes import Attitude
 from satsym.report.page.derived import Derived
-from satsym.report.page.motion import SIDE, motion
+from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.problem import problem
 from satsym.report.page.prose import prose
 from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.views import from_aside
 from satsym.report.texts import load
 from satsym.solution import Solution
 from satsym.solvers import solve
@@ -108,7 +112,7 @@ def test_bounds_and_ranges_are_stated_with_the_problem() -> None:
     assert re.search(r'scope="row">theta</th><td>0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
     assert "From time 0 s to 86400 s." in page
     free = problem(instance.load("transfer-time"), None, (), load("en"))
-    assert "to free" in free
+    assert "the final time is free" in free
 
 
 def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(text: str) -> None:
@@ -139,8 +143,26 @@ def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text:
     assert still is not None
     last = tuple(map(float, path[1].split("L")[-1].split()))
     assert tuple(map(float, frames.groups())) == tuple(map(float, still.groups())) == last
-    assert re.search(r"prefers-reduced-motion: reduce\) \{\s*\.body \{ animation: none", text)
+    assert re.search(r"prefers-reduced-motion: reduce\) \{\s*\.body, \.frame \{ animation: none", text)
     assert "#pause:checked ~ svg .body { animation-play-state: paused; }" in text
+
+
+def test_a_body_that_turns_is_shown_turn_by_turn_and_stands_at_its_end_without_motion() -> None:
+    """Its third axis is where the rotation has it, seen from aside."""
+    drawn = str(motion(Scene.of(simulate(instance.load("gravity-gradient"), None)), load("en")))
+    frames = re.findall(r'<g class="frame( last)?" style="animation-delay:([-.\d]+)s">', drawn)
+    assert len(frames) == TURNS
+    assert [last for last, _ in frames] == [""] * (TURNS - 1) + [" last"]
+    starts = [float(delay) for _, delay in frames]
+    assert starts[0] == -SECONDS
+    assert starts == sorted(starts)
+    assert "times as large as they are" in drawn, "its angles are small"
+    found = Attitude.of(Scene.of(simulate(instance.load("gravity-gradient"), None)))
+    assert found is not None
+    ends = re.findall(r'<path d="M[-.\d ]+L([-.\d ]+)" class="axis-3">', drawn)
+    view = from_aside(("", "", "")).axes @ found.turns[-1] @ np.array([0.0, 0.0, 1.15])
+    last = [float(value) for value in ends[-1].split()]
+    np.testing.assert_allclose(last, [0.5 * SIDE + 0.3 * SIDE * view[0], 0.5 * SIDE - 0.3 * SIDE * view[1]], atol=0.06)
 
 
 def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(

@@ -57,3 +57,26 @@ def test_only_the_side_that_is_far_out_is_said() -> None:
     values = RNG.normal(size=500)
     values[[3, 77]] = -2e5, -1e5
     assert "not shown: 2 of 500 rows far out, from −2 × 10⁵ to −1 × 10⁵" in drawn(values)[1]
+
+
+def grid(values: np.ndarray, name: str) -> object:
+    """The panel of a map of so many rows and columns."""
+    x, y = np.meshgrid(np.arange(float(values.shape[0])), np.arange(float(values.shape[1])), indexing="ij")
+    varied, quantities = {"a": x.ravel(), "b": y.ravel()}, {name: values.ravel()}
+    return figures(Numbers("", varied, quantities, ["converged"] * values.size, values.shape))["overview"].axes[0]
+
+
+def test_zero_is_white_on_maps_of_what_has_both_signs() -> None:
+    values = np.linspace(-1.0, 3.0, 30).reshape(6, 5)
+    (mesh,) = grid(values, "v").collections
+    assert mesh.get_clim() == (-3.0, 3.0)
+    (mesh,) = grid(values + 1.0, "v").collections
+    assert mesh.get_clim() == (0.0, 4.0)
+
+
+def test_maps_of_the_cost_have_contours() -> None:
+    values = np.add.outer(np.arange(6.0) ** 2, np.arange(5.0) ** 2)
+    _, lines = grid(values, "objective [s]").collections
+    assert len(lines.levels) > 3
+    assert len(grid(values, "v [s]").collections) == 1
+    assert len(grid(np.ones((6, 5)), "objective [s]").collections) == 1

@@ -1,4 +1,4 @@
-"""The motion in space as a small animation: SVG and CSS alone, with a pause, still where motion is not wanted."""
+"""The motion as a small animation: SVG and CSS alone, with a pause, still where motion is not wanted."""
 
 from __future__ import annotations
 
@@ -10,39 +10,67 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
+from satsym.report.page.attitudes import Attitude
 from satsym.report.plots.orbits.scenes import Orbit, box
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.views import from_aside
 from satsym.report.said import decimal
 from satsym.report.texts import Texts
 
 SIDE = 400.0
 """Of the picture, in its own units."""
 FRAMES = 120
+TURNS, SECONDS = 40, 10.0
+"""Pictures of a body that turns, and how long all of them take, as the style sheet has it."""
+BODY = 0.55, 0.4, 0.28
+"""Half the sides of the box."""
+_SIGNS = (-1.0, 1.0)
+_CORNERS = [np.array([x * BODY[0], y * BODY[1], z * BODY[2]]) for x in _SIGNS for y in _SIGNS for z in _SIGNS]
+EDGES = [
+    np.column_stack([one, other])
+    for k, one in enumerate(_CORNERS)
+    for other in _CORNERS[k + 1 :]
+    if np.count_nonzero(one != other) == 1
+]
+"""Of the box, shape (3, 2) each."""
 
 Placing: TypeAlias = Callable[[Array], Array]
 """From points of a plane to points of the picture, shapes (2, N)."""
 
 
 def motion(scene: Scene, texts: Texts) -> Markup:
-    """A figure; nothing where the model has no position in space."""
+    """A figure: the path in space, else the body that turns; nothing where states tell neither."""
     orbit = Orbit.of(scene)
     if orbit is None:
-        return Markup()
+        attitude = Attitude.of(scene)
+        return Markup() if attitude is None else _turning(scene, attitude, texts)
     view, known = orbit.views[0].axes, np.isfinite(orbit.path).all(axis=0)
+    around = orbit.around
     curves = {"reference": orbit.reference, "free": orbit.free, "path": orbit.path}
     seen = {name: view @ curve[:, known] for name, curve in curves.items() if curve is not None}
+    if around.other is not None:
+        seen["other"] = view @ around.other
+    origin = [np.zeros((2, 1))] if orbit.central else []
     to = _placing(
-        *box(seen["path"], [np.zeros((2, 1)), *(seen[name] for name in ("reference", "free") if name in seen)])
+        *box(seen["path"], [*origin, *(seen[name] for name in ("reference", "free", "other") if name in seen)])
     )
     drawn = {name: to(curve) for name, curve in seen.items()}
     evenly = {name: _evenly(scene.nodes[known], drawn[name]) for name in ("reference", "path") if name in drawn}
+    if around.moving is not None:
+        even = np.linspace(scene.nodes[0], scene.nodes[-1], around.moving.shape[1])
+        evenly["met"] = _evenly(even, to(view @ around.moving))
     x, y = to(np.zeros((2, 1)))[:, 0]
     inside = [
         tag("style", *(_keyframes(name, places) for name, places in evenly.items())),
         *(tag("path", d="M" + "L".join(_points(curve)), class_=name) for name, curve in drawn.items()),
-        tag("path", d=f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12", class_="origin"),
+        *([tag("path", d=f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12", class_="origin")] if orbit.central else []),
         *(_body(name, places) for name, places in evenly.items()),
     ]
+    return _figure(scene, inside, texts, "motion_about")
+
+
+def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more: str) -> Markup:
+    """The picture with a way to stop it, and what it shows."""
     span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit_text(scene.time_unit)}".strip()
     return tag(
         "figure",
@@ -55,9 +83,42 @@ def motion(scene: Scene, texts: Texts) -> Markup:
             role="img",
             aria_label=texts.get("page", "motion_alt", span=span),
         ),
-        tag("figcaption", texts.get("page", "motion_about", span=span)),
+        tag("figcaption", texts.get("page", about, span=span, **more)),
         class_="motion",
     )
+
+
+def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
+    """A box with its axes, one picture after the other; where nothing may move the last one stands."""
+    known = np.flatnonzero(np.isfinite(scene.x).all(axis=0))
+    ticks = np.linspace(scene.nodes[known[0]], scene.nodes[known[-1]], TURNS)
+    shown = known[np.searchsorted(scene.nodes[known], ticks).clip(0, len(known) - 1)]
+    view = from_aside(("1", "2", "3")).axes
+    half = 0.5 * SIDE
+
+    def placed(points: Array) -> Array:
+        return half + 0.3 * SIDE * np.array([[1.0], [-1.0]]) * (view @ points)
+
+    fixed = [_line(placed(np.column_stack([np.zeros(3), 1.4 * axis]))) for axis in np.eye(3)]
+    inside = [tag("path", d="".join(fixed), class_="free")]
+    for k, turn in enumerate(attitude.turns[shown]):
+        edges = "".join(_line(placed(turn @ edge)) for edge in EDGES)
+        axes = [
+            tag("path", d=_line(placed(turn @ np.column_stack([np.zeros(3), 1.15 * axis]))), class_=f"axis-{i}")
+            for i, axis in enumerate(np.eye(3), 1)
+        ]
+        delay = f"animation-delay:{SECONDS * (k / TURNS - 1.0):.3f}s"
+        inside.append(
+            tag("g", tag("path", d=edges), *axes, class_="frame last" if k == TURNS - 1 else "frame", style=delay)
+        )
+    magnified = decimal(number(attitude.magnified))
+    about = "turning_about" if attitude.magnified == 1.0 else "turning_magnified"
+    return _figure(scene, inside, texts, about, **({} if about == "turning_about" else {"times": magnified}))
+
+
+def _line(points: Array) -> str:
+    """A path through points of the picture."""
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.T)
 
 
 def _placing(low: Array, high: Array) -> Placing:

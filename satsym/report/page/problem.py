@@ -87,9 +87,13 @@ def _admissible(instance: Instance) -> list[tuple[str, ...]]:
 
 def _times(instance: Instance, texts: Texts) -> str:
     unit = unit_text(time_unit(instance.model.spec) or "1")
-    end = say("free") if instance.tf is None else f"{decimal(figure(instance.tf, DIGITS))} {unit}".rstrip()
-    begin = f"{decimal(figure(instance.t0, DIGITS))} {unit}".rstrip()
-    return texts.get("page", "between", begin=begin, end=end)
+
+    def said(time: float) -> str:
+        return f"{decimal(figure(time, DIGITS))} {unit}".rstrip()
+
+    if instance.tf is None:
+        return texts.get("page", "until_free", begin=said(instance.t0))
+    return texts.get("page", "between", begin=said(instance.t0), end=said(instance.tf))
 
 
 def _file(instance: Instance, values: Sequence[str], texts: Texts) -> Markup:

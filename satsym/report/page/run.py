@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from satsym.symbolic import Derivation
 
 
+WITHOUT_SCRIPTS = Markup('#explore, [href="#explore"] { display: none; }')
+"""Hides what scripts alone can show."""
+
+
 @dataclass(frozen=True)
 class Given:
     """What a run was called with on the command line.
@@ -110,6 +114,7 @@ def _rendered(
         tag("meta", name="color-scheme", content="light dark"),
         tag("title", title),
         tag("style", _file("html", "page.css"), _file("page", "report.css")),
+        tag("noscript", tag("style", WITHOUT_SCRIPTS)) if explored else Markup(),
     ]
     return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
 

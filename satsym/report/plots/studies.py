@@ -19,6 +19,7 @@ from satsym.report.results.studies import Numbers
 from satsym.report.said import decimal, message, say
 from satsym.report.said import numbers as numbers_said
 from satsym.status import Status
+from satsym.studies.rows import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +31,8 @@ SHORT = 1e3
 """Last value by first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
 """Of cells without a number, a grey for each way to end."""
+FEWEST, LEVELS = 4, 8
+"""Rows and columns from which a map of the cost has contours, and how many of them about."""
 OUTER = (0.01, 0.99)
 """Quantiles beyond which rows may lie far out."""
 
@@ -98,7 +101,10 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
     grids = [numbers.varied[labels[k]].reshape(numbers.shape) for k in varying]
     fixed = tuple(slice(None) if k in varying else count // 2 for k, count in enumerate(numbers.shape))
     x, y = grids[0][fixed], grids[1][fixed]
-    drawn = place.pcolormesh(x, y, np.ma.masked_invalid(table[fixed]), shading="nearest", cmap="viridis")
+    cells = np.ma.masked_invalid(table[fixed])
+    drawn = place.pcolormesh(x, y, cells, shading="nearest", **_colours(cells))
+    if name.startswith(Column.OBJECTIVE) and min(x.shape) >= FEWEST and np.ptp(cells.compressed()) > 0.0:
+        place.contour(x, y, cells, levels=LEVELS, colors="white", linewidths=0.8, alpha=0.8)
     status = np.array(numbers.status).reshape(numbers.shape)[fixed]
     lacking = _without_numbers(place, x, y, np.where(np.isfinite(table[fixed]), Status.CONVERGED.value, status))
     for axis, k, low in (("x", varying[0], x), ("y", varying[1], y)):
@@ -115,6 +121,15 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
     ]
     place.set_title(", ".join(others))
     return lacking
+
+
+def _colours(values: Any) -> dict[str, Any]:
+    """Of a map: from white to either side where values have both signs."""
+    known = values.compressed()
+    if not known.size or not known.min() < 0.0 < known.max():
+        return {"cmap": "viridis"}
+    largest = float(np.abs(known).max())
+    return {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
 
 
 def _without_numbers(place: Axes, x: Array, y: Array, status: NDArray[np.str_]) -> list[legend.Entry]:
