@@ -55,7 +55,8 @@ def motion(scene: Scene, texts: Texts) -> Markup:
         *box(seen["path"], [*origin, *(seen[name] for name in ("reference", "free", "other") if name in seen)])
     )
     drawn = {name: to(curve) for name, curve in seen.items()}
-    evenly = {name: _evenly(scene.nodes[known], drawn[name]) for name in ("reference", "path") if name in drawn}
+    moving: list[str] = [name for name in ("reference", "path") if name in drawn]
+    evenly: dict[str, Array] = {name: _evenly(scene.nodes[known], drawn[name]) for name in moving}
     if around.moving is not None:
         even = np.linspace(scene.nodes[0], scene.nodes[-1], around.moving.shape[1])
         evenly["met"] = _evenly(even, to(view @ around.moving))
