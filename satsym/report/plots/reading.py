@@ -140,7 +140,7 @@ def read(quantities: Sequence[Series]) -> list[Reading]:
     ]
 
 
-def within_reach(excess: float, width: float) -> float:
+def within_reach(excess: float, width: float, furthest: float = FURTHEST) -> float:
     """How much an axis may grow for what is drawn beside the main curve: for all of it, or if that is too far, a bit.
 
     Parameters
@@ -149,8 +149,10 @@ def within_reach(excess: float, width: float) -> float:
         What it would take to show all.
     width
         Of the main curve.
+    furthest
+        How many of these widths all is shown up to.
     """
-    return excess if excess <= FURTHEST * width else GLIMPSE * width
+    return excess if excess <= furthest * width else GLIMPSE * width
 
 
 def _datum(series: Series, size: float) -> tuple[Array | float, bool]:

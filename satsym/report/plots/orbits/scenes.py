@@ -14,7 +14,7 @@ from satsym.report.display import engineering, formula, labelled, length_scale, 
 from satsym.report.plots import coordinates, curves, legend, series, style
 from satsym.report.plots.orbits import surroundings
 from satsym.report.plots.orbits.surroundings import NOTHING, Surroundings
-from satsym.report.plots.reading import BURIED, ROUNDING, within_reach
+from satsym.report.plots.reading import BURIED, FURTHEST, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View, from_aside, views
 from satsym.report.said import say
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ARROWS = 32
 MOST_VIEWS = 4
+FREE = 1.5
+"""Up to so many widths of the path the uncontrolled motion is shown whole."""
 LENGTH = 0.4
 """Of the axes of space at most, relative to half the size of the picture."""
 LONGEST = 0.13
@@ -174,12 +176,11 @@ def entries(orbit: Orbit) -> list[legend.Entry]:
 
 def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     """Draw the path in a plane, at equal scales."""
-    seen, drawn = view.axes, [c for c in (orbit.reference, orbit.free) if c is not None]
-    curve, others = seen @ orbit.path, [seen @ c for c in drawn]
-    around = orbit.around
-    others += [seen @ c for c in (around.other, around.other_start) if c is not None]
+    seen, around = view.axes, orbit.around
+    curve = seen @ orbit.path
+    others = [seen @ c for c in (orbit.reference, around.other, around.other_start) if c is not None]
     fixed = [np.zeros((2, 1))] if orbit.central else [seen @ orbit.target] if orbit.target is not None else []
-    low, high = box(curve, [*others, *fixed])
+    low, high = box(curve, [*others, *fixed], None if orbit.free is None else seen @ orbit.free)
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     names = list(view.labels)
     datum: Array = np.zeros((2, 1))
@@ -327,16 +328,25 @@ def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
     return bool(0.0 < furthest < NEAR * np.linalg.norm(reference, axis=0).max())
 
 
-def box(curve: Array, others: list[Array]) -> tuple[Array, Array]:
-    """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable."""
+def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[Array, Array]:
+    """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable.
+
+    Parameters
+    ----------
+    curve, others
+        Shape (2 or 3, N) each.
+    free
+        The uncontrolled motion, of which less is shown.
+    """
     low, high = np.nanmin(curve, axis=1), np.nanmax(curve, axis=1)
     width = float((high - low).max()) or np.inf
     core = (low, high)
-    for other in others:
+    beside = [(other, FURTHEST) for other in others] + ([] if free is None else [(free, FREE)])
+    for other, furthest in beside:
         if np.isfinite(other).any(axis=1).all():
             below, above = core[0] - np.nanmin(other, axis=1), np.nanmax(other, axis=1) - core[1]
-            low = np.minimum(low, core[0] - [within_reach(excess, width) for excess in below])
-            high = np.maximum(high, core[1] + [within_reach(excess, width) for excess in above])
+            low = np.minimum(low, core[0] - [within_reach(excess, width, furthest) for excess in below])
+            high = np.maximum(high, core[1] + [within_reach(excess, width, furthest) for excess in above])
     room = 0.07 * (high - low)
     room[room == 0.0] = 0.07 * float((high - low).max()) or 1.0
     return low - room, high + room
