@@ -45,7 +45,8 @@ def main() -> int:
         sources = [BUILT / f"{name}.html" for name in PAGES.split()]
         for language in ("en", "id"):
             sources.append(Path(folder, f"report-{language}.html"))
-            command = [sys.executable, "-m", "satsym", "report", "soft-return", "--lang", language]
+            explored = ["--interactive"] if language == "en" else []
+            command = [sys.executable, "-m", "satsym", "report", "soft-return", "--lang", language, *explored]
             subprocess.run([*command, "--html", sources[-1]], check=True, capture_output=True)
         found = 0
         engine = started.chromium.launch(executable_path=browser, args=QUIET)

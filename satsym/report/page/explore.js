@@ -46,9 +46,9 @@
 
   const layout = (more) => ({
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: 12 },
-    showlegend: false, hovermode: "closest", dragmode: "pan", ...more,
+    separators: `${decimal} `, showlegend: false, hovermode: "closest", dragmode: "pan", ...more,
   });
-  const axis = (more) => ({ gridcolor: line, zerolinecolor: line, linecolor: line, ...more });
+  const axis = (more) => ({ gridcolor: line, zerolinecolor: line, linecolor: line, exponentformat: "power", minexponent: 5, ...more });
   const curve = (rows, name, look, mode = "lines") => ({
     x: rows[0], y: rows[1], ...(rows.length > 2 ? { z: rows[2], type: "scatter3d" } : {}), mode, name,
     hoverinfo: "skip", ...look,

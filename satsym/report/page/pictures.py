@@ -20,7 +20,10 @@ _COLOURS = {
     **dict.fromkeys((style.SOFT.lower(), style.GREY.lower(), "#777777", "#9a9a9a"), "faint"),
     **dict.fromkeys((style.FAINT.lower(), "#c4c4c4", "#c8c8c8"), "line"),
     "#ffffff": "card",
-    **{getattr(style, name).lower(): name.lower() for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "ALARM")},
+    **{
+        getattr(style, name).lower(): name.lower()
+        for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "ALARM", "GLOBE", "RIM")
+    },
 }
 """What each colour of a picture is on a page, where it depends on whether that is light or dark."""
 _COLOUR = re.compile("|".join(_COLOURS))

@@ -65,7 +65,8 @@ PASSED: dict[str, Any] = {
 }
 OTHER: dict[str, Any] = PASSED | {"marker": "^", "markersize": 8.0}
 CURVE: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "linestyle": "--", "zorder": 2.2}
-BODY: dict[str, Any] = {"facecolor": "#C9D8E6", "edgecolor": "#7D93A8", "linewidth": 0.8, "zorder": 1.5}
+GLOBE, RIM = "#C9D8E6", "#7D93A8"
+BODY: dict[str, Any] = {"facecolor": GLOBE, "edgecolor": RIM, "linewidth": 0.8, "zorder": 1.5}
 SWITCHING: dict[str, Any] = {"linewidth": 0.8, "linestyle": ":", "zorder": 1.8}
 ORIGIN: dict[str, Any] = {"marker": "+", "markersize": 11.0, "color": INK, "linestyle": "none", "markeredgewidth": 1.2}
 ARROW: dict[str, Any] = {
