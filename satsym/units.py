@@ -67,6 +67,20 @@ def parse_quantity(text: str, unit: str) -> float:
     return value
 
 
+def split_quantity(text: str) -> tuple[str, str]:
+    """The number of a quantity and its unit, each as it is written.
+
+    Raises
+    ------
+    BadInput
+        If the text does not begin with a number.
+    """
+    match = _NUMBER.match(text) if len(text) <= MAX_LENGTH else None
+    if match is None:
+        raise BadInput(f"{shown(text)} is not a number with a unit")
+    return match[1], text[match.end() :]
+
+
 def dimension(unit: str) -> Mapping[str, int | Fraction]:
     """Exponents of the base dimensions of a unit; empty for a plain number and for an angle.
 

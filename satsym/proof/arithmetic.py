@@ -1,0 +1,130 @@
+"""What generated code calls, on power series of balls; its comparisons are answered as an arc states, and noted.
+
+All numbers are power series, those of one term included, for python-flint is quick with these. A series that was made
+while ``ctx.cap`` was small stays short whatever it is combined with, so constants are made by :func:`constant`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+from flint import arb, arb_series, ctx
+
+Ball = Any
+"""An ``arb``: an interval of real numbers, by its midpoint and radius."""
+Series = Any
+"""An ``arb_series``: a power series whose coefficients are balls."""
+Key = tuple[str, int]
+"""The name of a generated function, and which of its comparisons it is."""
+
+LONGEST = 1000
+"""Terms that a constant may be multiplied with."""
+
+
+class BeyondProof(Exception):
+    """A feature that this proof says nothing about; the message names it."""
+
+
+class NotProved(Exception):
+    """A step of the proof fails; the message says which, where and what would help."""
+
+
+def constant(value: Any) -> Series:
+    """A ball as a series of one term, of no limited precision in the variable."""
+    cap, ctx.cap = ctx.cap, LONGEST
+    try:
+        return arb_series([arb(value)])
+    finally:
+        ctx.cap = cap
+
+
+def term(series: Any, k: int) -> Ball:
+    """Coefficient k of a series."""
+    return series[k]
+
+
+@dataclass
+class Answers:
+    """How comparisons of generated code come out along an arc, and the differences that must be positive for that.
+
+    Attributes
+    ----------
+    given
+        Whether the smaller side is the first one, by comparison. What is not there is read from midpoints and kept: no
+        proof, for each difference is noted and its sign shown by whoever claims anything.
+    noted
+        What must be positive for the answers to hold; ``None`` while nobody asks.
+    """
+
+    given: dict[Key, bool] = field(default_factory=dict)
+    noted: list[tuple[Key, Series]] | None = None
+
+    def notes(self, evaluate: Callable[[], Any]) -> list[tuple[Key, Series]]:
+        """What an evaluation compares."""
+        self.noted = []
+        try:
+            evaluate()
+            return self.noted
+        finally:
+            self.noted = None
+
+    def below(self, key: Key, a: Any, b: Any) -> bool:
+        """Whether a < b, where the two differ."""
+        for bound, side in ((a, True), (b, False)):
+            if isinstance(bound, float) and math.isinf(bound):  # where a control has no bound
+                return (bound < 0.0) == side
+        difference = b - a
+        answer = self.given.setdefault(key, bool(term(difference, 0).mid() > 0))
+        if self.noted is not None:
+            self.noted.append((key, difference if answer else -difference))
+        return answer
+
+    def magnitude(self, key: Key, a: Series) -> Series:
+        """The absolute value of a number that is not zero."""
+        return -a if self.below(key, a, constant(0)) else a
+
+
+def _atan2(y: Series, x: Series) -> Series:
+    """The angle, by the integral of its derivative."""
+    y, x = (v if hasattr(v, "sin") else constant(v) for v in (y, x))
+    for one in (y, x):
+        if hasattr(one, "angle"):  # of a jet
+            return one.angle(y, x)
+    rate = (x * y.derivative() - y * x.derivative()) / (x * x + y * y)
+    return rate.integral() + constant(arb.atan2(y[0], x[0]))
+
+
+def _hyperbolic(sign: int) -> Callable[[Series], Series]:
+    return lambda a: (a.exp() + (-a).exp() * constant(sign)) / constant(2)
+
+
+def mathematics() -> SimpleNamespace:
+    """What stands for the module ``math`` in generated code, with pi to the present precision."""
+    called = {name: _method(name) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "asin", "acos", "atan")}
+    sinh, cosh = _hyperbolic(-1), _hyperbolic(1)
+    return SimpleNamespace(
+        atan2=_atan2, sinh=sinh, cosh=cosh, tanh=lambda a: sinh(a) / cosh(a), pi=constant(arb.pi()), **called
+    )
+
+
+def _method(name: str) -> Callable[[Series], Series]:
+    def called(a: Any) -> Any:
+        if name == "sqrt" and isinstance(a, arb_series) and not any(v != 0 for v in a.coeffs()):
+            return a  # of what is zero all along
+        return getattr(a if hasattr(a, name) else constant(a), name)()
+
+    return called
+
+
+def value(number: Any) -> Ball:
+    """The first term of what generated code returns."""
+    return number[0] if isinstance(number, arb_series) else arb(number)
+
+
+def balls(numbers: Any) -> list[Ball]:
+    """The first terms."""
+    return [value(v) for v in numbers]

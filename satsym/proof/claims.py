@@ -1,0 +1,116 @@
+"""Hypotheses and theorems in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from satsym.instance.ends import Side
+from satsym.proof.arithmetic import NotProved
+from satsym.proof.ends import End
+from satsym.proof.field import Regularity
+from satsym.proof.laws import Held, Law, Throttled
+from satsym.proof.record import Hypothesis, Theorem
+from satsym.proof.signs import Shown
+from satsym.proof.statement import Statement
+
+FIELD = (
+    "field of extremals",
+    "A. A. Agrachev and Yu. L. Sachkov, Control Theory from the Geometric Viewpoint, Springer 2004, chapter 17",
+)
+BROKEN = (
+    "field of broken extremals",
+    "J. Noble and H. Schaettler, Sufficient conditions for relative minima of broken extremals in optimal control "
+    "theory, Journal of Mathematical Analysis and Applications 269 (2002) 98-128",
+)
+CONVEX = (
+    "convex problem",
+    "O. L. Mangasarian, Sufficient conditions for the optimal control of nonlinear systems, SIAM Journal on Control 4 "
+    "(1966) 139-152",
+)
+
+
+def of_signs(shown: Shown) -> Hypothesis:
+    """That laws are the best ones along their arcs."""
+    if not shown.conditions:
+        return Hypothesis("no bound of the controls is met", "none is stated", "0 signs")
+    return Hypothesis(
+        "the law of each arc holds all along it, and each change of law has a slope",
+        "signs of Taylor series on every step, by bisection",
+        f"{shown.conditions} signs, {shown.crossings} changes of law",
+    )
+
+
+def of_minimiser(reason: str) -> Hypothesis:
+    """That H has one minimiser."""
+    return Hypothesis("the minimiser of H is unique", reason, "on every step")
+
+
+def of_ends(statement: Statement, end: End) -> Hypothesis:
+    """That ends of ranges push, and that others are not met.
+
+    Raises
+    ------
+    NotProved
+        If one does not.
+    """
+    n, s = end.law.n, end.terminal[1]
+    names = statement.spec.state_names
+    for i, target in statement.targets.items():
+        if target.side is None:
+            continue
+        push = end.z[n + i] - s[i]
+        if not (push > 0 if target.side is Side.UPPER else push < 0):
+            raise NotProved(f"the multiplier of the range of {names[i]} at the end is not shown to be positive")
+    for i, (low, high) in statement.open_ranges.items():
+        if not (end.z[i] > low and end.z[i] < high):
+            raise NotProved(f"{names[i]} is not shown to end inside its range")
+    ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
+    return Hypothesis(
+        "the conditions at the end hold, strictly where they are inequalities",
+        "by the equations of the extremal",
+        f"{len(statement.targets)} states given, {n - len(statement.targets)} free, {ranges} ranges",
+    )
+
+
+def of_field(found: Regularity) -> Hypothesis:
+    """That there is no focal point."""
+    jumps = f"; smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}" if found.ratios else ""
+    return Hypothesis(
+        "a field of extremals about this one is regular on the closed interval, and its form at the end positive",
+        f"W(t0) = {found.start}; no conjugate or focal point",
+        f"{found.pieces} pieces{jumps}",
+    )
+
+
+def theorem(statement: Statement, laws: Sequence[Law], convexity: str) -> Theorem:
+    """What follows where all hypotheses were shown."""
+    jumping = len(laws) > 1 and isinstance(laws[0], Held | Throttled)
+    name, source = BROKEN if jumping else FIELD
+    time = " and whose final time is near" if statement.tf is None else ""
+    least = "a maximum of the objective" if statement.spec.maximise else "a minimum of the cost"
+    claims = (
+        "There is exactly one extremal of this structure within unique_within of the enclosures.",
+        f"It is strictly {least} among all admissible motions whose states stay near it{time}, however different the "
+        "controls are (a strict strong local optimum).",
+    )
+    if convexity:
+        name, source = f"{name}; {CONVEX[0]}", f"{source}; {CONVEX[1]}"
+        claims = (*claims, f"It is global: {convexity}.")
+    return Theorem(name, source, claims)
+
+
+def scope(statement: Statement) -> str:
+    """Which problem is proved, and what is not claimed."""
+    path = statement.source.path
+    numbers = (
+        f"decimals of {path} and of the generated module are exact rational numbers, degrees are parts of pi"
+        if path
+        else "numbers given in Python are the binary fractions that they are, defaults of the model exact decimals"
+    )
+    angles = statement.case.solver.free_angles
+    turns = f" Final angles ({', '.join(angles)}) are those of this number of turns." if angles else ""
+    return (
+        f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers}. Derivatives and laws "
+        f"of the generated kernel were compared with its motion and costs at random points.{turns} Near means within "
+        "some distance that the theorem does not give."
+    )

@@ -1,0 +1,119 @@
+"""From balls about an extremal to the numbers of the record."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import accumulate
+from typing import Any
+
+from flint import arb, arb_mat, ctx
+
+from satsym.proof.arithmetic import Ball, value
+from satsym.proof.ends import End
+from satsym.proof.jets import derivatives, variables
+from satsym.proof.laws import Law
+from satsym.proof.record import Enclosure, Hypothesis, Node, Proof
+from satsym.proof.shooting import Box, Inclusion, Segment, Shooting
+from satsym.proof.taylor import from_zero
+
+MOST_NODES = 9
+"""Of the record; more would say nothing more."""
+
+
+def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius: float) -> Proof:
+    """The record with what is known once an extremal exists."""
+    here = shooting.unknowns(box.nodes, box.lengths)
+    nodes, lengths = shooting.placed(
+        [a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths
+    )
+    statement, law = shooting.statement, shooting.arcs[0].law
+    states, n, digits = statement.spec.state_names, law.n, record.digits
+
+    def row(values: list[Ball]) -> dict[str, Enclosure]:
+        return {name: Enclosure.of(v, digits) for name, v in zip(states, values, strict=True)}
+
+    times, fractions = _times(shooting, lengths), sum(arc.segments for arc in shooting.arcs)
+    kept = sorted({round(k * fractions / (MOST_NODES - 1)) for k in range(MOST_NODES)})
+    final = shooting.final_time(lengths)
+    ends = [sum(lengths[: j + 1], statement.t0) for j in range(len(lengths) - 1)]
+    cost = _cost(shooting, box, last, _share(shooting, box, last))
+    end = End.at(statement, shooting.arcs[-1].law, nodes[-1], final)
+    objective = cost + end.terminal[0]
+    shown = Hypothesis(
+        "an extremal exists, and only one near by",
+        f"Krawczyk's operator maps a box of {len(here)} unknowns into itself ({fractions} segments, "
+        f"{sum(len(s.steps) for arc in last.passed.segments for s in arc)} steps)",
+        f"radius {radius:.0e} of the sizes",
+    )
+    return replace(
+        record,
+        hypotheses=(*record.hypotheses, shown),
+        costate_initial=row(nodes[0][n : 2 * n]),
+        nodes=tuple(
+            Node(Enclosure.of(times[k], digits), row(nodes[k][:n]), row(nodes[k][n : 2 * n])) for k in kept
+        ),
+        x_final=row(nodes[-1][:n]),
+        t_final=Enclosure.of(final, digits),
+        objective=Enclosure.of(-objective if statement.spec.maximise else objective, digits),
+        switching_times=tuple(Enclosure.of(v, digits) for v in ends),
+        unique_within=radius,
+    )
+
+
+def _times(shooting: Shooting, lengths: list[Ball]) -> list[Ball]:
+    """When the nodes are."""
+    found = [shooting.statement.t0]
+    begins = accumulate(lengths, initial=shooting.statement.t0)
+    for arc, begin, length in zip(shooting.arcs, begins, lengths, strict=False):
+        found += [begin + length * arb(f) for f in arc.fractions[1:]]
+    return found
+
+
+def _share(shooting: Shooting, box: Box, last: Inclusion) -> Ball:
+    """How much of a box its image takes: a factor that, times the box, covers the image."""
+    around = shooting.unknowns(box.around, box.lengths_around)
+    parts = [(v.abs_upper() / w.rad()).abs_upper() for v, w in zip(last.image, around, strict=True) if w.rad() > 0]
+    return max(parts, key=lambda v: float(v.mid()), default=arb(0))
+
+
+def _cost(shooting: Shooting, box: Box, last: Inclusion, share: Ball) -> Ball:
+    """The running cost of the extremal: that of the midpoint's motion, and how far another one's can be from it."""
+    total, k = arb(0), 0
+    for j, (arc, segments) in enumerate(zip(shooting.arcs, last.passed.segments, strict=True)):
+        for segment in segments:
+            slack = box.lengths_around[j] * share
+            total += _along(arc.law, segment, share, box.lengths[j] * (arb(arc.fractions[k + 1]) - arb(arc.fractions[k])), slack)
+            k += 1
+        k = 0
+    return total
+
+
+def _along(law: Law, segment: Segment, share: Ball, span: Ball, slack: Ball) -> Ball:
+    total, left = arb(0), span
+    for number, (step, deviation, error) in enumerate(
+        zip(segment.steps, segment.deviations, segment.errors, strict=True)
+    ):
+        last = number == len(segment.steps) - 1
+        total += step.cost(left if last else step.h)
+        slopes = _cost_gradient(law, step.range)
+        around = [share * d + e for d, e in zip(deviation, error, strict=True)]
+        moved = (step.derivative(from_zero(step.h)) * arb_mat(len(around), 1, around)).entries()
+        total += arb(0, sum((abs(g) * abs(v) for g, v in zip(slopes, moved, strict=True)), arb(0)).abs_upper()
+                     * step.h.abs_upper())
+        if last:
+            ctx.cap = 1
+            total += arb(0, (value(law.cost([_one(v) for v in step.range])) * slack).abs_upper())
+        left = left - step.h
+    return total
+
+
+def _cost_gradient(law: Law, z: list[Ball]) -> list[Ball]:
+    """Derivatives of the running cost under the law, over a ball."""
+    given = variables(z)
+    return derivatives(lambda: law.cost(given), len(z))[1]
+
+
+def _one(v: Any) -> Any:
+    from flint import arb_series
+
+    return arb_series([v])

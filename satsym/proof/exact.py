@@ -1,0 +1,191 @@
+"""Numbers as they were written: decimals are rational numbers, quantities keep their units, degrees are parts of pi."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from flint import arb
+
+from satsym import units
+from satsym.instance import Instance, files
+from satsym.proof.arithmetic import Ball, BeyondProof
+from satsym.proof.kernel import exactly
+from satsym.status import BadInput
+from satsym.wording import printable
+
+_ANGLES = {
+    **dict.fromkeys(("rad", "radian", "radians"), None),
+    **dict.fromkeys(("deg", "degree", "degrees"), Fraction(1, 180)),
+    **dict.fromkeys(("turn", "turns", "revolution"), Fraction(2)),
+    **dict.fromkeys(("arcmin", "arcminute"), Fraction(1, 10800)),
+    **dict.fromkeys(("arcsec", "arcsecond"), Fraction(1, 648000)),
+}
+"""Units of angles, in pi; radians are plain numbers."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number that the problem states.
+
+    Attributes
+    ----------
+    rational
+        The number, or what multiplies a power of pi.
+    turns
+        That power.
+    stated
+        As the record of a proof shows it.
+    """
+
+    rational: Fraction
+    turns: int
+    stated: str
+
+    @property
+    def ball(self) -> Ball:
+        """It, to the present precision."""
+        return exactly(self.rational) * arb.pi() ** self.turns
+
+
+class Source:
+    """The numbers of an instance, each as the text of its file has it.
+
+    Where the instance has another number than its file, that is the number: the binary fraction that a float is. So is
+    every number of an instance that was made in Python.
+    """
+
+    def __init__(self, instance: Instance) -> None:
+        self._tree: Mapping[str, Any] = {}
+        self.path = ""
+        if instance.path.is_file():
+            try:
+                self._tree = tomllib.loads(files.text(instance.path), parse_float=Fraction)
+                self.path = instance.path.name
+            except (tomllib.TOMLDecodeError, ValueError, BadInput):
+                self._tree = {}
+        self.stated: dict[str, str] = {}
+        """What was read, by name: the decimal, the quantity, or the binary fraction."""
+
+    def number(self, value: float, unit: str, *key: str | int) -> Ball:
+        """The number of an instance that its file has under these keys.
+
+        Parameters
+        ----------
+        value
+            What solvers compute with.
+        unit
+            Of `value`, where a text may carry another one.
+        """
+        written: Any = self._tree
+        for part in key:
+            try:
+                written = written[part]
+            except (KeyError, IndexError, TypeError):
+                written = None
+                break
+        found = _read(written, unit, value) or _dyadic(value)
+        self.stated[_named(key)] = found.stated
+        return found.ball
+
+    def default(self, value: float, *key: str) -> Ball:
+        """The default of a parameter, whose decimal the generated module has."""
+        found = Number(Fraction(repr(float(value))), 0, repr(float(value)))
+        self.stated[_named(key)] = found.stated
+        return found.ball
+
+    def gives(self, *key: str) -> bool:
+        """Whether the file says something under these keys."""
+        written: Any = self._tree
+        for part in key:
+            if not isinstance(written, Mapping) or part not in written:
+                return False
+            written = written[part]
+        return True
+
+
+def _named(key: tuple[str | int, ...]) -> str:
+    return ".".join(("lower", "upper")[part] if isinstance(part, int) else part for part in key)
+
+
+def _read(written: Any, unit: str, value: float) -> Number | None:
+    """What a file has, if the number of the instance is that."""
+    if isinstance(written, bool):
+        return None
+    if isinstance(written, int | Fraction):
+        return Number(Fraction(written), 0, _decimal(Fraction(written))) if float(written) == value else None
+    if not isinstance(written, str):
+        return None
+    try:
+        if units.parse_quantity(written, unit) != value:
+            return None
+        number, given = units.split_quantity(written)
+    except BadInput:
+        return None
+    factor, turns = _factor(given, unit)
+    return Number(Fraction(number) * factor, turns, printable(written))
+
+
+def _decimal(number: Fraction) -> str:
+    """A decimal fraction as one writes it."""
+    places = 0
+    while (number * 10**places).denominator != 1 and places < 400:
+        places += 1
+    digits = f"{abs(int(number * 10**places)):0{places + 1}d}"
+    sign = "-" if number < 0 else ""
+    return sign + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)
+
+
+def _dyadic(value: float) -> Number:
+    exact = Fraction(value)
+    whole = exact == Fraction(repr(value))
+    return Number(exact, 0, repr(value) if whole else f"{value!r} as a binary fraction, {value.hex()}")
+
+
+def _factor(given: str, wanted: str) -> tuple[Fraction, int]:
+    """How many of a unit another one is: a rational number, times a power of pi."""
+    factor, turns = Fraction(1), 0
+    for unit, sign in ((given, 1), (wanted, -1)):
+        for name, exponent in units.factors(unit).items():
+            n = sign * exponent
+            if name in _ANGLES:
+                half = _ANGLES[name]
+                factor, turns = (factor * half**n, turns + n) if half else (factor, turns)
+            else:
+                factor *= _in_base_units(name) ** n
+    return factor, turns
+
+
+@cache
+def _in_base_units(name: str) -> Fraction:
+    """How many base units a unit of one name is, exactly.
+
+    Raises
+    ------
+    BeyondProof
+        If it is not defined by a rational number.
+    """
+    import pint
+
+    registry: Any = _registry()
+    try:
+        found = registry.Quantity(Fraction(1), name).to_base_units()
+    except (pint.PintError, ArithmeticError, TypeError):
+        raise BeyondProof(f"a number in {printable(name)}") from None
+    if not isinstance(found.magnitude, Fraction) or "radian" in str(found.units):
+        raise BeyondProof(f"a number in {printable(name)}")
+    if not math.isclose(float(found.magnitude), units.in_base_units(name), rel_tol=1e-12):
+        raise BeyondProof(f"a number in {printable(name)}")
+    return found.magnitude
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Fraction)

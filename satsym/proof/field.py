@@ -1,0 +1,190 @@
+"""The second-order condition: a field of extremals about the one that was found has no focal point.
+
+The field starts from a symmetric matrix W(t0) of one's choice, Lambda = W X with X = 1. Where X stays regular on the
+closed interval, with a determinant that keeps its sign where controls jump, the costates of the field are the gradient
+of a solution of Hamilton-Jacobi's equation near the extremal. At the end of each segment W is replaced by an exact
+matrix that is larger: solutions of Riccati's equation keep their order, for H is concave in the costates, so that what
+is shown for the larger one holds for the field as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat, arb_series, ctx
+
+from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.ends import positive
+from satsym.proof.laws import Held, Law, Throttled, gradient
+from satsym.proof.shooting import Pass, Segment, Shooting
+from satsym.proof.taylor import Matrix, Step, rates, unit
+
+DEEPEST = 10
+"""How often a step is halved to show that X is regular on it."""
+
+
+@dataclass(frozen=True)
+class Regularity:
+    """A field that was shown to be regular.
+
+    Attributes
+    ----------
+    start
+        How W(t0) was chosen.
+    pieces
+        Into how many the interval fell, on each of which X was shown to be regular.
+    ratios
+        Of the determinants of X after and before each jump of the controls; all are positive.
+    """
+
+    start: str
+    pieces: int
+    ratios: tuple[Ball, ...]
+
+
+def regular_field(shooting: Shooting, passed: Pass) -> Regularity:
+    """Find a field that is regular, with a form at the end that is positive.
+
+    Raises
+    ------
+    NotProved
+        If no choice of W(t0) gives one.
+    """
+    failure = ""
+    for called, w in _starts(shooting, passed):
+        try:
+            return _followed(shooting, passed, w, called)
+        except NotProved as error:
+            failure = failure or str(error)
+            if "end" not in failure:
+                failure = str(error)
+    raise NotProved(failure)
+
+
+def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regularity:
+    pieces, ratios, time = 0, [], shooting.statement.t0
+    for j, (arc, segments) in enumerate(zip(shooting.arcs, passed.segments, strict=True)):
+        if j:
+            w, ratio = _across(shooting.arcs[j - 1].law, arc.law, passed.segments[j - 1][-1], w, time)
+            ratios += [ratio] if ratio is not None else []
+        for segment in segments:
+            w, taken = _along(arc.law.n, segment, w, shooting.sizes, time)
+            pieces += taken
+            time += sum((step.h for step in segment.steps), arb(0))
+    form = passed.end.second_variation(w)
+    if form.nrows() and not positive(form):
+        raise NotProved("the second variation at the end is not shown to be positive (a focal point of the end)")
+    return Regularity(called, pieces, tuple(ratios))
+
+
+def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ball) -> tuple[Matrix, int]:
+    """W at the end of a segment, or an exact matrix above it, and the pieces that it took."""
+    x, lam, pieces = unit(n), w, 0
+    for step in segment.steps:
+        start = _ratio(x, lam)
+        taken = _regular(step, start, sizes[:n], 0.0, 1.0, DEEPEST)
+        if not taken:
+            raise NotProved(f"X of the field is not shown to be regular near t = {time.mid().str(6, radius=False)} (a conjugate point?)")
+        pieces, time = pieces + taken, time + step.h
+        v = step.derivative()
+        x, lam = (
+            _block(v, 0, 0, n) * x + _block(v, 0, n, n) * lam,
+            _block(v, n, 0, n) * x + _block(v, n, n, n) * lam,
+        )
+    return _above(_ratio(x, lam), sizes[:n]), pieces
+
+
+def _ratio(x: Matrix, lam: Matrix) -> Matrix:
+    """W = Lambda X^-1, which is symmetric."""
+    try:
+        w = lam * x.inv()
+    except ZeroDivisionError:
+        raise NotProved("X of the field is not shown to be regular (a conjugate point?)") from None
+    return (w + w.transpose()) * (arb(1) / 2)
+
+
+def _above(w: Matrix, sizes: Sequence[float]) -> Matrix:
+    """An exact symmetric matrix that exceeds all of a ball matrix, by a diagonal that dominates its radii."""
+    n = w.nrows()
+    found = w.mid()
+    for i in range(n):
+        found[i, i] += sum((w[i, j].rad() * (sizes[j] / sizes[i]) for j in range(n)), arb(0)) * 1.01 + arb(2) ** -400
+    return found.mid()
+
+
+def _regular(step: Step, w: Matrix, sizes: Sequence[float], low: float, high: float, depth: int) -> int:
+    """Into how many pieces a part of a step falls on each of which V_xx + V_xl W is regular; 0 where it is not shown."""
+    n = w.nrows()
+    v = step.derivative(arb(low).union(arb(high)) * step.h)
+    x = _block(v, 0, 0, n) + _block(v, 0, n, n) * w
+    try:
+        off = unit(n) - x.mid().inv().mid() * x
+        if all(sum((abs(off[i, j]) * sizes[j] for j in range(n)), arb(0)) < sizes[i] for i in range(n)):
+            return 1
+    except ZeroDivisionError:
+        pass
+    if depth == 0:
+        return 0
+    middle = (low + high) / 2
+    left = _regular(step, w, sizes, low, middle, depth - 1)
+    right = _regular(step, w, sizes, middle, high, depth - 1) if left else 0
+    return left + right if right else 0
+
+
+def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -> tuple[Matrix, Ball | None]:
+    """W behind the end of an arc. Where the motion jumps there, X does, and keeps the sign of its determinant."""
+    if not isinstance(law, Held | Throttled):
+        return w, None
+    n = law.n
+    there = segment.steps[-1].reached(segment.steps[-1].h)
+    before, after = rates(law, there), rates(following, there)
+    jump = [b - a for a, b in zip(before, after, strict=True)]
+    slopes = gradient(law, law.leaving(following), there)
+    speed = sum((g * v for g, v in zip(slopes, before, strict=True)), arb(0))
+    if not speed < 0:
+        raise NotProved("a switching function vanishes without a slope")
+    along = [
+        slopes[j] + sum((slopes[n + i] * w[i, j] for i in range(n)), arb(0)) for j in range(n)
+    ]  # of the condition by the field's states
+    ratio = 1 + sum((a * v for a, v in zip(along, jump[:n], strict=True)), arb(0)) / speed
+    if not ratio > 0:
+        raise NotProved(
+            f"det X of the field changes its sign at the switch near t = {time.mid().str(6, radius=False)} (a conjugate point?)"
+        )
+    x = arb_mat(n, n, [jump[i] * along[j] / speed + int(i == j) for i in range(n) for j in range(n)])
+    lam = arb_mat(n, n, [jump[n + i] * along[j] / speed + w[i, j] for i in range(n) for j in range(n)])
+    return _ratio(x, lam), ratio
+
+
+def _block(a: Matrix, i: int, j: int, n: int) -> Matrix:
+    return arb_mat(n, n, [a[i + r, j + c] for r in range(n) for c in range(n)])
+
+
+def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
+    """Matrices W(t0) to try: any symmetric one will do. Negative ones are safe, small ones lose no digits."""
+    n, sizes = shooting.arcs[0].law.n, shooting.sizes
+    scale = [b / a for a, b in zip(sizes[:n], sizes[n : 2 * n], strict=True)]
+    least = max(scale) * 1e-6
+    for kappa in (1.0, 10.0, 100.0, 1e3, 1e4, 0.1, 0.0, 1e5, 1e6):
+        yield f"-{kappa:g} diag(lambda / x)", _diagonal([-kappa * max(v, least) for v in scale])
+    yield from _later(shooting, passed)
+
+
+def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
+    """Diagonals of W, at later times, of the field of all extremals from the initial state."""
+    n, flow = shooting.arcs[0].law.n, unit(shooting.arcs[0].law.m)
+    for k, segment in enumerate(passed.segments[0][:4]):
+        flow = (segment.derivative * flow).mid()
+        try:
+            w = _block(flow, n, n, n) * _block(flow, 0, n, n).inv()
+        except ZeroDivisionError:
+            continue
+        for kappa in (1, 8, 64):
+            yield f"-{kappa} diag W({k + 1})", _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)])
+
+
+def _diagonal(entries: Sequence[float]) -> Matrix:
+    n = len(entries)
+    return arb_mat(n, n, [arb(entries[i]) if i == j else arb(0) for i in range(n) for j in range(n)])

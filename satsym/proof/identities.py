@@ -1,0 +1,259 @@
+"""Whether a generated kernel is what it says: its laws and derivatives, against its own motion and costs.
+
+The problem is what ``dynamics``, ``running_cost`` and ``terminal_cost`` say. From these alone first and second
+derivatives of H are computed, by :mod:`satsym.proof.jets`, at random points near the extremal, and compared with what
+the proof uses of the kernel besides. Both sides are analytic functions, with the comparisons of the arc answered as
+they are along it: two that differ anywhere differ at almost every point.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from flint import arb, ctx
+
+from satsym.proof.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
+from satsym.proof.jets import Jet, derivatives, variables
+from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.statement import Statement
+
+POINTS = 3
+SEED = 20260
+SPREAD = 0.03
+"""How far from the extremal the points are, relative to the sizes."""
+AGREED = 1e-25
+"""Largest difference of what is equal, relative to the sizes of both."""
+
+
+def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], sizes: Sequence[float]) -> None:
+    """Compare all that is used of a kernel along an arc with what its motion and costs say.
+
+    Raises
+    ------
+    NotProved
+        If something differs.
+    BeyondProof
+        If H depends on the controls in a way that is not recognised.
+    """
+    drawn = random.Random(SEED)
+    for _ in range(POINTS):
+        node = drawn.choice(list(nodes))
+        z = [arb(float(v.mid()) + SPREAD * s * drawn.uniform(-1, 1)) for v, s in zip(node, sizes, strict=True)]
+        ctx.cap = 1
+        point = _Point(statement, law, z, drawn)
+        point.motion()
+        point.jacobian()
+        if isinstance(law, Held):
+            point.switching()
+        elif isinstance(law, Throttled):
+            point.throttle()
+        else:
+            assert isinstance(law, Regular)
+            _SETS[law.kernel.spec.control_set or ""](point)
+
+
+class _Point:
+    """A point at which a kernel is examined."""
+
+    def __init__(self, statement: Statement, law: Law, z: list[Ball], drawn: random.Random) -> None:
+        self.statement, self.law, self.z, self.drawn = statement, law, z, drawn
+        self.n, self.p, self.kernel = law.n, law.p, law.kernel
+        self.series = [constant(v) for v in z]
+        self.t, self.x, self.lam = law.parts(self.series)
+        self.u = [constant(value(v)) for v in law.control(self.series)]
+
+    def hamiltonian(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any]) -> Any:
+        """H, from the motion and the running cost alone."""
+        total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
+        for a, b in zip(lam, self.kernel.dynamics(t, x, u, self.p), strict=True):
+            total = a * b + total
+        return total
+
+    def by_controls(self, u: Sequence[Any]) -> tuple[Ball, list[Ball], list[list[Ball]]]:
+        """H, H_u and H_uu at other controls."""
+        given = variables([value(v) for v in u])
+        return self.elsewhere(lambda: derivatives(lambda: self.hamiltonian(self.t, self.x, given, self.lam), len(given)))
+
+    def elsewhere(self, evaluate: Callable[[], Any]) -> Any:
+        """Evaluate with comparisons that come out as they do."""
+        before, self.kernel.answers = self.kernel.answers, Answers()
+        try:
+            return evaluate()
+        finally:
+            self.kernel.answers = before
+
+    def random_controls(self) -> list[Any]:
+        return [constant(arb(self.drawn.uniform(-2, 2))) for _ in self.u]
+
+    def equal(self, a: Sequence[Any], b: Sequence[Any], what: str) -> None:
+        a, b = [value(v) for v in a], [value(v) for v in b]
+        size = max((float(abs(v).mid()) for v in (*a, *b)), default=1.0)
+        if not all(abs(v - w) <= AGREED * max(size, 1e-30) for v, w in zip(a, b, strict=True)):
+            raise NotProved(f"the kernel contradicts its own motion and costs: {what}")
+
+    def motion(self) -> None:
+        """Rates are (f, -H_x) under the law's controls."""
+        states = variables([value(v) for v in self.x])
+        answers = self.kernel.answers
+
+        def along() -> Any:
+            return derivatives(lambda: self.hamiltonian(self.t, states, self.u, self.lam), self.n)
+
+        _, h_x, _ = self.elsewhere(along)
+        self.kernel.answers = answers
+        found = self.law.rates(self.series)
+        self.equal(found[: self.n], self.kernel.dynamics(self.t, self.x, self.u, self.p), "rates of the states")
+        self.equal(found[self.n : 2 * self.n], [-v for v in h_x], "rates of the costates")
+
+    def jacobian(self) -> None:
+        """Derivatives of the rates are these."""
+        m = self.law.m
+        given = variables(self.z)
+        rates = [_first(v, m) for v in self.law.rates(given)]
+        found = self.law.jacobian(self.series)
+        for i, row in enumerate(rates):
+            self.equal(found[i * m : i * m + m], row, "derivatives of the rates")
+
+    def switching(self) -> None:
+        """H is linear in the controls and their magnitudes, by the switching functions and the weights."""
+        slopes = self.kernel.switching_function(self.t, self.x, self.lam, self.p)
+        weights = self.kernel.magnitude_weight(self.t, self.x, self.lam, self.p)
+        zero = self.by_controls([constant(arb("1e-60")) for _ in self.u])[0]
+        for _ in range(2):
+            u = self.random_controls()
+            total = zero
+            for v, slope, weight in zip(u, slopes, weights, strict=True):
+                total += value(slope) * value(v) + value(weight) * abs(value(v))
+            self.equal([self.by_controls(u)[0]], [total], "H by the controls")
+
+    def throttle(self) -> None:
+        """H is linear in a vector and its norm; the law is its best direction at the largest norm, or none."""
+        one, none = arb(1), arb("1e-60")
+        at = lambda *u: self.by_controls([constant(v) for v in u])[0]  # noqa: E731 - a name for what is evaluated
+        zero = at(none, none)
+        pairs = [(at(one, none), at(-one, none)), (at(none, one), at(none, -one))]
+        a = [(v - w) / 2 for v, w in pairs]
+        q = (pairs[0][0] + pairs[0][1]) / 2 - zero
+        for _ in range(2):
+            u = [value(v) for v in self.random_controls()]
+            norm = (u[0] * u[0] + u[1] * u[1]).sqrt()
+            self.equal([at(*u)], [zero + q * norm + a[0] * u[0] + a[1] * u[1]], "H by the controls")
+        size = (a[0] * a[0] + a[1] * a[1]).sqrt()
+        law = self.law
+        assert isinstance(law, Throttled)
+        slope = self.kernel.throttle_slope(self.t, self.x, self.lam, self.p, law.bounds)
+        self.equal(slope, [q - size], "the slope of the throttle")
+        largest = arb(0) if law.off else value(law.bounds[0])
+        best = [arb(0) - largest * v / size for v in a]
+        self.equal([value(v) + 1 for v in self.u], [v + 1 for v in best], "the controls")
+
+    def quadratic(self) -> tuple[list[Ball], list[list[Ball]]]:
+        """H_u under the law, and H_uu, which does not depend on the controls."""
+        m, hessian = len(self.u), self.kernel.control_hessian
+        try:
+            stated = [value(v) for v in hessian(self.t, self.x, [OPAQUE] * m, self.lam, self.p)]
+        except TypeError:
+            raise BeyondProof("a Hamiltonian that is not quadratic in the controls") from None
+        for u in (self.u, self.random_controls()):
+            _, slopes, found = self.by_controls(u)
+            self.equal([v for row in found for v in row], stated, "H_uu")
+        _, slopes, found = self.by_controls(self.u)
+        return slopes, found
+
+    def conditions(self) -> list[Ball]:
+        """What is positive along the arc, here."""
+        return [value(v) for _, v in self.law.conditions(self.series)]
+
+    def among(self, wanted: Ball, found: Sequence[Ball], what: str) -> None:
+        """A number that must be positive is among those that are shown to be."""
+        size = max(abs(float(wanted.mid())), 1e-30)
+        if not any(abs(wanted - v) <= AGREED * size * 1e3 for v in found):
+            raise NotProved(f"the kernel's law does not keep to {what}")
+
+    def free(self) -> None:
+        """Free controls are where H_u vanishes."""
+        slopes, _ = self.quadratic()
+        self.vanishing(slopes)
+
+    def vanishing(self, slopes: Sequence[Ball]) -> None:
+        """H_u vanishes, beside what it is elsewhere."""
+        scale = [abs(v) + 1e-30 for v in self.by_controls(self.random_controls())[1]]
+        self.equal([s / v + 1 for s, v in zip(slopes, scale, strict=True)], [arb(1)] * len(slopes), "H_u under the law")
+
+    def box(self) -> None:
+        """Each control is where H_u vanishes, within its bounds, or at a bound to which H falls."""
+        slopes, hessian = self.quadratic()
+        m, shown = len(slopes), self.conditions()
+        if any(hessian[i][j] != 0 for i in range(m) for j in range(m) if i != j):
+            raise BeyondProof("bounded controls that H couples")
+        lower, upper = self.statement.lower, self.statement.upper
+        for i, u in enumerate(self.u):
+            if not isinstance(lower[i], float) and value(u).overlaps(lower[i]):
+                self.among(slopes[i] / hessian[i][i], shown, "the lower bound of a control")
+            elif not isinstance(upper[i], float) and value(u).overlaps(upper[i]):
+                self.among(-slopes[i] / hessian[i][i], shown, "the upper bound of a control")
+            else:
+                self.vanishing([slopes[i] if j == i else arb(0) for j in range(m)])
+                if not isinstance(lower[i], float):
+                    self.among(value(u) - lower[i], shown, "the lower bound of a control")
+                if not isinstance(upper[i], float):
+                    self.among(upper[i] - value(u), shown, "the upper bound of a control")
+
+    def ball(self) -> None:
+        """The controls are where H_u vanishes, within the ball, or on its sphere where H falls outwards."""
+        slopes, hessian = self.quadratic()
+        m, c = len(slopes), hessian[0][0]
+        for i in range(m):
+            for j in range(m):
+                if not (hessian[i][j] - (c if i == j else 0)).contains(0):
+                    raise BeyondProof("controls within a ball whose weights differ")
+        assert isinstance(self.law, Regular)
+        (radius,) = self.law.bounds
+        if isinstance(radius, float):
+            return self.vanishing(slopes)
+        r, shown = value(radius), self.conditions()
+        norm = sum((value(v) * value(v) for v in self.u), arb(0))
+        if (norm - r * r).contains(0):
+            pull = -sum((s * value(v) for s, v in zip(slopes, self.u, strict=True)), arb(0)) / (r * r)
+            self.equal([s + pull * value(v) + c for s, v in zip(slopes, self.u, strict=True)], [c] * m, "H_u on the ball")
+            farther = r * (pull / c + 1)  # the norm without the bound
+            return self.among(farther * farther - r * r, shown, "the ball of the controls")
+        self.vanishing(slopes)
+        return self.among(r * r - norm, shown, "the ball of the controls")
+
+    def angle(self) -> None:
+        """H is a multiple of the cosine of a direction, which is the law's where that is least."""
+        (part,) = self.kernel.spec.control_parts
+        if part.kind != "angle":
+            raise BeyondProof(f"a control set of the kind {part.kind}")
+        pi = arb.pi()
+        at = lambda b: self.by_controls([constant(b)])[0]  # noqa: E731
+        mean, a, b = (at(arb(0)) + at(pi)) / 2, (at(arb(0)) - at(pi)) / 2, (at(pi / 2) - at(-pi / 2)) / 2
+        for _ in range(3):
+            (v,) = (value(v) for v in self.random_controls())
+            self.equal([at(v)], [mean + a * v.cos() + b * v.sin()], "H by the direction")
+        self.equal([at(value(self.u[0]))], [mean - (a * a + b * b).sqrt()], "H under the law")
+        self.among(a * a + b * b, self.conditions(), "a direction that is determined")
+
+
+_SETS: dict[str, Callable[[_Point], None]] = {
+    "free": _Point.free,
+    "box": _Point.box,
+    "ball": _Point.ball,
+    "product": _Point.angle,
+}
+
+
+class _Opaque:
+    """A control that nothing may depend on: arithmetic with it is an error."""
+
+
+OPAQUE: Any = _Opaque()
+
+
+def _first(jet: Any, count: int) -> list[Ball]:
+    if not isinstance(jet, Jet):
+        return [arb(0)] * count
+    return [value(jet.first[i]) if i in jet.first else arb(0) for i in range(count)]

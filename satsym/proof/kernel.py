@@ -1,0 +1,138 @@
+"""A generated module run on balls: the same text, with its decimals read as the exact numbers that they are."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, fmpq
+
+from satsym.kernels import Kernels
+from satsym.kernels.bodies import Unexpected
+from satsym.kernels.checking import check
+from satsym.kernels.loading import shipped_text
+from satsym.proof.arithmetic import Answers, BeyondProof, constant, mathematics
+
+ROUNDED = 15
+"""Digits from which a number of generated code may be a rounded one."""
+
+
+class BallKernel:
+    """The functions of a generated module on power series of balls, as attributes.
+
+    Parameters
+    ----------
+    model
+        The kernels that floats are computed with.
+
+    Raises
+    ------
+    BeyondProof
+        If the module holds something that this does not run.
+    """
+
+    def __init__(self, model: Kernels) -> None:
+        self.spec, self.answers = model.spec, Answers()
+        self._definitions = _definitions(model)
+        self._functions: dict[str, Callable[..., Any]] = {}
+        self.timed = {name for name, node in self._definitions.items() if _reads_time(node)}
+        """Names of the functions that depend on time."""
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_") or name not in self._definitions:
+            raise AttributeError(name)
+        if name not in self._functions:
+            self._functions[name] = self._compiled(name)
+        return self._functions[name]
+
+    def has(self, name: str) -> bool:
+        """Whether the module defines such a function."""
+        return name in self._definitions
+
+    def renew(self) -> None:
+        """Compile anew, for constants are as precise as arithmetic was when they were made."""
+        self._functions.clear()
+
+    def _compiled(self, name: str) -> Callable[..., Any]:
+        exact = _Exact(name)
+        node = exact.visit(ast.parse(ast.unparse(self._definitions[name])).body[0])
+        code = compile(ast.fix_missing_locations(ast.Module([node], [])), f"<{name} on balls>", "exec")
+        namespace: dict[str, Any] = {
+            "__builtins__": {},
+            "math": mathematics(),
+            "_below": lambda *args: self.answers.below(*args),
+            "_magnitude": lambda *args: self.answers.magnitude(*args),
+            **{key: constant(exactly(number)) for key, number in exact.numbers.items()},
+        }
+        exec(code, namespace)  # noqa: S102 - a function of a module that was checked node by node
+        return namespace[name]  # type: ignore[no-any-return]
+
+
+def exactly(number: Fraction) -> Any:
+    """A rational number as a ball."""
+    return arb(fmpq(number.numerator, number.denominator))
+
+
+def _definitions(model: Kernels) -> Mapping[str, ast.FunctionDef]:
+    """The functions of one point that a module holds, by name."""
+    text = model.text
+    if text is None and model.origin is not None and model.origin[1] is None:
+        text = shipped_text(model.origin[0])
+    if not text:
+        raise BeyondProof("kernels without the text of a generated module")
+    try:
+        spec, functions = check(text)
+    except Unexpected as error:
+        raise BeyondProof(f"a generated module whose line {error.line} {error.reason}") from None
+    if spec != model.spec:
+        raise BeyondProof("a model whose constraints at the end were changed")
+    return {node.name: node for node in functions if not node.name.endswith("_batch")}
+
+
+def _reads_time(node: ast.FunctionDef) -> bool:
+    return any(isinstance(n, ast.Name) and n.id == "t" and isinstance(n.ctx, ast.Load) for n in ast.walk(node))
+
+
+class _Exact(ast.NodeTransformer):
+    """Numbers become names of exact constants, comparisons and absolute values calls that note what they compare."""
+
+    def __init__(self, function: str) -> None:
+        self.function, self.compared = function, 0
+        self.numbers: dict[str, Fraction] = {}
+
+    def _key(self) -> ast.Tuple:
+        self.compared += 1
+        return ast.Tuple([ast.Constant(self.function), ast.Constant(self.compared)], ast.Load())
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:  # noqa: N802 - named by ast
+        if isinstance(node.value, str):
+            return node
+        number = Fraction(repr(node.value))
+        digits = repr(node.value).partition("e")[0].replace(".", "").strip("0")
+        if number != Fraction(node.value) and len(digits) >= ROUNDED:
+            raise BeyondProof(f"a constant of the motion that may be rounded, {node.value!r}")
+        name = f"_number_{len(self.numbers)}"
+        self.numbers[name] = number
+        return ast.Name(name, ast.Load())
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:  # noqa: N802
+        a, b = (self.visit(side) for side in (node.left, node.comparators[0]))
+        match node.ops:
+            case [ast.Lt() | ast.LtE()]:
+                pair = [a, b]
+            case [ast.Gt() | ast.GtE()]:
+                pair = [b, a]
+            case _:
+                raise BeyondProof("a comparison of another kind")
+        return ast.Call(ast.Name("_below", ast.Load()), [self._key(), *pair], [])
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:  # noqa: N802
+        self.generic_visit(node)
+        if isinstance(node.func, ast.Attribute) and node.func.attr == "fabs":
+            return ast.Call(ast.Name("_magnitude", ast.Load()), [self._key(), *node.args], [])
+        return node
+
+    def visit_For(self, node: ast.For) -> ast.AST:  # noqa: N802
+        raise BeyondProof("a law of the controls that is found by iteration")

@@ -1,0 +1,226 @@
+"""The laws of arcs: how the controls follow from states and costates, and what must be positive for that.
+
+A law is an analytic field of states, costates and, where the motion depends on it, time; it is defined beyond the arc
+on which its controls minimise H. The components are (x, lambda) or (x, lambda, t).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any
+
+from flint import arb, arb_series, ctx
+
+from satsym.proof.arithmetic import Answers, Key, NotProved, Series, constant
+from satsym.proof.kernel import BallKernel
+
+SIMULTANEOUS = "two bounds are met or left at once; the theorem asks for one at a time"
+
+
+class Law(ABC):
+    """A law of the controls along an arc.
+
+    Parameters
+    ----------
+    kernel
+        The model.
+    parameters
+        As constants.
+    """
+
+    def __init__(self, kernel: BallKernel, parameters: Sequence[Series]) -> None:
+        self.kernel, self.p, self.n = kernel, tuple(parameters), len(kernel.spec.states)
+        self.timed = not kernel.spec.autonomous
+        self.m = 2 * self.n + self.timed
+        self.answers = Answers()
+
+    def parts(self, z: Sequence[Series]) -> tuple[Series, Sequence[Series], Sequence[Series]]:
+        """Time, states and costates."""
+        self.kernel.answers = self.answers
+        return (z[-1] if self.timed else _NEVER), z[: self.n], z[self.n : 2 * self.n]
+
+    def rates(self, z: Sequence[Series]) -> list[Series]:
+        """Rates of change of all components."""
+        found = list(self._rates(z))
+        return [*found, constant(1)] if self.timed else found
+
+    def jacobian(self, z: Sequence[Series]) -> list[Series]:
+        """Their derivatives by the components, row by row."""
+        found, n = list(self._jacobian(z)), 2 * self.n
+        if not self.timed:
+            return found
+        drift = self._drift(z)
+        rows = [[*found[n * i : n * i + n], drift[i]] for i in range(n)]
+        return [v for row in rows for v in row] + [constant(0)] * (n + 1)
+
+    def cost(self, z: Sequence[Series]) -> Series:
+        """The running cost."""
+        t, x, _ = self.parts(z)
+        return self.kernel.running_cost(t, x, self.control(z), self.p) + constant(0)
+
+    def hamiltonian(self, z: Sequence[Series]) -> Series:
+        """H under the law."""
+        t, x, lam = self.parts(z)
+        u = self.control(z)
+        total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
+        for a, b in zip(lam, self.kernel.dynamics(t, x, u, self.p), strict=True):
+            total = a * b + total
+        return total
+
+    @abstractmethod
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        """The controls."""
+
+    @abstractmethod
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        """What must be positive along the arc, each by a key."""
+
+    @abstractmethod
+    def leaving(self, other: Law) -> Key:
+        """Which of the conditions vanishes where another law begins, or has ended."""
+
+    @abstractmethod
+    def _rates(self, z: Sequence[Series]) -> Sequence[Series]: ...
+
+    @abstractmethod
+    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]: ...
+
+    def _drift(self, z: Sequence[Series]) -> Sequence[Series]:
+        raise NotImplementedError
+
+
+class _Never:
+    """Stands for time where no function depends on it."""
+
+
+_NEVER: Any = _Never()
+
+
+class Regular(Law):
+    """Controls that the generated law gives, with its comparisons answered one way.
+
+    Parameters
+    ----------
+    bounds
+        The argument of that name: constants, or infinite floats.
+    """
+
+    def __init__(self, kernel: BallKernel, parameters: Sequence[Series], bounds: Sequence[Any]) -> None:
+        super().__init__(kernel, parameters)
+        self.bounds = tuple(bounds)
+
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return self.kernel.control_law(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        return list(dict(self.answers.notes(lambda: self._rates(z))).items())
+
+    def leaving(self, other: Law) -> Key:
+        found = [
+            key
+            for key, answer in self.answers.given.items()
+            if key[0] == "canonical" and other.answers.given.get(key, answer) is not answer
+        ]
+        if len(found) != 1:
+            raise NotProved(SIMULTANEOUS)
+        return found[0]
+
+    def state(self) -> frozenset[tuple[Key, bool]]:
+        """How the comparisons of the motion come out: two arcs of one law have the same."""
+        return frozenset(item for item in self.answers.given.items() if item[0][0] == "canonical")
+
+    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return self.kernel.canonical(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+
+    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return self.kernel.canonical_jacobian(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+
+    def _drift(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return self.kernel.canonical_drift(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+
+
+class Throttled(Regular):
+    """A vector that is as long as it may be, or none, by the sign of the throttle's slope."""
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        t, x, lam = self.parts(z)
+        (slope,) = self.kernel.throttle_slope(t, x, lam, self.p, self.bounds)
+        return [(THROTTLE, slope if self.off else -slope)]
+
+    def leaving(self, other: Law) -> Key:
+        return THROTTLE
+
+    @property
+    def off(self) -> bool:
+        """Whether the vector is none here: the first comparison of the motion is with the least norm."""
+        return next(answer for key, answer in self.answers.given.items() if key[0] == "canonical")
+
+
+THROTTLE: Key = ("throttle_slope", 0)
+
+
+class Held(Law):
+    """Controls at an end of their bounds, or at zero where their magnitudes cost something.
+
+    Parameters
+    ----------
+    levels
+        For each control the values that may be best, in order.
+    held
+        Which of them each control has.
+    """
+
+    def __init__(
+        self, kernel: BallKernel, parameters: Sequence[Series], levels: Sequence[Sequence[Any]], held: Sequence[int]
+    ) -> None:
+        super().__init__(kernel, parameters)
+        self.levels, self.held = levels, tuple(held)
+        self.u = tuple(constant(values[k]) for values, k in zip(levels, held, strict=True))
+
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        return self.u
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        t, x, lam = self.parts(z)
+        slopes = self.kernel.switching_function(t, x, lam, self.p)
+        weights = self.kernel.magnitude_weight(t, x, lam, self.p)
+        found: list[tuple[Key, Series]] = []
+        for i, (slope, weight, values, k) in enumerate(zip(slopes, weights, self.levels, self.held, strict=True)):
+            above = self.levels[i][k] >= 0  # the sign of the control just above the value that it has, and just below
+            below = self.levels[i][k] > 0
+            if k < len(values) - 1:
+                found.append((("up", i), slope + weight if above else slope - weight))
+            if k > 0:
+                found.append((("down", i), -slope - weight if below else -slope + weight))
+        return found
+
+    def leaving(self, other: Law) -> Key:
+        assert isinstance(other, Held)
+        found = [i for i, (a, b) in enumerate(zip(self.held, other.held, strict=True)) if a != b]
+        if len(found) != 1 or abs(self.held[found[0]] - other.held[found[0]]) != 1:
+            raise NotProved(SIMULTANEOUS)
+        return ("up" if other.held[found[0]] > self.held[found[0]] else "down", found[0])
+
+    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        u = self.u
+        return (*self.kernel.dynamics(t, x, u, self.p), *self.kernel.costate_rate(t, x, u, lam, self.p))
+
+    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return self.kernel.extremal_jacobian(t, x, self.u, lam, self.p)  # type: ignore[no-any-return]
+
+
+def gradient(law: Law, key: Key, z: Sequence[Any]) -> list[Any]:
+    """Derivatives of a condition by all components, over a ball."""
+    ctx.cap = 2
+    found = []
+    for k in range(law.m):
+        series = [arb_series([v, arb(int(i == k))]) for i, v in enumerate(z)]
+        found.append(dict(law.conditions(series))[key][1])
+    return found

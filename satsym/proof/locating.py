@@ -1,0 +1,76 @@
+"""Newton's method on the equations of shooting, without enclosures: the midpoint about which a proof is tried."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat
+
+from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.laws import Law
+from satsym.proof.shooting import Box, Segment, Shooting, _Rows, inverse
+from satsym.proof.structure import leap
+from satsym.proof.taylor import column, rates, unit
+
+TRIES = 12
+ENOUGH = 1e-13
+"""A correction that is smaller, relative to the sizes, is the last one."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Nodes and lengths near an extremal."""
+
+    nodes: list[list[Ball]]
+    lengths: list[Ball]
+
+
+def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball]) -> Place:
+    """The zero of the equations near by.
+
+    Raises
+    ------
+    NotProved
+        If Newton's method does not settle.
+    """
+    size = float("inf")
+    for _ in range(TRIES):
+        residuals, jacobian = _equations(shooting, nodes, lengths)
+        move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
+        scales = [*shooting.scales, *(abs(float(v.mid())) for v in lengths)]
+        before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=False))
+        here = shooting.unknowns(nodes, lengths)
+        nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
+        if size < ENOUGH:
+            return Place(nodes, lengths)
+        if not size < 1e6 or (before < 1e-7 and size > 0.5 * before):
+            break
+    raise NotProved("Newton's method finds no extremal near the answer; it may have another structure")
+
+
+def _equations(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball]) -> tuple[Any, Any]:
+    m = shooting.arcs[0].law.m
+    zero = [[arb(0)] * m for _ in nodes]
+    box = Box([[v.mid() for v in node] for node in nodes], zero, lengths, [arb(0)] * len(lengths))
+    rows, k = _Rows(shooting, box), 0
+    for j, arc in enumerate(shooting.arcs):
+        for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
+            span = (box.lengths[j] * (arb(b) - arb(a))).mid()
+            rows.matched(_led(arc.law, box.nodes[k], span, shooting.sizes), k, j, arb(b) - arb(a))
+            k += 1
+        if j + 1 < len(shooting.arcs):
+            rows.met(arc.law, shooting.arcs[j + 1].law, k)
+    rows.ended(k)
+    return column(rows.residuals).mid(), arb_mat(rows.jacobian().mid())
+
+
+def _led(law: Law, node: list[Ball], span: Ball, sizes: tuple[float, ...]) -> Segment:
+    z, flow, left = node, unit(law.m), span
+    while True:
+        most = float(left.mid())
+        z, v, h = leap(law, z, most, sizes)
+        flow = (v * flow).mid()
+        if h >= most:
+            return Segment(z, flow, [r.mid() for r in rates(law, z)], [], [], [])
+        left = (left - arb(h)).mid()

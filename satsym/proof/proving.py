@@ -1,0 +1,190 @@
+"""Proving that what a solver found is near a strict local minimum: the story on one page."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+from flint import arb, ctx
+
+from satsym.instance import Instance
+from satsym.proof import claims, enclosures, structure
+from satsym.proof.arithmetic import BeyondProof, NotProved
+from satsym.proof.convexity import convex
+from satsym.proof.field import regular_field
+from satsym.proof.identities import verify
+from satsym.proof.locating import Place, located
+from satsym.proof.record import Hypothesis, Outcome, Proof
+from satsym.proof.shooting import Arc, Box, Inclusion, Shooting, krawczyk
+from satsym.proof.signs import hold, unique
+from satsym.proof.statement import Statement, stated
+from satsym.proof.taylor import Order
+from satsym.solution import Solution
+
+RADII = (1e-6, 1e-8, 1e-10, 1e-12)
+"""How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
+COARSE = Order(18, 1e-16)
+MOST_DIGITS = 60
+
+
+def prove(case: Instance, found: Solution, digits: int = 20) -> Proof:
+    """Prove that near an answer there is one extremal, and that it is a strict strong local minimum.
+
+    Parameters
+    ----------
+    case
+        The problem as it was stated.
+    found
+        Where to look; nothing that it claims is used.
+    digits
+        Of the enclosures.
+
+    Returns
+    -------
+    Proof
+        Also where nothing is proved: ``status`` and ``reason`` say why.
+    """
+    begun = time.perf_counter()
+    record = Proof(case.model.spec.name, case.called, Outcome.NOT_PROVED, digits=digits)
+    with _precision(digits):
+        try:
+            if not found.status.answered:
+                raise NotProved(f"there is no answer to begin with: {found.message}")
+            record = _proved(case, found, record)
+        except BeyondProof as error:
+            record = replace(record, status=Outcome.BEYOND, reason=str(error))
+        except NotProved as error:
+            record = replace(record, reason=str(error))
+        except _Stopped as stopped:
+            record = replace(stopped.record, reason=stopped.reason)
+        except (ArithmeticError, ValueError) as error:
+            record = replace(record, reason=f"the motion is singular near the answer ({error})")
+    return replace(record, wall_s=time.perf_counter() - begun)
+
+
+class _Stopped(Exception):
+    """A proof that ended after something was shown."""
+
+    def __init__(self, record: Proof, reason: str) -> None:
+        super().__init__(reason)
+        self.record, self.reason = record, reason
+
+
+@contextmanager
+def _precision(digits: int) -> Iterator[None]:
+    """Arithmetic with enough bits; it is flint's own setting, for the whole process."""
+    before = ctx.prec, ctx.cap
+    ctx.prec = 80 + int(3.6 * digits)
+    try:
+        yield
+    finally:
+        ctx.prec, ctx.cap = before
+
+
+@dataclass(frozen=True)
+class Located:
+    """The one extremal in a box, and balls in which it is."""
+
+    shooting: Shooting
+    box: Box
+    last: Inclusion
+    radius: float
+
+
+def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
+    statement = stated(case, dict(found.instance.met))
+    record = replace(record, numbers=dict(statement.source.stated))
+    shooting, place = _begun(statement, found)
+    for arc in shooting.arcs:
+        verify(statement, arc.law, place.nodes, shooting.sizes)
+    there = _enclosed(shooting, place, record.digits)
+    record = enclosures.entered(record, there.shooting, there.box, there.last, there.radius)
+    steps: tuple[Callable[[], Hypothesis], ...] = (
+        lambda: claims.of_signs(hold(shooting, there.last.passed)),
+        lambda: claims.of_minimiser(unique(shooting, there.last.passed)),
+        lambda: claims.of_ends(statement, there.last.passed.end),
+        lambda: claims.of_field(regular_field(shooting, there.last.passed)),
+    )
+    for one in steps:
+        try:
+            record = replace(record, hypotheses=(*record.hypotheses, one()))
+        except NotProved as error:
+            raise _Stopped(record, str(error)) from None
+    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convex(statement))
+    return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
+
+
+def _begun(statement: Statement, found: Solution) -> tuple[Shooting, Place]:
+    """The equations of the arcs that were found, and a point at which they nearly hold."""
+    laws, times, path = structure.arcs(statement, found)
+    sizes = structure.sizes_of(path)
+    arcs, nodes, lengths = structure.placed(laws, times, path, sizes)
+    shooting = Shooting(statement, tuple(Arc(arc.law, arc.fractions) for arc in arcs), tuple(sizes))
+    n = laws[0].n
+    nodes[0][:n] = statement.initial
+    if laws[0].timed:
+        nodes[0][-1] = statement.t0
+    if not shooting.lengths_unknown:
+        lengths = [statement.tf - statement.t0]
+    return shooting, located(shooting, nodes, lengths)
+
+
+def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
+    """Show that an extremal exists and is the only one near by; then find out where it is to the last digit."""
+    inclusion: Inclusion | None = None
+    for radius in RADII:
+        box = _box(shooting, place, radius)
+        try:
+            inclusion = krawczyk(shooting, box, COARSE)
+        except (NotProved, ArithmeticError, ValueError):
+            continue
+        if inclusion.inside:
+            break
+    if inclusion is None or not inclusion.inside:
+        raise NotProved("existence: no box about the answer is mapped into itself; more digits, or a better answer, may help")
+    remainder = 10.0 ** -(digits + 6)
+    order = Order(max(18, int(1.1 * (digits + 6))), remainder)
+    for _ in range(3):
+        box = _smaller(shooting, box, inclusion)
+        inclusion = krawczyk(shooting, box, order)
+        scales = _scales(shooting, box)
+        if max(float(v.rad()) / s for v, s in zip(inclusion.image, scales, strict=True)) < remainder * 1e4:
+            break
+    return Located(shooting, box, inclusion, radius)
+
+
+def _scales(shooting: Shooting, box: Box) -> list[float]:
+    lengths = [abs(float(v.mid())) for v in box.lengths] if shooting.lengths_unknown else []
+    return [*shooting.scales, *lengths]
+
+
+def _box(shooting: Shooting, place: Place, radius: float) -> Box:
+    zero = [[arb(0)] * len(node) for node in place.nodes]
+    box = Box(_exact(shooting, place.nodes), zero, place.lengths, [arb(0)] * len(place.lengths))
+    around = [arb(0, radius * s) for s in _scales(shooting, box)]
+    return _around(shooting, box, around)
+
+
+def _exact(shooting: Shooting, nodes: list[list[Any]]) -> list[list[Any]]:
+    """Nodes of which the given components of the first are those of the problem."""
+    n, law = shooting.arcs[0].law.n, shooting.arcs[0].law
+    first = [*shooting.statement.initial, *nodes[0][n : 2 * n], *([shooting.statement.t0] if law.timed else [])]
+    return [first, *nodes[1:]]
+
+
+def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:
+    zero = [[arb(0)] * len(node) for node in box.nodes]
+    around, lengths = shooting.placed(values, zero, [arb(0)] * len(box.lengths))
+    return Box(box.nodes, around, box.lengths, lengths)
+
+
+def _smaller(shooting: Shooting, box: Box, inclusion: Inclusion) -> Box:
+    """The box that is left of one, about its own midpoint."""
+    here = shooting.unknowns(box.nodes, box.lengths)
+    moved = [a + v.mid() for a, v in zip(here, inclusion.image, strict=True)]
+    nodes, lengths = shooting.placed([v.mid() for v in moved], box.nodes, box.lengths)
+    rest = [v - v.mid() + (m - m.mid()) for v, m in zip(inclusion.image, moved, strict=True)]
+    return _around(shooting, Box(_exact(shooting, nodes), box.around, lengths, box.lengths_around), rest)

@@ -1,0 +1,310 @@
+"""Multiple shooting on balls: the conditions that make arcs an extremal, and Krawczyk's operator of them.
+
+Unknown are the costates at the start, all components at the later nodes, and the lengths of arcs where these are not
+given. The equations: each segment leads from a node to the next; where one arc ends and another begins a condition of
+the former vanishes; the conditions at the end; and, with unknown lengths and a given final time, their sum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat, arb_series, ctx
+
+from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.ends import End
+from satsym.proof.laws import Law, gradient
+from satsym.proof.statement import Statement
+from satsym.proof.taylor import Matrix, Order, Step, column, rates, step, unit
+
+MOST_STEPS = 3000
+"""Of one pass over the extremal."""
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A law, and the fractions of the arc at which nodes are, from 0 to 1; all are binary fractions."""
+
+    law: Law
+    fractions: tuple[float, ...]
+
+    @property
+    def segments(self) -> int:
+        """How many there are."""
+        return len(self.fractions) - 1
+
+
+@dataclass(frozen=True)
+class Box:
+    """The unknowns: midpoints, and balls about zero that say how far from these they may be.
+
+    Attributes
+    ----------
+    nodes, around
+        Of each node all components; those of the first that are given have their own radius in `nodes`.
+    lengths, lengths_around
+        Of the arcs.
+    """
+
+    nodes: list[list[Ball]]
+    around: list[list[Ball]]
+    lengths: list[Ball]
+    lengths_around: list[Ball]
+
+
+@dataclass(frozen=True)
+class Segment:
+    """What integration over a segment gives.
+
+    Attributes
+    ----------
+    point
+        Where the midpoint of the box leads.
+    derivative
+        By the node, over the box.
+    rates
+        At the end, over the box.
+    steps
+        Of the integration.
+    deviations, errors
+        At the start of each step, how far motions of the box are from the one of the midpoint, and how far that one is
+        from the midpoint of the step.
+    """
+
+    point: list[Ball]
+    derivative: Matrix
+    rates: list[Ball]
+    steps: list[Step]
+    deviations: list[list[Ball]]
+    errors: list[list[Ball]]
+
+
+@dataclass(frozen=True)
+class Pass:
+    """Residuals at the midpoint of a box, their derivatives over it, and the segments of each arc."""
+
+    residuals: Matrix
+    jacobian: Matrix
+    segments: list[list[Segment]]
+    end: End
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """The equations of a chain of arcs."""
+
+    statement: Statement
+    arcs: tuple[Arc, ...]
+    sizes: tuple[float, ...]
+    """Of the components."""
+
+    @property
+    def lengths_unknown(self) -> bool:
+        """Whether the lengths of arcs are to be found."""
+        return self.statement.tf is None or len(self.arcs) > 1
+
+    @property
+    def scales(self) -> list[float]:
+        """Of all unknowns, in order."""
+        n = self.arcs[0].law.n
+        count = sum(arc.segments for arc in self.arcs)
+        return [*self.sizes[n : 2 * n], *(list(self.sizes) * count)]
+
+    def unknowns(self, nodes: Sequence[Sequence[Any]], lengths: Sequence[Any]) -> list[Any]:
+        """The unknown ones of all numbers, in order."""
+        n = self.arcs[0].law.n
+        found = [*nodes[0][n : 2 * n], *(v for node in nodes[1:] for v in node)]
+        return [*found, *lengths] if self.lengths_unknown else found
+
+    def placed(self, values: Sequence[Any], nodes: list[list[Any]], lengths: list[Any]) -> tuple[Any, Any]:
+        """Nodes and lengths with other unknowns."""
+        n, m = self.arcs[0].law.n, self.arcs[0].law.m
+        left = list(values)
+        first = [*nodes[0][:n], *left[:n], *nodes[0][2 * n :]]
+        del left[:n]
+        moved = [first]
+        for _ in nodes[1:]:
+            moved.append(left[:m])
+            del left[:m]
+        return moved, (left if self.lengths_unknown else list(lengths))
+
+    def final_time(self, lengths: Sequence[Ball]) -> Ball:
+        """When the last arc ends."""
+        return self.statement.t0 + sum(lengths, arb(0)) if self.lengths_unknown else self.statement.tf
+
+    def run(self, box: Box, order: Order) -> Pass:
+        """Integrate all segments and assemble the equations.
+
+        Raises
+        ------
+        NotProved
+            If a segment has no enclosure.
+        """
+        rows = _Rows(self, box)
+        found, k, steps = [], 0, 0
+        for j, arc in enumerate(self.arcs):
+            segments = []
+            for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
+                share = arb(b) - arb(a)
+                span, around = box.lengths[j] * share, box.lengths_around[j] * share
+                one = self._segment(arc.law, box.nodes[k], box.around[k], span, around, order)
+                rows.matched(one, k, j, share)
+                segments.append(one)
+                k, steps = k + 1, steps + len(one.steps)
+                if steps > MOST_STEPS:
+                    raise NotProved(f"more than {MOST_STEPS} steps of integration; the horizon is too long")
+            found.append(segments)
+            if j + 1 < len(self.arcs):
+                rows.met(arc.law, self.arcs[j + 1].law, k)
+        end = rows.ended(k)
+        return Pass(column(rows.residuals), rows.jacobian(), found, end)
+
+    def _segment(
+        self, law: Law, node: list[Ball], around: list[Ball], span: Ball, slack: Ball, order: Order
+    ) -> Segment:
+        point, d, left, h = list(node), unit(law.m), span, span
+        steps, deviations, errors, start = [], [], [], column(around)
+        while True:
+            h = min(h, left, key=lambda v: float(v.mid()))
+            last = not h < left
+            middle = [v.mid() for v in point]
+            error = column([p - v for p, v in zip(point, middle, strict=True)])
+            deviation = (d * start).entries()
+            z = [p + e for p, e in zip(point, deviation, strict=True)]
+            one, following = step(law, middle, z, left + slack if last else h, order, self.sizes)
+            last = last and one.h.contains(left)
+            steps.append(one)
+            deviations.append(deviation)
+            errors.append(error.entries())
+            there = one.from_middle(left if last else one.h)
+            v = one.derivative()
+            point = [p + e for p, e in zip(there, (v * error).entries(), strict=True)]
+            d = v * d
+            if last:
+                return Segment(point, d, rates(law, one.reached(one.h)), steps, deviations, errors)
+            left, h = left - one.h, following
+            if len(steps) > MOST_STEPS:
+                raise NotProved(f"more than {MOST_STEPS} steps in a segment")
+
+
+class _Rows:
+    """The equations, put together segment by segment."""
+
+    def __init__(self, shooting: Shooting, box: Box) -> None:
+        self.shooting, self.box = shooting, box
+        law = shooting.arcs[0].law
+        self.n, self.m = law.n, law.m
+        self.residuals: list[Ball] = []
+        self.rows: list[dict[int, Ball]] = []
+        self.lengths = self.n + self.m * (len(box.nodes) - 1)
+        """The first place of a length."""
+
+    def matched(self, one: Segment, k: int, j: int, share: Ball) -> None:
+        """A segment leads from node k to the next."""
+        for i in range(self.m):
+            row = self._of_node(k, [one.derivative[i, c] for c in range(self.m)])
+            row[self._place(k + 1, i)] = arb(-1)
+            if self.shooting.lengths_unknown:
+                row[self.lengths + j] = one.rates[i] * share
+            self._add(one.point[i] - self.box.nodes[k + 1][i], row)
+
+    def met(self, law: Law, following: Law, k: int) -> None:
+        """A condition of an arc vanishes at the node where another one begins."""
+        key = law.leaving(following)
+        ctx.cap = 1
+        there = dict(law.conditions([arb_series([v]) for v in self.box.nodes[k]]))[key]
+        self._add(there[0], self._of_node(k, gradient(law, key, self._around(k))))
+
+    def ended(self, k: int) -> End:
+        """The conditions at the end; how it is over the box."""
+        shooting, box, n, m = self.shooting, self.box, self.n, self.m
+        law = shooting.arcs[-1].law
+        around = [v + d for v, d in zip(box.lengths, box.lengths_around, strict=True)]
+        node, wide = box.nodes[k], self._around(k)
+        time, times = (
+            (node[-1], wide[-1]) if law.timed else (shooting.final_time(box.lengths), shooting.final_time(around))
+        )
+        found, _ = End.at(shooting.statement, law, node, time).residuals()
+        end = End.at(shooting.statement, law, wide, times)
+        _, jac = end.residuals()
+        for i, v in enumerate(found):
+            entries = [jac[i, c] for c in range(m)]
+            if law.timed:
+                entries[m - 1] += jac[i, m]
+            row = self._of_node(k, entries)
+            if shooting.lengths_unknown and not law.timed:
+                row |= {self.lengths + j: jac[i, m] for j in range(len(box.lengths))}
+            self._add(v, row)
+        if shooting.lengths_unknown and shooting.statement.tf is not None:
+            given = shooting.statement.tf - shooting.statement.t0
+            row = {self.lengths + j: arb(1) for j in range(len(box.lengths))}
+            self._add(sum(box.lengths, arb(0)) - given, row)
+        return end
+
+    def jacobian(self) -> Matrix:
+        """Derivatives of all residuals by all unknowns."""
+        count = self.lengths + (len(self.box.lengths) if self.shooting.lengths_unknown else 0)
+        found = arb_mat(len(self.rows), count)
+        for i, row in enumerate(self.rows):
+            for j, v in row.items():
+                found[i, j] = v
+        return found
+
+    def _around(self, k: int) -> list[Ball]:
+        return [v + d for v, d in zip(self.box.nodes[k], self.box.around[k], strict=True)]
+
+    def _place(self, k: int, i: int) -> int:
+        """The place of component i of node k among the unknowns."""
+        return i - self.n if k == 0 else self.n + self.m * (k - 1) + i
+
+    def _of_node(self, k: int, entries: Sequence[Ball]) -> dict[int, Ball]:
+        """Entries by components of a node, without those that are given."""
+        unknown = range(self.n, 2 * self.n) if k == 0 else range(self.m)
+        return {self._place(k, i): entries[i] for i in unknown}
+
+    def _add(self, residual: Ball, row: dict[int, Ball]) -> None:
+        self.residuals.append(residual)
+        self.rows.append(row)
+
+
+@dataclass(frozen=True)
+class Inclusion:
+    """Krawczyk's operator on a box: whether its image lies inside, and the image, about the box's midpoint."""
+
+    inside: bool
+    image: list[Ball]
+    passed: Pass
+
+
+def krawczyk(shooting: Shooting, box: Box, order: Order) -> Inclusion:
+    """Apply Krawczyk's operator: where the image lies inside the box, the box holds one extremal, and that in the image.
+
+    Raises
+    ------
+    NotProved
+        If the equations are singular.
+    """
+    passed = shooting.run(box, order)
+    around = shooting.unknowns(box.around, box.lengths_around)
+    c = inverse(passed.jacobian)
+    image = (-(c * passed.residuals) + (unit(len(around)) - c * passed.jacobian) * column(around)).entries()
+    inside = all(o.contains_interior(v) for o, v in zip(around, image, strict=True))
+    return Inclusion(inside, image, passed)
+
+
+def inverse(jacobian: Matrix) -> Matrix:
+    """An approximate inverse of a ball matrix, exact in its entries.
+
+    Raises
+    ------
+    NotProved
+        If there is none.
+    """
+    if jacobian.nrows() != jacobian.ncols():
+        raise NotProved("as many equations as unknowns are needed; two bounds are met at once")
+    try:
+        return jacobian.mid().inv().mid()
+    except ZeroDivisionError:
+        raise NotProved("the equations of the extremal are singular; it may be one of a family") from None

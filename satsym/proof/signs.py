@@ -1,0 +1,144 @@
+"""Whether the law of each arc is the best one all along it: the signs that it needs, shown between nodes as well."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import arb, arb_mat, arb_series, ctx
+
+from satsym.proof.arithmetic import Ball, BeyondProof, Key, NotProved, value
+from satsym.proof.ends import positive
+from satsym.proof.identities import OPAQUE
+from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.shooting import Pass, Shooting
+from satsym.proof.taylor import Step, from_zero, polynomial
+
+DEEPEST = 40
+"""How often a step is halved to show a sign on it."""
+PARTS = 14
+"""How often, to find the part of a step on which a condition falls to zero."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What was shown along all arcs: how many signs, and at how many places one of them passes through zero."""
+
+    conditions: int
+    crossings: int
+
+
+def hold(shooting: Shooting, passed: Pass) -> Shown:
+    """Show that conditions of the laws are positive, and that those which end an arc pass through zero with a slope.
+
+    Raises
+    ------
+    NotProved
+        Where that is not so, or cannot be shown.
+    """
+    conditions = 0
+    laws = [arc.law for arc in shooting.arcs]
+    for j, (law, segments) in enumerate(zip(laws, passed.segments, strict=True)):
+        entering = law.leaving(laws[j - 1]) if j else None
+        leaving = law.leaving(laws[j + 1]) if j + 1 < len(laws) else None
+        steps = [step for segment in segments for step in segment.steps]
+        for k, step in enumerate(steps):
+            conditions += _on_step(
+                law, step, entering if k == 0 else None, leaving if k == len(steps) - 1 else None, f"arc {j + 1}"
+            )
+        if isinstance(law, Held):
+            _require_weights(law, steps)
+    return Shown(conditions, len(laws) - 1)
+
+
+def _on_step(law: Law, step: Step, entering: Key | None, leaving: Key | None, where: str) -> int:
+    n = step.terms
+    ctx.cap = n + 1
+    near, last = law.conditions(step.series), law.conditions(step.last)
+    for (key, c), (_, d) in zip(near, last, strict=True):
+        coefficients = [*(c[k] for k in range(n)), d[n]]
+        slope = [*((k + 1) * c[k + 1] for k in range(n - 1)), n * d[n]]
+        low, high = arb(0), step.h
+        if key == entering:
+            low = _part(slope, step.h, lambda w: (arb(0), w), 1, where)
+        if key == leaving:
+            high = step.h - _part(slope, step.h, lambda w: (step.h - w, step.h), -1, where)
+        if low < high and not _positive(coefficients, low, high):
+            raise NotProved(f"{where}: the sign that its law needs ({_said(key)}) is not shown; another structure may be right")
+    return len(near)
+
+
+def _part(slope: Sequence[Ball], h: Ball, part, sign: int, where: str) -> Ball:  # type: ignore[no-untyped-def]
+    """A part of the step, at one of its ends, on which a condition rises or falls."""
+    for k in range(PARTS):
+        w = h / 2**k
+        if _positive([v * sign for v in slope], *part(w)):
+            return w
+    raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
+
+
+def _positive(coefficients: Sequence[Ball], low: Ball, high: Ball, depth: int = DEEPEST) -> bool:
+    """Whether a polynomial is positive from one time to another."""
+    if polynomial(coefficients, low.union(high)) > 0:
+        return True
+    if depth == 0 or not (polynomial(coefficients, low) > 0 and polynomial(coefficients, high) > 0):
+        return False
+    middle = ((low + high) / 2).mid()
+    return _positive(coefficients, low, middle, depth - 1) and _positive(coefficients, middle, high, depth - 1)
+
+
+def _said(key: Key) -> str:
+    return f"{key[0]} {key[1]}"
+
+
+def _require_weights(law: Held, steps: Sequence[Step]) -> None:
+    """Magnitudes may cost something, but bring nothing, or H is not convex in the controls."""
+    for step in steps:
+        ctx.cap = 1
+        t, x, lam = law.parts([arb_series([v]) for v in step.range])
+        for weight in law.kernel.magnitude_weight(t, x, lam, law.p):
+            if not value(weight) >= 0:
+                raise NotProved("the weight of a control's magnitude is not shown to be positive")
+
+
+def unique(shooting: Shooting, passed: Pass) -> str:
+    """Show that H has one minimiser along all arcs, and that states are inside their domain; the reason, in words.
+
+    The signs of :func:`hold` are part of the reason.
+
+    Raises
+    ------
+    NotProved
+        Where that cannot be shown.
+    """
+    reason = ""
+    spec = shooting.statement.spec
+    inside = [i for i, v in enumerate(spec.states) if v.positive]
+    for arc, segments in zip(shooting.arcs, passed.segments, strict=True):
+        for segment in segments:
+            for step in segment.steps:
+                if not all(step.range[i] > 0 for i in inside):
+                    raise NotProved("a state is not shown to stay positive, which its meaning asks for")
+                reason = _of_hamiltonian(arc.law, step)
+    return reason
+
+
+def _of_hamiltonian(law: Law, step: Step) -> str:
+    if isinstance(law, Held):
+        return "H is linear in the controls and their magnitudes, with strict signs"
+    if isinstance(law, Throttled):
+        return "H is linear in the controls and their norm, with strict signs"
+    assert isinstance(law, Regular)
+    spec = law.kernel.spec
+    if spec.control_parts:
+        return "H is a cosine of the direction, of an amplitude that does not vanish"
+    ctx.cap = 1
+    t, x, lam = law.parts([arb_series([v]) for v in step.range])
+    m = len(spec.controls)
+    try:
+        entries = [value(v) for v in law.kernel.control_hessian(t, x, [OPAQUE] * m, lam, law.p)]
+    except TypeError:
+        raise BeyondProof("a Hamiltonian that is not quadratic in the controls") from None
+    if not positive(arb_mat(m, m, entries)):
+        raise NotProved("H_uu is not shown to be positive definite")
+    return "H is quadratic in the controls, with H_uu positive definite"

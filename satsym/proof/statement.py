@@ -1,0 +1,219 @@
+"""The problem that is proved: every feature of an instance is recognised here, or refused by name."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Any
+
+from flint import arb
+
+from satsym.instance import Instance
+from satsym.instance.ends import Side
+from satsym.instance.resolve import REFERENCE
+from satsym.proof.arithmetic import Ball, BeyondProof, constant
+from satsym.proof.exact import Source
+from satsym.proof.kernel import BallKernel
+from satsym.spec import ProblemSpec
+
+_OF_INSTANCES = frozenset(
+    """name path title model parameters initial final t0 tf tf_guess lower upper max_norm solver lqr guess classical
+    limits deadband driven norms free continuation ranges met work""".split()
+)
+_OF_MODELS = frozenset(
+    """name title source states controls parameters control_set has_cost has_terminal_cost has_reference autonomous
+    invariants position multipliers outputs linear keplerian switching coordinates velocities quantities balances
+    switching_curve conditions equilibria control_parts mode_groups maximise objective_unit chattering moving_magnitudes
+    path_constraints linear_quadratic terminal_inequalities interior""".split()
+)
+"""Fields of descriptions that this module knows: an instance or a model with others is refused."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a final state must be.
+
+    Attributes
+    ----------
+    value
+        Where it is given; ``None`` where it is on the reference.
+    side
+        Of a range, the end that is met; ``None`` where the value is given.
+    """
+
+    value: Ball | None
+    side: Side | None = None
+
+
+@dataclass(frozen=True)
+class Statement:
+    """The exact numbers of a problem, as balls of the present precision.
+
+    Attributes
+    ----------
+    bounds
+        The argument of that name: constants, infinite floats, and what regularises nothing.
+    targets
+        By the place of the state; a state that is not there is free.
+    open_ranges
+        By place, the ends between which a free final state must lie.
+    """
+
+    case: Instance
+    kernel: BallKernel
+    source: Source
+    parameters: list[Ball]
+    initial: list[Ball]
+    t0: Ball
+    tf: Ball | None
+    bounds: tuple[Any, ...]
+    lower: list[Any]
+    upper: list[Any]
+    targets: dict[int, Target]
+    open_ranges: dict[int, tuple[Any, Any]]
+
+    @property
+    def spec(self) -> ProblemSpec:
+        """Of the model."""
+        return self.kernel.spec
+
+    @property
+    def p(self) -> list[Any]:
+        """The parameters as constants."""
+        return [constant(v) for v in self.parameters]
+
+
+def stated(case: Instance, met: dict[str, Side]) -> Statement:
+    """The problem of an instance.
+
+    Parameters
+    ----------
+    met
+        Ends of ranges at which final states are, by name.
+
+    Raises
+    ------
+    BeyondProof
+        If the instance has a feature that no theorem here covers.
+    """
+    _refuse(case)
+    spec, source = case.model.spec, Source(case)
+    parameters = [
+        source.number(value, v.unit, "parameters", v.symbol)
+        if value != v.default or source.gives("parameters", v.symbol)
+        else source.default(value, "parameters", v.symbol)
+        for v, value in zip(spec.parameters, case.parameters, strict=True)
+    ]
+    initial = [
+        source.number(value, v.unit, "initial", v.symbol) for v, value in zip(spec.states, case.initial, strict=True)
+    ]
+    time = _time_unit(case)
+    targets, ranges = _ends(case, source, met)
+    lower, upper = (
+        [
+            source.number(value, v.unit, "control", v.symbol, side) if math.isfinite(value) else value
+            for v, value in zip(spec.controls, row, strict=True)
+        ]
+        for side, row in enumerate((case.lower, case.upper))
+    )
+    return Statement(
+        case,
+        BallKernel(case.model),
+        source,
+        parameters,
+        initial,
+        source.number(case.t0, time, "time", "t0"),
+        None if case.tf is None else source.number(case.tf, time, "time", "tf"),
+        _bounds(case, source, lower, upper),
+        lower,
+        upper,
+        targets,
+        ranges,
+    )
+
+
+def _time_unit(case: Instance) -> str:
+    from satsym import units
+
+    spec = case.model.spec
+    return units.time_unit(v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
+
+
+def _ends(
+    case: Instance, source: Source, met: dict[str, Side]
+) -> tuple[dict[int, Target], dict[int, tuple[Any, Any]]]:
+    targets: dict[int, Target] = {}
+    ranges: dict[int, tuple[Any, Any]] = {}
+    for i, v in enumerate(case.model.spec.states):
+        name = v.symbol
+        if name in case.ranges:
+            low, high = (
+                source.number(value, v.unit, "final", name, side) if math.isfinite(value) else value
+                for side, value in enumerate(case.ranges[name])
+            )
+            if name in met:
+                targets[i] = Target(high if met[name] is Side.UPPER else low, met[name])
+            else:
+                ranges[i] = (low, high)
+        elif (given := case.final.get(name)) == REFERENCE:
+            targets[i] = Target(None)
+        elif isinstance(given, float):
+            written = source.number(given, v.unit, "final", name)
+            targets[i] = Target(written)
+    return targets, ranges
+
+
+def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) -> tuple[Any, ...]:
+    """The argument ``bounds`` of generated functions."""
+    spec = case.model.spec
+    if spec.switching or spec.control_set == "free":
+        return ()
+    if spec.control_set == "box":
+        return tuple(constant(v) if not isinstance(v, float) else v for v in (*lower, *upper))
+    if spec.control_set == "ball":
+        if math.isinf(case.max_norm):
+            return (case.max_norm,)
+        return (constant(source.number(case.max_norm, spec.controls[0].unit, "control", "max_norm")),)
+    (part,) = spec.control_parts
+    if part.kind == "angle":
+        return (constant(1), constant(0))  # full length, nothing regularised
+    norm = case.norms[part.name][1]
+    unit = spec.controls[0].unit
+    keys = ("control", part.name, "max_norm") if source.gives("control", part.name) else ("control", "max_norm")
+    # Of what regularises, nothing is left on an arc that is wholly on or off.
+    return (constant(source.number(norm, unit, *keys)), constant(arb("1e-100")), constant(1), constant(0))
+
+
+def _refuse(case: Instance) -> None:
+    """Refuse what is not recognised."""
+    spec = case.model.spec
+    unknown = {f.name for f in fields(case)} - _OF_INSTANCES | {f.name for f in fields(spec)} - _OF_MODELS
+    if unknown:
+        raise BeyondProof(f"a feature that proofs do not know ({', '.join(sorted(unknown))})")
+    if not spec.has_cost:
+        raise BeyondProof("a model without a cost")
+    for there, feature in (
+        (spec.path_constraints, "path constraints"),
+        (spec.interior, "points on the way"),
+        (spec.multipliers, "constraints at the end other than given states"),
+        (spec.chattering, "controls that chatter"),
+        (spec.moving_magnitudes, "magnitudes of controls in the motion"),
+        (case.free, "initial values, an initial time or parameters that are free"),
+        (spec.equilibria, "a model that is an attitude in orbit"),
+    ):
+        if there:
+            raise BeyondProof(feature)
+    if spec.control_set not in ("free", "box", "ball", "product"):
+        raise BeyondProof(f"a control set of the kind {spec.control_set}")
+    if spec.switching and spec.control_set != "box":
+        raise BeyondProof("controls that switch in a set that is no box")
+    if spec.control_set != "product":
+        return
+    if len(spec.control_parts) != 1 or len(spec.control_parts[0].controls) != len(spec.controls):
+        raise BeyondProof("a product of several control sets")
+    (part,) = spec.control_parts
+    known = (part.kind, part.branch) in (("angle", "direction"), ("ball", "throttled"))
+    if not known or part.turned_by or (part.kind == "angle" and len(part.controls) != 1):
+        raise BeyondProof(f"a control set of the kind {part.kind} with a law of the kind {part.branch}")
+    if part.kind == "ball" and (case.norms[part.name][0] != 0.0 or len(part.controls) != 2):
+        raise BeyondProof("a least norm of the controls, or a vector of other than two controls")

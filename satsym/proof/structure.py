@@ -1,0 +1,204 @@
+"""Where to look: the arcs of what a solver found, and nodes on them. Nothing here is part of a proof."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_series, ctx
+
+from satsym.arrays import Array
+from satsym.proof.arithmetic import Ball, BeyondProof, NotProved, balls
+from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.shooting import Arc
+from satsym.proof.statement import Statement
+from satsym.proof.taylor import expand, expand_flow, polynomial, unit
+from satsym.solution import Solution
+
+GROWTH = 12.0
+"""How much errors may grow along a segment, relative to the sizes of components."""
+FINEST = 2.0**-24
+"""Fractions of an arc at which nodes are placed are multiples of this."""
+TERMS, REMAINDER = 16, 1e-15
+NEAR = 1e-6
+"""How far a control may be from one of its levels, relative to their distance."""
+TOGETHER = 1e-9
+"""Nodes of a solver that are so close to a switching time, relative to the horizon, tell nothing of the arcs."""
+
+
+class Path:
+    """What a solver found, as a function of time: states and costates between its nodes."""
+
+    def __init__(self, found: Solution, timed: bool) -> None:
+        keep = np.append(np.diff(found.times) > 0.0, True)
+        self.times = np.asarray(found.times)[keep]
+        rows = [np.asarray(found.x)[:, keep], np.asarray(found.lam)[:, keep]]
+        self.values = np.vstack([*rows, self.times]) if timed else np.vstack(rows)
+        self.controls = np.asarray(found.u)
+
+    def __call__(self, t: float) -> list[Ball]:
+        return [arb(float(np.interp(t, self.times, row))) for row in self.values]
+
+
+def arcs(statement: Statement, found: Solution) -> tuple[list[Law], list[float], Path]:
+    """Laws in order, and the times at which the first begins, each ends and the next one begins, and the last ends.
+
+    Raises
+    ------
+    BeyondProof
+        If controls are neither at a bound nor given by the law.
+    """
+    if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
+        raise NotProved("there are no costates to begin with")
+    spec = statement.spec
+    path = Path(found, not spec.autonomous)
+    if spec.switching:
+        return (*_held(statement, found), path)
+    kind = Throttled if spec.control_parts and spec.control_parts[0].kind == "ball" else Regular
+    return (*_regular(statement, found, path, kind), path)
+
+
+def _regular(
+    statement: Statement, found: Solution, path: Path, kind: type[Regular]
+) -> tuple[list[Law], list[float]]:
+    ctx.cap = 1
+    seen: list[tuple[float, Regular]] = []
+    known: dict[Any, Regular] = {}
+    near = TOGETHER * float(path.times[-1] - path.times[0])
+    ends = np.array(sorted(t for times in found.switching_times for t in times))
+    for k, t in enumerate(path.times):
+        if ends.size and np.abs(ends - t).min() < near:
+            continue
+        law = kind(statement.kernel, statement.p, statement.bounds)
+        z = [arb_series([arb(float(v))]) for v in path.values[:, k]]
+        law.rates(z), law.jacobian(z), law.cost(z)  # each learns how its comparisons come out
+        seen.append((float(t), known.setdefault(law.state(), law)))
+    if not seen:
+        raise NotProved("there are no nodes to begin with")
+    laws, times = [], [float(path.times[0])]
+    previous = times[0]
+    for law, group in groupby(seen, key=lambda item: item[1]):
+        members = list(group)
+        if laws:
+            between = ends[(ends >= previous) & (ends <= members[0][0])] if ends.size else ends
+            times.append(float(between[0]) if len(between) == 1 else (previous + members[0][0]) / 2)
+        fresh = kind(statement.kernel, statement.p, statement.bounds)
+        fresh.answers.given.update(law.answers.given)
+        laws.append(fresh)
+        previous = members[-1][0]
+    return list(laws), [*times, float(path.times[-1])]
+
+
+def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]]:
+    """Arcs of controls that switch between levels."""
+    levels = []
+    ctx.cap = 1
+    weighed = _weighed(statement, found)
+    for low, high, costs in zip(statement.lower, statement.upper, weighed, strict=True):
+        if isinstance(low, float) or isinstance(high, float):
+            raise BeyondProof("a control without bounds that enters without a square")
+        levels.append([low, arb(0), high] if costs and low < 0 and high > 0 else [low, high])
+    times, controls = np.asarray(found.times), np.asarray(found.u)
+    kept: list[tuple[float, float, tuple[int, ...]]] = []
+    for t, after, u, then in zip(times[:-1], times[1:], controls.T[:-1], controls.T[1:], strict=True):
+        if after > t:
+            kept.append((float(t), float(after), tuple(map(_level, u, then, levels))))
+    laws: list[Law] = []
+    ends = [float(times[0])]
+    for held, group in groupby(kept, key=lambda item: item[2]):
+        members = list(group)
+        if -1 in held:
+            if members[-1][1] - members[0][0] > 0.01 * float(times[-1] - times[0]):
+                raise BeyondProof("an arc on which a control is at none of its bounds (singular)")
+            continue
+        if laws and isinstance(laws[-1], Held) and laws[-1].held == held:
+            ends[-1] = members[-1][1]
+            continue
+        if laws:
+            ends[-1] = (ends[-1] + members[0][0]) / 2
+        laws.append(Held(statement.kernel, statement.p, levels, held))
+        ends.append(members[-1][1])
+    if not laws:
+        raise NotProved("no arc of the controls is known")
+    ends[-1] = float(times[-1])
+    return laws, ends
+
+
+def _weighed(statement: Statement, found: Solution) -> list[bool]:
+    """Whether the magnitude of each control costs something."""
+    z = [arb_series([arb(float(v[0]))]) for v in (*found.x, *found.lam)]
+    t, n = arb_series([arb(float(found.times[0]))]), len(found.x)
+    weights = statement.kernel.magnitude_weight(t, z[:n], z[n:], statement.p)
+    return [not v.contains(0) for v in balls(weights)]
+
+
+def _level(u: float, then: float, levels: Sequence[Ball]) -> int:
+    values = [float(v.mid()) for v in levels]
+    width = values[-1] - values[0]
+    for k, v in enumerate(values):
+        if abs(u - v) < NEAR * width and abs(then - v) < NEAR * width:
+            return k
+    return -1
+
+
+def placed(
+    laws: Sequence[Law], times: Sequence[float], path: Path, sizes: Sequence[float]
+) -> tuple[list[Arc], list[list[Ball]], list[Ball]]:
+    """Nodes between which errors grow little: the arcs with them, the components there, and the arcs' lengths."""
+    found, nodes, lengths = [], [path(times[0])], []
+    for law, begin, end in zip(laws, times[:-1], times[1:], strict=True):
+        length, fractions = end - begin, [0.0]
+        while fractions[-1] < 1.0:
+            left = length * (1.0 - fractions[-1])
+            reached, node = _far(law, nodes[-1], left, sizes, lambda t: path(begin + length * fractions[-1] + t))
+            following = fractions[-1] + max(math.floor(reached / length / FINEST), 1) * FINEST
+            whole = reached >= left or following >= 1.0
+            fractions.append(1.0 if whole else following)
+            nodes.append(path(end if whole else begin + length * following))
+            del node
+        found.append(Arc(law, tuple(fractions)))
+        lengths.append(arb(length))
+    return found, nodes, lengths
+
+
+def _far(
+    law: Law, start: list[Ball], left: float, sizes: Sequence[float], path: Callable[[float], list[Ball]]
+) -> tuple[float, list[Ball]]:
+    """How far from a start errors have grown as much as they may, and the state there."""
+    m, t, z, flow = law.m, 0.0, start, unit(law.m)
+    while True:
+        z, v, h = leap(law, z, left - t, sizes)
+        flow, t = (v * flow).mid(), t + h
+        grown = max(abs(float(flow[i, j].mid())) * sizes[j] / sizes[i] for i in range(m) for j in range(m))
+        if t >= left * (1 - 1e-12) or grown > GROWTH:
+            return t, z
+
+
+def leap(
+    law: Law, z: Sequence[Ball], most: float, sizes: Sequence[float], terms: int = TERMS, rest: float = REMAINDER
+) -> tuple[list[Ball], Any, float]:
+    """A step without enclosures: where it leads, the derivatives, and its length."""
+    series = expand(law, [v.mid() for v in z], terms)
+    last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=True))
+    if not math.isfinite(last):
+        raise NotProved("the motion from the given costates is not finite")
+    h = min(most, 0.8 * (rest / last) ** (1 / terms)) if last else most
+    flow = polynomial(expand_flow(law, series, unit(law.m), terms), arb(h))
+    there = [polynomial([s[k] for k in range(terms + 1)], arb(h)).mid() for s in series]
+    return there, flow.mid(), h
+
+
+def sizes_of(path: Path) -> list[float]:
+    """Sizes of the components: the largest of each, no less than a share of the largest of its kind."""
+    n = (len(path.values)) // 2
+    largest = [float(v) for v in np.abs(path.values).max(axis=1)]
+    groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
+    return [max(v, 1e-9 * max(group), 1e-30) for group in groups for v in group]
+
+
+def as_floats(values: Sequence[Ball]) -> Array:
+    """Midpoints."""
+    return np.array([float(v.mid()) for v in values])

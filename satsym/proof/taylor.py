@@ -1,0 +1,218 @@
+"""One validated step of z' = F(z) and of its derivatives by the start, V' = F_z V, by Taylor series.
+
+The coefficients of the series hold for every start in a ball; what the series leaves out is the next coefficient, taken
+over a ball that the motions of the step do not leave (Corliss and Rihm). Nothing here knows what F is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from flint import arb, arb_mat, arb_series, ctx
+
+from satsym.proof.arithmetic import Ball, NotProved, Series, value
+
+Matrix = Any
+"""An ``arb_mat``."""
+
+
+class Field(Protocol):
+    """What is integrated: autonomous rates of m components, their derivatives row by row, and an integrand."""
+
+    def rates(self, z: Sequence[Series]) -> Sequence[Series]: ...
+
+    def jacobian(self, z: Sequence[Series]) -> Sequence[Series]: ...
+
+    def cost(self, z: Sequence[Series]) -> Series: ...
+
+
+@dataclass(frozen=True)
+class Order:
+    """Terms of the series, and how large the remainder of a step may be beside the size of each component."""
+
+    terms: int
+    remainder: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of at most the length `h` from the states `z`.
+
+    Attributes
+    ----------
+    h
+        Its length; where that is a ball, the step holds for each length in it.
+    range
+        Balls that no motion from `z` leaves.
+    middle
+        Coefficients of the motion from the midpoint of the start.
+    series, last
+        Of the motions from `z`: coefficients up to `terms` - 1 at the start of the step, and the next one within it.
+    flow
+        Coefficients of the derivatives by the start, the last one within the step.
+    costs
+        Coefficients of the cost so far along the motion from the midpoint, the last one within the step.
+    terms
+        Of these series before the last one.
+    """
+
+    h: Ball
+    range: list[Ball]
+    middle: list[Series]
+    series: list[Series]
+    last: list[Series]
+    flow: list[Matrix]
+    costs: list[Ball]
+    terms: int
+
+    def from_middle(self, time: Ball) -> list[Ball]:
+        """Where the midpoint of the start leads in a time."""
+        return self._ended(self.middle, time)
+
+    def reached(self, time: Ball) -> list[Ball]:
+        """Where all of the start leads."""
+        return self._ended(self.series, time)
+
+    def derivative(self, time: Ball | None = None) -> Matrix:
+        """Derivatives by the start after a time, by default the whole step."""
+        return polynomial(self.flow, self.h if time is None else time)
+
+    def cost(self, time: Ball) -> Ball:
+        """The integral of the cost along the motion from the midpoint."""
+        return polynomial(self.costs, time)
+
+    def _ended(self, series: list[Series], time: Ball) -> list[Ball]:
+        n = self.terms
+        return [
+            polynomial([*(s[k] for k in range(n)), w[n]], time) for s, w in zip(series, self.last, strict=True)
+        ]
+
+
+def unit(m: int) -> Matrix:
+    """The identity matrix."""
+    return arb_mat(m, m, [int(i == j) for i in range(m) for j in range(m)])
+
+
+def column(values: Sequence[Ball]) -> Matrix:
+    """A matrix of one column."""
+    return arb_mat(len(values), 1, list(values))
+
+
+def polynomial(coefficients: Sequence[Any], at: Ball) -> Any:
+    """The value of a polynomial in balls or in matrices, constant term first."""
+    total = coefficients[-1]
+    for c in reversed(coefficients[:-1]):
+        total = total * at + c
+    return total
+
+
+def from_zero(h: Ball) -> Ball:
+    """The ball of all times from 0 to h."""
+    return arb(0).union(h)
+
+
+def expand(field: Field, z: Sequence[Ball], n: int) -> list[Series]:
+    """Coefficients 0 to n of the motion from each point of the ball z."""
+    found = [[v] for v in z]
+    for k in range(1, n + 1):
+        ctx.cap = k
+        rates = field.rates([arb_series(c) for c in found])
+        for c, rate in zip(found, rates, strict=True):
+            c.append(rate[k - 1] / k)
+    ctx.cap = n + 1
+    return [arb_series(c) for c in found]
+
+
+def expand_flow(field: Field, series: Sequence[Series], start: Matrix, n: int) -> list[Matrix]:
+    """Coefficients 0 to n of V' = F_z V along a series, V(0) given."""
+    m = len(series)
+    ctx.cap = n
+    entries = field.jacobian(series)
+    a = [arb_mat(m, m, [e[k] for e in entries]) for k in range(n)]
+    found = [start]
+    for k in range(n):
+        total = a[0] * found[k]
+        for j in range(1, k + 1):
+            total += a[j] * found[k - j]
+        found.append(total * (arb(1) / (k + 1)))
+    return found
+
+
+def jacobian(field: Field, z: Sequence[Ball]) -> Matrix:
+    """F_z over a ball."""
+    ctx.cap = 1
+    m = len(z)
+    return arb_mat(m, m, [value(v) for v in field.jacobian([arb_series([v]) for v in z])])
+
+
+def rates(field: Field, z: Sequence[Ball]) -> list[Ball]:
+    """F over a ball."""
+    ctx.cap = 1
+    return [value(v) for v in field.rates([arb_series([v]) for v in z])]
+
+
+def step(
+    field: Field, middle: Sequence[Ball], z: Sequence[Ball], h: Ball, order: Order, sizes: Sequence[float]
+) -> tuple[Step, Ball]:
+    """A step of length h, or a shorter one where the remainder asks for it; and the length to try next.
+
+    Raises
+    ------
+    NotProved
+        If no step has an enclosure.
+    """
+    n, shortest = order.terms, arb(float(h.mid()) * 1e-9)
+    near, point = expand(field, z, n), expand(field, middle, n)
+    for h, found, rest in _enclosed(field, near, h, order, sizes):
+        if found is not None:
+            break
+        if h < shortest:
+            raise NotProved("a step of the integration has no enclosure")
+    b, last = found
+    ctx.cap = n + 1
+    flow = expand_flow(field, near, unit(len(z)), n - 1)
+    flow.append(expand_flow(field, last, _within(jacobian(field, b), h), n)[n])
+    ctx.cap = n + 1
+    cost, last_cost = field.cost(point), field.cost(last)
+    costs = [arb(0), *(cost[k] / (k + 1) for k in range(n)), last_cost[n] / (n + 1)]
+    following = arb(float(h.mid()) * min(2.0, 0.95 * (order.remainder / rest) ** (1 / n)))
+    return Step(h, b, point, near, last, flow, costs, n), following
+
+
+def _enclosed(
+    field: Field, near: Sequence[Series], h: Ball, order: Order, sizes: Sequence[float]
+) -> Iterator[tuple[Ball, Any, float]]:
+    """Shorter and shorter steps, each with a ball that motions do not leave and its series, where that was found."""
+    n = order.terms
+    while True:
+        tau = from_zero(h)
+        try:
+            b = [_wider(polynomial([s[k] for k in range(n)], tau)) for s in near]
+            last = expand(field, b, n)
+            rest = max(float((w[n] * h**n).abs_upper()) / size for w, size in zip(last, sizes, strict=True))
+            if rest > order.remainder * 10:  # also where it is not finite
+                shorter = 0.9 * (order.remainder / rest) ** (1 / n)
+                h = arb(float(h.mid()) * max(0.3, shorter))
+                yield h, None, rest
+                continue
+            stays = [polynomial([*(s[k] for k in range(n)), w[n]], tau) for s, w in zip(near, last, strict=True)]
+            if all(o.contains_interior(v) for o, v in zip(b, stays, strict=True)):
+                yield h, (b, last), rest or 1e-300
+        except (ArithmeticError, ValueError):  # something that may vanish is divided by
+            pass
+        h = arb(float(h.mid()) / 2)
+        yield h, None, 0.0
+
+
+def _wider(v: Ball) -> Ball:
+    """A ball that has v well inside."""
+    return arb(v.mid(), v.rad() * 1.05 + abs(v.mid()) * 1e-5 + 1e-25)
+
+
+def _within(a: Matrix, h: Ball) -> Matrix:
+    """A ball matrix that no V with V' = A V, V(0) = I leaves within h: |V - I| <= exp(|A| h) - I (Gronwall)."""
+    m = a.nrows()
+    bound = (arb_mat(m, m, [v.abs_upper() for v in a.entries()]) * h.abs_upper()).exp() - unit(m)
+    return unit(m) + arb_mat(m, m, [arb(0, v.abs_upper()) for v in bound.entries()])
