@@ -99,6 +99,10 @@ class Source:
         self.stated[_named(key)] = found.stated
         return found.ball
 
+    def has_units(self, table: str) -> bool:
+        """Whether a table of the file has a quantity with its unit."""
+        return any(isinstance(v, str) for v in self._tree.get(table, {}).values())
+
     def gives(self, *key: str) -> bool:
         """Whether the file says something under these keys."""
         written: Any = self._tree

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb
 
 from satsym.proof.arithmetic import Ball, NotProved
 from satsym.proof.laws import Law
 from satsym.proof.shooting import Box, Segment, Shooting, _Rows, inverse
-from satsym.proof.structure import leap
+from satsym.proof.structure import REMAINDER, TERMS, leap
 from satsym.proof.taylor import column, rates, unit
 
 TRIES = 12
-ENOUGH = 1e-13
-"""A correction that is smaller, relative to the sizes, is the last one."""
+SETTLED = 1e-8
+"""From a correction that is smaller, relative to the sizes, the next one is to all digits; a second such is enough."""
 
 
 @dataclass(frozen=True)
@@ -26,30 +26,34 @@ class Place:
     lengths: list[Ball]
 
 
-def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball]) -> Place:
-    """The zero of the equations near by.
+def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], digits: int) -> Place:
+    """The zero of the equations near by, to some digits more than asked for.
 
     Raises
     ------
     NotProved
         If Newton's method does not settle.
     """
-    size = float("inf")
+    size, fine = float("inf"), False
     for _ in range(TRIES):
-        residuals, jacobian = _equations(shooting, nodes, lengths)
+        terms, rest = (int(1.2 * digits) + 8, 10.0 ** -(digits + 8)) if fine else (TERMS, REMAINDER)
+        residuals, jacobian = _equations(shooting, nodes, lengths, terms, rest)
         move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
         scales = [*shooting.scales, *(abs(float(v.mid())) for v in lengths)]
         before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=False))
         here = shooting.unknowns(nodes, lengths)
         nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
-        if size < ENOUGH:
+        if fine and size < SETTLED:
             return Place(nodes, lengths)
-        if not size < 1e6 or (before < 1e-7 and size > 0.5 * before):
+        if not size < 1e6 or (before < SETTLED and not fine and size > 0.5 * before):
             break
+        fine = fine or size < SETTLED
     raise NotProved("Newton's method finds no extremal near the answer; it may have another structure")
 
 
-def _equations(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball]) -> tuple[Any, Any]:
+def _equations(
+    shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], terms: int, rest: float
+) -> tuple[Any, Any]:
     m = shooting.arcs[0].law.m
     zero = [[arb(0)] * m for _ in nodes]
     box = Box([[v.mid() for v in node] for node in nodes], zero, lengths, [arb(0)] * len(lengths))
@@ -57,20 +61,19 @@ def _equations(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball])
     for j, arc in enumerate(shooting.arcs):
         for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
             span = (box.lengths[j] * (arb(b) - arb(a))).mid()
-            rows.matched(_led(arc.law, box.nodes[k], span, shooting.sizes), k, j, arb(b) - arb(a))
+            rows.matched(_led(arc.law, box.nodes[k], span, shooting.sizes, terms, rest), k, j, arb(b) - arb(a))
             k += 1
         if j + 1 < len(shooting.arcs):
             rows.met(arc.law, shooting.arcs[j + 1].law, k)
     rows.ended(k)
-    return column(rows.residuals).mid(), arb_mat(rows.jacobian().mid())
+    return column(rows.residuals).mid(), rows.jacobian().mid()
 
 
-def _led(law: Law, node: list[Ball], span: Ball, sizes: tuple[float, ...]) -> Segment:
+def _led(law: Law, node: list[Ball], span: Ball, sizes: tuple[float, ...], terms: int, rest: float) -> Segment:
     z, flow, left = node, unit(law.m), span
     while True:
-        most = float(left.mid())
-        z, v, h = leap(law, z, most, sizes)
+        z, v, h, last = leap(law, z, left, sizes, terms, rest)
         flow = (v * flow).mid()
-        if h >= most:
+        if last:
             return Segment(z, flow, [r.mid() for r in rates(law, z)], [], [], [])
-        left = (left - arb(h)).mid()
+        left = (left - h).mid()

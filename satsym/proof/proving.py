@@ -97,7 +97,7 @@ class Located:
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     statement = stated(case, dict(found.instance.met))
     record = replace(record, numbers=dict(statement.source.stated))
-    shooting, place = _begun(statement, found)
+    shooting, place = _begun(statement, found, record.digits)
     for arc in shooting.arcs:
         verify(statement, arc.law, place.nodes, shooting.sizes)
     there = _enclosed(shooting, place, record.digits)
@@ -117,7 +117,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
 
 
-def _begun(statement: Statement, found: Solution) -> tuple[Shooting, Place]:
+def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, Place]:
     """The equations of the arcs that were found, and a point at which they nearly hold."""
     laws, times, path = structure.arcs(statement, found)
     sizes = structure.sizes_of(path)
@@ -129,7 +129,7 @@ def _begun(statement: Statement, found: Solution) -> tuple[Shooting, Place]:
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
         lengths = [statement.tf - statement.t0]
-    return shooting, located(shooting, nodes, lengths)
+    return shooting, located(shooting, nodes, lengths, digits)
 
 
 def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
@@ -147,13 +147,11 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
         raise NotProved("existence: no box about the answer is mapped into itself; more digits, or a better answer, may help")
     remainder = 10.0 ** -(digits + 6)
     order = Order(max(18, int(1.1 * (digits + 6))), remainder)
-    for _ in range(3):
-        box = _smaller(shooting, box, inclusion)
-        inclusion = krawczyk(shooting, box, order)
-        scales = _scales(shooting, box)
-        if max(float(v.rad()) / s for v, s in zip(inclusion.image, scales, strict=True)) < remainder * 1e4:
-            break
-    return Located(shooting, box, inclusion, radius)
+    box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + 6)))  # it lies in the former one
+    last = krawczyk(shooting, box, order)
+    if not last.inside:
+        raise NotProved("the extremal is not located to all digits; ask for fewer")
+    return Located(shooting, box, last, radius)
 
 
 def _scales(shooting: Shooting, box: Box) -> list[float]:
@@ -180,11 +178,3 @@ def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:
     around, lengths = shooting.placed(values, zero, [arb(0)] * len(box.lengths))
     return Box(box.nodes, around, box.lengths, lengths)
 
-
-def _smaller(shooting: Shooting, box: Box, inclusion: Inclusion) -> Box:
-    """The box that is left of one, about its own midpoint."""
-    here = shooting.unknowns(box.nodes, box.lengths)
-    moved = [a + v.mid() for a, v in zip(here, inclusion.image, strict=True)]
-    nodes, lengths = shooting.placed([v.mid() for v in moved], box.nodes, box.lengths)
-    rest = [v - v.mid() + (m - m.mid()) for v, m in zip(inclusion.image, moved, strict=True)]
-    return _around(shooting, Box(_exact(shooting, nodes), box.around, lengths, box.lengths_around), rest)

@@ -107,7 +107,7 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     initial = [
         source.number(value, v.unit, "initial", v.symbol) for v, value in zip(spec.states, case.initial, strict=True)
     ]
-    time = _time_unit(case)
+    time = _time_unit(case) if source.has_units("time") else "1"
     targets, ranges = _ends(case, source, met)
     lower, upper = (
         [

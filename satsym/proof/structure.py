@@ -18,7 +18,7 @@ from satsym.proof.statement import Statement
 from satsym.proof.taylor import expand, expand_flow, polynomial, unit
 from satsym.solution import Solution
 
-GROWTH = 12.0
+GROWTH = 50.0
 """How much errors may grow along a segment, relative to the sizes of components."""
 FINEST = 2.0**-24
 """Fractions of an arc at which nodes are placed are multiples of this."""
@@ -170,25 +170,27 @@ def _far(
     """How far from a start errors have grown as much as they may, and the state there."""
     m, t, z, flow = law.m, 0.0, start, unit(law.m)
     while True:
-        z, v, h = leap(law, z, left - t, sizes)
-        flow, t = (v * flow).mid(), t + h
+        z, v, h, whole = leap(law, z, arb(left - t), sizes)
+        flow, t = (v * flow).mid(), t + float(h)
         grown = max(abs(float(flow[i, j].mid())) * sizes[j] / sizes[i] for i in range(m) for j in range(m))
-        if t >= left * (1 - 1e-12) or grown > GROWTH:
-            return t, z
+        if whole or grown > GROWTH:
+            return (left if whole else t), z
 
 
 def leap(
-    law: Law, z: Sequence[Ball], most: float, sizes: Sequence[float], terms: int = TERMS, rest: float = REMAINDER
-) -> tuple[list[Ball], Any, float]:
-    """A step without enclosures: where it leads, the derivatives, and its length."""
+    law: Law, z: Sequence[Ball], most: Ball, sizes: Sequence[float], terms: int = TERMS, rest: float = REMAINDER
+) -> tuple[list[Ball], Any, Ball, bool]:
+    """A step without enclosures: where it leads, the derivatives, its length, and whether that is all that was asked."""
     series = expand(law, [v.mid() for v in z], terms)
     last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=True))
     if not math.isfinite(last):
         raise NotProved("the motion from the given costates is not finite")
-    h = min(most, 0.8 * (rest / last) ** (1 / terms)) if last else most
-    flow = polynomial(expand_flow(law, series, unit(law.m), terms), arb(h))
-    there = [polynomial([s[k] for k in range(terms + 1)], arb(h)).mid() for s in series]
-    return there, flow.mid(), h
+    longest = 0.8 * (rest / last) ** (1 / terms) if last else math.inf
+    whole = float(most.mid()) <= longest
+    h = most.mid() if whole else arb(longest)
+    flow = polynomial(expand_flow(law, series, unit(law.m), terms // 2), h)
+    there = [polynomial([s[k] for k in range(terms + 1)], h).mid() for s in series]
+    return there, flow.mid(), h, whole
 
 
 def sizes_of(path: Path) -> list[float]:

@@ -114,24 +114,43 @@ def from_zero(h: Ball) -> Ball:
 
 
 def expand(field: Field, z: Sequence[Ball], n: int) -> list[Series]:
-    """Coefficients 0 to n of the motion from each point of the ball z."""
-    found = [[v] for v in z]
-    for k in range(1, n + 1):
-        ctx.cap = k
-        rates = field.rates([arb_series(c) for c in found])
-        for c, rate in zip(found, rates, strict=True):
-            c.append(rate[k - 1] / k)
+    """Coefficients 0 to n of the motion from each point of the ball z.
+
+    Newton's method on series: with k coefficients known, what they leave of the equation is linear in the next k.
+    """
+    m, found, k = len(z), [[v] for v in z], 1
+    while k <= n:
+        wanted = min(2 * k, n + 1)
+        ctx.cap = wanted - 1
+        series = [arb_series(c) for c in found]
+        rates = field.rates(series)
+        ctx.cap = max(wanted - k, 1)
+        a = _matrices(field, series, wanted - k - 1)
+        e: list[Matrix] = []  # coefficients k, k + 1, ... of what is missing
+        for j in range(k, wanted):
+            total = arb_mat(m, 1, [rate[j - 1] for rate in rates])
+            for i, known in enumerate(e):
+                total += a[len(e) - 1 - i] * known
+            e.append(total * (arb(1) / j))
+        for i, c in enumerate(found):
+            c.extend(one[i, 0] for one in e)
+        k = wanted
     ctx.cap = n + 1
     return [arb_series(c) for c in found]
 
 
+def _matrices(field: Field, series: Sequence[Series], count: int) -> list[Matrix]:
+    """Coefficients of F_z along a series."""
+    if count <= 0:
+        return []
+    m, entries = len(series), field.jacobian(series)
+    return [arb_mat(m, m, [e[k] for e in entries]) for k in range(count)]
+
+
 def expand_flow(field: Field, series: Sequence[Series], start: Matrix, n: int) -> list[Matrix]:
     """Coefficients 0 to n of V' = F_z V along a series, V(0) given."""
-    m = len(series)
     ctx.cap = n
-    entries = field.jacobian(series)
-    a = [arb_mat(m, m, [e[k] for e in entries]) for k in range(n)]
-    found = [start]
+    a, found = _matrices(field, series, n), [start]
     for k in range(n):
         total = a[0] * found[k]
         for j in range(1, k + 1):
@@ -171,9 +190,9 @@ def step(
         if h < shortest:
             raise NotProved("a step of the integration has no enclosure")
     b, last = found
-    ctx.cap = n + 1
-    flow = expand_flow(field, near, unit(len(z)), n - 1)
-    flow.append(expand_flow(field, last, _within(jacobian(field, b), h), n)[n])
+    half = n // 2  # derivatives multiply what is small, and need but half the digits
+    flow = expand_flow(field, near, unit(len(z)), half - 1)
+    flow.append(expand_flow(field, last, _within(jacobian(field, b), h), half)[half])
     ctx.cap = n + 1
     cost, last_cost = field.cost(point), field.cost(last)
     costs = [arb(0), *(cost[k] / (k + 1) for k in range(n)), last_cost[n] / (n + 1)]
