@@ -84,7 +84,7 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
     x, lam, pieces = unit(n), w, 0
     for step in segment.steps:
         start = _ratio(x, lam)
-        taken = _regular(step, start, sizes[:n], 0.0, 1.0, DEEPEST)
+        taken = _regular(step, start, _widths(start, sizes[:n]), 0.0, 1.0, DEEPEST)
         if not taken:
             raise NotProved(f"X of the field is not shown to be regular near t = {time.mid().str(6, radius=False)} (a conjugate point?)")
         pieces, time = pieces + taken, time + step.h
@@ -94,6 +94,13 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
             _block(v, n, 0, n) * x + _block(v, n, n, n) * lam,
         )
     return _above(_ratio(x, lam), sizes[:n]), pieces
+
+
+def _widths(w: Matrix, sizes: Sequence[float]) -> list[float]:
+    """How wide a field is in each state: where its value changes by one, at most so many sizes."""
+    entries = [abs(float(w[i, i].mid())) for i in range(w.nrows())]
+    largest = max((e * s * s for e, s in zip(entries, sizes, strict=True)), default=0.0)
+    return [max(e, 1e-9 * largest / (s * s), 1e-300) ** -0.5 for e, s in zip(entries, sizes, strict=True)]
 
 
 def _ratio(x: Matrix, lam: Matrix) -> Matrix:
@@ -167,22 +174,28 @@ def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
     n, sizes = shooting.arcs[0].law.n, shooting.sizes
     scale = [b / a for a, b in zip(sizes[:n], sizes[n : 2 * n], strict=True)]
     least = max(scale) * 1e-6
-    for kappa in (1.0, 10.0, 100.0, 1e3, 1e4, 0.1, 0.0, 1e5, 1e6):
-        yield f"-{kappa:g} diag(lambda / x)", _diagonal([-kappa * max(v, least) for v in scale])
     yield from _later(shooting, passed)
+    for kappa in (1.0, 10.0, 100.0, 1e3, 1e4, 0.1, 0.0):
+        yield f"-{kappa:g} diag(lambda / x)", _diagonal([-kappa * max(v, least) for v in scale])
 
 
 def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
     """Diagonals of W, at later times, of the field of all extremals from the initial state."""
     n, flow = shooting.arcs[0].law.n, unit(shooting.arcs[0].law.m)
-    for k, segment in enumerate(passed.segments[0][:4]):
-        flow = (segment.derivative * flow).mid()
+    jumping = isinstance(shooting.arcs[0].law, Held | Throttled)
+    reach = passed.segments[:1] if jumping else passed.segments
+    steps = [step for segments in reach for segment in segments for step in segment.steps]
+    wanted = {max(1, len(steps) // part) for part in (2, 4, 8, 16)}
+    for k, step in enumerate(steps, 1):
+        flow = (step.derivative().mid() * flow).mid()
+        if k not in wanted:
+            continue
         try:
             w = _block(flow, n, n, n) * _block(flow, 0, n, n).inv()
         except ZeroDivisionError:
             continue
         for kappa in (1, 8, 64):
-            yield f"-{kappa} diag W({k + 1})", _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)])
+            yield f"-{kappa} diag W of all extremals from the start, after {k} steps", _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)])
 
 
 def _diagonal(entries: Sequence[float]) -> Matrix:

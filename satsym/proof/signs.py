@@ -14,7 +14,7 @@ from satsym.proof.laws import Held, Law, Regular, Throttled
 from satsym.proof.shooting import Pass, Shooting
 from satsym.proof.taylor import Step, from_zero, polynomial
 
-DEEPEST = 40
+DEEPEST = 16
 """How often a step is halved to show a sign on it."""
 PARTS = 14
 """How often, to find the part of a step on which a condition falls to zero."""
@@ -56,39 +56,61 @@ def _on_step(law: Law, step: Step, entering: Key | None, leaving: Key | None, wh
     ctx.cap = n + 1
     near, last = law.conditions(step.series), law.conditions(step.last)
     for (key, c), (_, d) in zip(near, last, strict=True):
-        coefficients = [*(c[k] for k in range(n)), d[n]]
+        series = [*(c[k] for k in range(n)), d[n]]
         slope = [*((k + 1) * c[k + 1] for k in range(n - 1)), n * d[n]]
         low, high = arb(0), step.h
         if key == entering:
-            low = _part(slope, step.h, lambda w: (arb(0), w), 1, where)
+            low = _part(slope, step.h, 1, where)
         if key == leaving:
-            high = step.h - _part(slope, step.h, lambda w: (step.h - w, step.h), -1, where)
-        if low < high and not _positive(coefficients, low, high):
-            raise NotProved(f"{where}: the sign that its law needs ({_said(key)}) is not shown; another structure may be right")
+            high = step.h - _part(slope, step.h, -1, where)
+        if low < high and not _positive(_Condition(law, key, step, series), low, high):
+            raise NotProved(
+                f"{where}: a sign that its law needs ({key[0]} {key[1]}) is not shown; another structure may be right"
+            )
     return len(near)
 
 
-def _part(slope: Sequence[Ball], h: Ball, part, sign: int, where: str) -> Ball:  # type: ignore[no-untyped-def]
-    """A part of the step, at one of its ends, on which a condition rises or falls."""
+def _part(slope: Sequence[Ball], h: Ball, sign: int, where: str) -> Ball:
+    """A part of a step, at its beginning (1) or at its end (-1), on which a condition rises or falls."""
     for k in range(PARTS):
         w = h / 2**k
-        if _positive([v * sign for v in slope], *part(w)):
+        between = arb(0).union(w) if sign > 0 else (h - w).union(h)
+        if sign * polynomial(slope, between) > 0:
             return w
     raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
 
 
-def _positive(coefficients: Sequence[Ball], low: Ball, high: Ball, depth: int = DEEPEST) -> bool:
-    """Whether a polynomial is positive from one time to another."""
-    if polynomial(coefficients, low.union(high)) > 0:
+@dataclass(frozen=True)
+class _Condition:
+    """A condition on a step, as a function of time."""
+
+    law: Law
+    key: Key
+    step: Step
+    series: list[Ball]
+
+    def positive(self, time: Ball) -> bool:
+        """Whether it is positive, by its series, which may reach less far than that of the motion, or by its values."""
+        return bool(polynomial(self.series, time) > 0 or self.at(time) > 0)
+
+    def at(self, time: Ball) -> Ball:
+        """Its value over a ball of times."""
+        ctx.cap = 1
+        z = [arb_series([v]) for v in self.step.reached(time)]
+        try:
+            return value(dict(self.law.conditions(z))[self.key])
+        except (ArithmeticError, ValueError):
+            return arb(0, float("inf"))
+
+
+def _positive(condition: _Condition, low: Ball, high: Ball, depth: int = DEEPEST) -> bool:
+    """Whether a condition is positive from one time to another."""
+    if condition.positive(low.union(high)):
         return True
-    if depth == 0 or not (polynomial(coefficients, low) > 0 and polynomial(coefficients, high) > 0):
-        return False
     middle = ((low + high) / 2).mid()
-    return _positive(coefficients, low, middle, depth - 1) and _positive(coefficients, middle, high, depth - 1)
-
-
-def _said(key: Key) -> str:
-    return f"{key[0]} {key[1]}"
+    if depth == 0 or condition.at(middle) <= 0:
+        return False
+    return _positive(condition, low, middle, depth - 1) and _positive(condition, middle, high, depth - 1)
 
 
 def _require_weights(law: Held, steps: Sequence[Step]) -> None:

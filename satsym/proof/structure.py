@@ -18,7 +18,7 @@ from satsym.proof.statement import Statement
 from satsym.proof.taylor import expand, expand_flow, polynomial, unit
 from satsym.solution import Solution
 
-GROWTH = 50.0
+GROWTH = 20.0
 """How much errors may grow along a segment, relative to the sizes of components."""
 FINEST = 2.0**-24
 """Fractions of an arc at which nodes are placed are multiples of this."""
@@ -198,7 +198,7 @@ def sizes_of(path: Path) -> list[float]:
     n = (len(path.values)) // 2
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
-    return [max(v, 1e-9 * max(group), 1e-30) for group in groups for v in group]
+    return [max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group]
 
 
 def as_floats(values: Sequence[Ball]) -> Array:

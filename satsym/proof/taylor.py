@@ -16,6 +16,8 @@ from satsym.proof.arithmetic import Ball, NotProved, Series, value
 
 Matrix = Any
 """An ``arb_mat``."""
+FEWER = 0.65
+"""Of the terms, how many there are of derivatives by the start, which multiply what is small."""
 
 
 class Field(Protocol):
@@ -190,9 +192,9 @@ def step(
         if h < shortest:
             raise NotProved("a step of the integration has no enclosure")
     b, last = found
-    half = n // 2  # derivatives multiply what is small, and need but half the digits
-    flow = expand_flow(field, near, unit(len(z)), half - 1)
-    flow.append(expand_flow(field, last, _within(jacobian(field, b), h), half)[half])
+    fewer = int(FEWER * n)
+    flow = expand_flow(field, near, unit(len(z)), fewer - 1)
+    flow.append(expand_flow(field, last, _within(jacobian(field, b), h), fewer)[fewer])
     ctx.cap = n + 1
     cost, last_cost = field.cost(point), field.cost(last)
     costs = [arb(0), *(cost[k] / (k + 1) for k in range(n)), last_cost[n] / (n + 1)]
