@@ -147,6 +147,9 @@ class Regular(Law):
 class Throttled(Regular):
     """A vector that is as long as it may be, or none, by the sign of the throttle's slope."""
 
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        return [constant(0)] * len(self.kernel.spec.controls) if self.off else super().control(z)
+
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
         t, x, lam = self.parts(z)
         (slope,) = self.kernel.throttle_slope(t, x, lam, self.p, self.bounds)
@@ -158,7 +161,7 @@ class Throttled(Regular):
     @property
     def off(self) -> bool:
         """Whether the vector is none here: the first comparison of the motion is with the least norm."""
-        return next(answer for key, answer in self.answers.given.items() if key[0] == "canonical")
+        return next((answer for key, answer in self.answers.given.items() if key[0] == "canonical"), False)
 
 
 THROTTLE: Key = ("throttle_slope", 0)

@@ -74,7 +74,7 @@ def _regular(
             continue
         law = kind(statement.kernel, statement.p, statement.bounds)
         z = [arb_series([arb(float(v))]) for v in path.values[:, k]]
-        law.rates(z), law.jacobian(z), law.cost(z)  # each learns how its comparisons come out
+        law.rates(z), law.jacobian(z), law.cost(z), kind.control(law, z)  # each learns how its comparisons come out
         seen.append((float(t), known.setdefault(law.state(), law)))
     if not seen:
         raise NotProved("there are no nodes to begin with")
