@@ -28,6 +28,7 @@ __all__ = [
     "export",
     "load",
     "lqr",
+    "prove",
     "simulate",
     "solve",
     "study",
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from satsym.front.derivation import derive
     from satsym.front.exporting import export
     from satsym.front.instance import Instance, load
+    from satsym.front.proving import prove
     from satsym.front.solution import Solution, solve
     from satsym.front.studies import study
     from satsym.front.trajectory import simulate
@@ -52,6 +54,7 @@ _HOMES = {
     "front.derivation": ("derive",),
     "front.exporting": ("export",),
     "front.instance": ("Instance", "load"),
+    "front.proving": ("prove",),
     "front.solution": ("Solution", "solve"),
     "front.studies": ("study",),
     "front.trajectory": ("simulate",),

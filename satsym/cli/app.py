@@ -48,6 +48,7 @@ COMMANDS = (
     "instances",
     "new",
     "solve",
+    "prove",
     "simulate",
     "study",
     "plot",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from satsym.report.results.objects import solution_object
 from satsym.report.terminal.solution import solution_text
 from satsym.solution import Certificate, Event, Progress
 from satsym.solvers.constrained.structure import stated_arcs
+
+if TYPE_CHECKING:
+    from satsym.front.proving import Proof
 
 
 class Solution(Result[solution.Solution]):
@@ -72,6 +75,12 @@ class Solution(Result[solution.Solution]):
     def to_dict(self) -> dict[str, Any]:
         """What ``satsym solve --json`` prints."""
         return solution_object(self.found)
+
+    def prove(self, digits: int = 20) -> Proof:
+        """Prove it, as :func:`satsym.prove` does, with what was found."""
+        from satsym.front.proving import proved
+
+        return proved(self.instance.case, lambda: self.found, digits)
 
     @property
     def _lam(self) -> Array:

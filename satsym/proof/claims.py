@@ -88,15 +88,15 @@ def theorem(statement: Statement, laws: Sequence[Law], convexity: str) -> Theore
     name, source = BROKEN if jumping else FIELD
     time = " and whose final time is near" if statement.tf is None else ""
     least = "a maximum of the objective" if statement.spec.maximise else "a minimum of the cost"
-    claims = (
+    claimed: tuple[str, ...] = (
         "There is exactly one extremal of this structure within unique_within of the enclosures.",
         f"It is strictly {least} among all admissible motions whose states stay near it{time}, however different the "
         "controls are (a strict strong local optimum).",
     )
     if convexity:
         name, source = f"{name}; {CONVEX[0]}", f"{source}; {CONVEX[1]}"
-        claims = (*claims, f"It is global: {convexity}.")
-    return Theorem(name, source, claims)
+        claimed = (*claimed, f"It is global: {convexity}.")
+    return Theorem(name, source, claimed)
 
 
 def scope(statement: Statement) -> str:
@@ -107,10 +107,8 @@ def scope(statement: Statement) -> str:
         if path
         else "numbers given in Python are the binary fractions that they are, defaults of the model exact decimals"
     )
-    angles = statement.case.solver.free_angles
-    turns = f" Final angles ({', '.join(angles)}) are those of this number of turns." if angles else ""
     return (
-        f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers}. Derivatives and laws "
-        f"of the generated kernel were compared with its motion and costs at random points.{turns} Near means within "
-        "some distance that the theorem does not give."
+        f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers}. Derivatives and "
+        "laws of the generated kernel were compared with its motion and costs at random points. Near means within some "
+        "distance that the theorem does not give."
     )

@@ -60,7 +60,7 @@ class _Undecided(Answers):
 
 def _second(jet: Jet) -> bool:
     """Whether a second derivative is other than zero."""
-    return any(not value(v) == 0 for v in jet.second.values())
+    return any(not value(v).is_zero() for v in jet.second.values())
 
 
 def _semidefinite(jet: Any, count: int) -> bool:
@@ -76,10 +76,9 @@ def _semidefinite(jet: Any, count: int) -> bool:
     while left:
         pivot = next((k for k in left if a[k][k] > 0), None)
         if pivot is None:  # what is left must vanish exactly
-            return all(a[i][j] == 0 for i in left for j in left)
+            return all(a[i][j].is_zero() for i in left for j in left)
         left.remove(pivot)
         for i in left:
             for j in left:
                 a[i][j] = a[i][j] - a[i][pivot] * a[pivot][j] / a[pivot][pivot]
     return True
-

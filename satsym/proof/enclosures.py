@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import accumulate
-from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.arithmetic import Ball, value
 from satsym.proof.ends import End
@@ -23,9 +22,7 @@ MOST_NODES = 9
 def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius: float) -> Proof:
     """The record with what is known once an extremal exists."""
     here = shooting.unknowns(box.nodes, box.lengths)
-    nodes, lengths = shooting.placed(
-        [a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths
-    )
+    nodes, lengths = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
     statement, law = shooting.statement, shooting.arcs[0].law
     states, n, digits = statement.spec.state_names, law.n, record.digits
 
@@ -49,9 +46,7 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
         record,
         hypotheses=(*record.hypotheses, shown),
         costate_initial=row(nodes[0][n : 2 * n]),
-        nodes=tuple(
-            Node(Enclosure.of(times[k], digits), row(nodes[k][:n]), row(nodes[k][n : 2 * n])) for k in kept
-        ),
+        nodes=tuple(Node(Enclosure.of(times[k], digits), row(nodes[k][:n]), row(nodes[k][n : 2 * n])) for k in kept),
         x_final=row(nodes[-1][:n]),
         t_final=Enclosure.of(final, digits),
         objective=Enclosure.of(-objective if statement.spec.maximise else objective, digits),
@@ -78,42 +73,30 @@ def _share(shooting: Shooting, box: Box, last: Inclusion) -> Ball:
 
 def _cost(shooting: Shooting, box: Box, last: Inclusion, share: Ball) -> Ball:
     """The running cost of the extremal: that of the midpoint's motion, and how far another one's can be from it."""
-    total, k = arb(0), 0
+    total = arb(0)
     for j, (arc, segments) in enumerate(zip(shooting.arcs, last.passed.segments, strict=True)):
-        for segment in segments:
-            slack = box.lengths_around[j] * share
-            total += _along(arc.law, segment, share, box.lengths[j] * (arb(arc.fractions[k + 1]) - arb(arc.fractions[k])), slack)
-            k += 1
-        k = 0
+        slack = box.lengths_around[j] * share
+        for segment, a, b in zip(segments, arc.fractions[:-1], arc.fractions[1:], strict=True):
+            total += _along(arc.law, segment, share, box.lengths[j] * (arb(b) - arb(a)), slack)
     return total
 
 
 def _along(law: Law, segment: Segment, share: Ball, span: Ball, slack: Ball) -> Ball:
-    total, left = arb(0), span
-    for number, (step, deviation, error) in enumerate(
-        zip(segment.steps, segment.deviations, segment.errors, strict=True)
-    ):
-        last = number == len(segment.steps) - 1
-        total += step.cost(left if last else step.h)
+    total, left, final = arb(0), span, len(segment.steps) - 1
+    for number, step in enumerate(segment.steps):
+        total += step.cost(left if number == final else step.h)
+        off = [share * d + e for d, e in zip(segment.deviations[number], segment.errors[number], strict=True)]
+        moved = (step.derivative(from_zero(step.h)) * arb_mat(len(off), 1, off)).entries()
         slopes = _cost_gradient(law, step.range)
-        around = [share * d + e for d, e in zip(deviation, error, strict=True)]
-        moved = (step.derivative(from_zero(step.h)) * arb_mat(len(around), 1, around)).entries()
-        total += arb(0, sum((abs(g) * abs(v) for g, v in zip(slopes, moved, strict=True)), arb(0)).abs_upper()
-                     * step.h.abs_upper())
-        if last:
-            ctx.cap = 1
-            total += arb(0, (value(law.cost([_one(v) for v in step.range])) * slack).abs_upper())
+        change = sum((abs(g) * abs(v) for g, v in zip(slopes, moved, strict=True)), arb(0))
+        total += arb(0, (change * step.h).abs_upper())
         left = left - step.h
-    return total
+    ctx.cap = 1
+    rate = value(law.cost([arb_series([v]) for v in segment.steps[-1].range]))
+    return total + arb(0, (rate * slack).abs_upper())
 
 
 def _cost_gradient(law: Law, z: list[Ball]) -> list[Ball]:
     """Derivatives of the running cost under the law, over a ball."""
     given = variables(z)
     return derivatives(lambda: law.cost(given), len(z))[1]
-
-
-def _one(v: Any) -> Any:
-    from flint import arb_series
-
-    return arb_series([v])

@@ -1,4 +1,4 @@
-"""The conditions at the final time, and the second derivatives there, from the terminal cost and the reference alone."""
+"""The conditions at the final time and the second derivatives there, from the terminal cost and the reference."""
 
 from __future__ import annotations
 

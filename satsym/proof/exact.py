@@ -89,6 +89,8 @@ class Source:
             except (KeyError, IndexError, TypeError):
                 written = None
                 break
+        if isinstance(written, list) and written:  # a range of no width
+            written = written[0]
         found = _read(written, unit, value) or _dyadic(value)
         self.stated[_named(key)] = found.stated
         return found.ball

@@ -11,9 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from flint import arb, arb_mat, arb_series, ctx
+from flint import arb, arb_mat
 
 from satsym.proof.arithmetic import Ball, NotProved
 from satsym.proof.ends import positive
@@ -86,7 +85,7 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
         start = _ratio(x, lam)
         taken = _regular(step, start, _widths(start, sizes[:n]), 0.0, 1.0, DEEPEST)
         if not taken:
-            raise NotProved(f"X of the field is not shown to be regular near t = {time.mid().str(6, radius=False)} (a conjugate point?)")
+            raise NotProved(f"X of the field is not shown to be regular near t = {_about(time)} (a conjugate point?)")
         pieces, time = pieces + taken, time + step.h
         v = step.derivative()
         x, lam = (
@@ -122,7 +121,7 @@ def _above(w: Matrix, sizes: Sequence[float]) -> Matrix:
 
 
 def _regular(step: Step, w: Matrix, sizes: Sequence[float], low: float, high: float, depth: int) -> int:
-    """Into how many pieces a part of a step falls on each of which V_xx + V_xl W is regular; 0 where it is not shown."""
+    """Pieces into which a part of a step falls, on each of which V_xx + V_xl W is regular; 0 where it is not shown."""
     n = w.nrows()
     v = step.derivative(arb(low).union(arb(high)) * step.h)
     x = _block(v, 0, 0, n) + _block(v, 0, n, n) * w
@@ -157,12 +156,14 @@ def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -
     ]  # of the condition by the field's states
     ratio = 1 + sum((a * v for a, v in zip(along, jump[:n], strict=True)), arb(0)) / speed
     if not ratio > 0:
-        raise NotProved(
-            f"det X of the field changes its sign at the switch near t = {time.mid().str(6, radius=False)} (a conjugate point?)"
-        )
+        raise NotProved(f"det X of the field changes its sign at the switch at t = {_about(time)} (a conjugate point?)")
     x = arb_mat(n, n, [jump[i] * along[j] / speed + int(i == j) for i in range(n) for j in range(n)])
     lam = arb_mat(n, n, [jump[n + i] * along[j] / speed + w[i, j] for i in range(n) for j in range(n)])
     return _ratio(x, lam), ratio
+
+
+def _about(time: Ball) -> str:
+    return str(time.mid().str(6, radius=False))
 
 
 def _block(a: Matrix, i: int, j: int, n: int) -> Matrix:
@@ -195,7 +196,10 @@ def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
         except ZeroDivisionError:
             continue
         for kappa in (1, 8, 64):
-            yield f"-{kappa} diag W of all extremals from the start, after {k} steps", _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)])
+            yield (
+                f"-{kappa} diag W of all extremals from the start, after {k} steps",
+                _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)]),
+            )
 
 
 def _diagonal(entries: Sequence[float]) -> Matrix:

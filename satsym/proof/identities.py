@@ -74,7 +74,9 @@ class _Point:
     def by_controls(self, u: Sequence[Any]) -> tuple[Ball, list[Ball], list[list[Ball]]]:
         """H, H_u and H_uu at other controls."""
         given = variables([value(v) for v in u])
-        return self.elsewhere(lambda: derivatives(lambda: self.hamiltonian(self.t, self.x, given, self.lam), len(given)))
+        return self.elsewhere(
+            lambda: derivatives(lambda: self.hamiltonian(self.t, self.x, given, self.lam), len(given))
+        )
 
     def elsewhere(self, evaluate: Callable[[], Any]) -> Any:
         """Evaluate with comparisons that come out as they do."""
@@ -83,6 +85,10 @@ class _Point:
             return evaluate()
         finally:
             self.kernel.answers = before
+
+    def at(self, *u: Ball) -> Ball:
+        """H at other controls."""
+        return self.by_controls([constant(v) for v in u])[0]
 
     def random_controls(self) -> list[Any]:
         return [constant(arb(self.drawn.uniform(-2, 2))) for _ in self.u]
@@ -131,15 +137,14 @@ class _Point:
     def throttle(self) -> None:
         """H is linear in a vector and its norm; the law is its best direction at the largest norm, or none."""
         one, none = arb(1), arb("1e-60")
-        at = lambda *u: self.by_controls([constant(v) for v in u])[0]  # noqa: E731 - a name for what is evaluated
-        zero = at(none, none)
-        pairs = [(at(one, none), at(-one, none)), (at(none, one), at(none, -one))]
+        zero = self.at(none, none)
+        pairs = [(self.at(one, none), self.at(-one, none)), (self.at(none, one), self.at(none, -one))]
         a = [(v - w) / 2 for v, w in pairs]
         q = (pairs[0][0] + pairs[0][1]) / 2 - zero
         for _ in range(2):
             u = [value(v) for v in self.random_controls()]
             norm = (u[0] * u[0] + u[1] * u[1]).sqrt()
-            self.equal([at(*u)], [zero + q * norm + a[0] * u[0] + a[1] * u[1]], "H by the controls")
+            self.equal([self.at(*u)], [zero + q * norm + a[0] * u[0] + a[1] * u[1]], "H by the controls")
         size = (a[0] * a[0] + a[1] * a[1]).sqrt()
         law = self.law
         assert isinstance(law, Throttled)
@@ -217,7 +222,9 @@ class _Point:
         norm = sum((value(v) * value(v) for v in self.u), arb(0))
         if (norm - r * r).contains(0):
             pull = -sum((s * value(v) for s, v in zip(slopes, self.u, strict=True)), arb(0)) / (r * r)
-            self.equal([s + pull * value(v) + c for s, v in zip(slopes, self.u, strict=True)], [c] * m, "H_u on the ball")
+            self.equal(
+                [s + pull * value(v) + c for s, v in zip(slopes, self.u, strict=True)], [c] * m, "H_u on the ball"
+            )
             farther = r * (pull / c + 1)  # the norm without the bound
             return self.among(farther * farther - r * r, shown, "the ball of the controls")
         self.vanishing(slopes)
@@ -229,12 +236,13 @@ class _Point:
         if part.kind != "angle":
             raise BeyondProof(f"a control set of the kind {part.kind}")
         pi = arb.pi()
-        at = lambda b: self.by_controls([constant(b)])[0]  # noqa: E731
-        mean, a, b = (at(arb(0)) + at(pi)) / 2, (at(arb(0)) - at(pi)) / 2, (at(pi / 2) - at(-pi / 2)) / 2
+        ahead, behind = self.at(arb(0)), self.at(pi)
+        mean, a = (ahead + behind) / 2, (ahead - behind) / 2
+        b = (self.at(pi / 2) - self.at(-pi / 2)) / 2
         for _ in range(3):
             (v,) = (value(v) for v in self.random_controls())
-            self.equal([at(v)], [mean + a * v.cos() + b * v.sin()], "H by the direction")
-        self.equal([at(value(self.u[0]))], [mean - (a * a + b * b).sqrt()], "H under the law")
+            self.equal([self.at(v)], [mean + a * v.cos() + b * v.sin()], "H by the direction")
+        self.equal([self.at(value(self.u[0]))], [mean - (a * a + b * b).sqrt()], "H under the law")
         self.among(a * a + b * b, self.conditions(), "a direction that is determined")
 
 

@@ -121,7 +121,7 @@ class Jet:
         return Jet(constant(arb.atan2(value(y.value), value(x.value))), first, second)
 
 
-def _ONE() -> Any:  # noqa: N802 - a constant, as precise as arithmetic is now
+def _ONE() -> Any:
     return constant(1)
 
 

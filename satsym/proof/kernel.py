@@ -47,13 +47,15 @@ class BallKernel:
             self._functions[name] = self._compiled(name)
         return self._functions[name]
 
-    def has(self, name: str) -> bool:
-        """Whether the module defines such a function."""
-        return name in self._definitions
-
-    def renew(self) -> None:
-        """Compile anew, for constants are as precise as arithmetic was when they were made."""
-        self._functions.clear()
+    def cases(self, name: str) -> list[str]:
+        """What a function compares or takes the absolute value of, as its text has it."""
+        found = []
+        for node in ast.walk(self._definitions[name]):
+            if isinstance(node, ast.Compare):
+                found.append(ast.unparse(node))
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "fabs":
+                found.append(ast.unparse(node.args[0]))
+        return found
 
     def _compiled(self, name: str) -> Callable[..., Any]:
         exact = _Exact(name)
@@ -67,7 +69,7 @@ class BallKernel:
             **{key: constant(exactly(number)) for key, number in exact.numbers.items()},
         }
         exec(code, namespace)  # noqa: S102 - a function of a module that was checked node by node
-        return namespace[name]  # type: ignore[no-any-return]
+        return namespace[name]
 
 
 def exactly(number: Fraction) -> Any:
@@ -106,9 +108,9 @@ class _Exact(ast.NodeTransformer):
         self.compared += 1
         return ast.Tuple([ast.Constant(self.function), ast.Constant(self.compared)], ast.Load())
 
-    def visit_Constant(self, node: ast.Constant) -> ast.AST:  # noqa: N802 - named by ast
-        if isinstance(node.value, str):
-            return node
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        if not isinstance(node.value, int | float):
+            return node  # a docstring
         number = Fraction(repr(node.value))
         digits = repr(node.value).partition("e")[0].replace(".", "").strip("0")
         if number != Fraction(node.value) and len(digits) >= ROUNDED:
@@ -117,7 +119,7 @@ class _Exact(ast.NodeTransformer):
         self.numbers[name] = number
         return ast.Name(name, ast.Load())
 
-    def visit_Compare(self, node: ast.Compare) -> ast.AST:  # noqa: N802
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
         a, b = (self.visit(side) for side in (node.left, node.comparators[0]))
         match node.ops:
             case [ast.Lt() | ast.LtE()]:
@@ -128,11 +130,11 @@ class _Exact(ast.NodeTransformer):
                 raise BeyondProof("a comparison of another kind")
         return ast.Call(ast.Name("_below", ast.Load()), [self._key(), *pair], [])
 
-    def visit_Call(self, node: ast.Call) -> ast.AST:  # noqa: N802
+    def visit_Call(self, node: ast.Call) -> ast.AST:
         self.generic_visit(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr == "fabs":
             return ast.Call(ast.Name("_magnitude", ast.Load()), [self._key(), *node.args], [])
         return node
 
-    def visit_For(self, node: ast.For) -> ast.AST:  # noqa: N802
+    def visit_For(self, node: ast.For) -> ast.AST:
         raise BeyondProof("a law of the controls that is found by iteration")

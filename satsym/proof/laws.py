@@ -112,7 +112,7 @@ class Regular(Law):
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
-        return self.kernel.control_law(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+        return self.kernel.control_law(t, x, lam, self.p, self.bounds)
 
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
         return list(dict(self.answers.notes(lambda: self._rates(z))).items())
@@ -133,15 +133,15 @@ class Regular(Law):
 
     def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
-        return self.kernel.canonical(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+        return self.kernel.canonical(t, x, lam, self.p, self.bounds)
 
     def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
-        return self.kernel.canonical_jacobian(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+        return self.kernel.canonical_jacobian(t, x, lam, self.p, self.bounds)
 
     def _drift(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
-        return self.kernel.canonical_drift(t, x, lam, self.p, self.bounds)  # type: ignore[no-any-return]
+        return self.kernel.canonical_drift(t, x, lam, self.p, self.bounds)
 
 
 class Throttled(Regular):
@@ -216,7 +216,7 @@ class Held(Law):
 
     def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
-        return self.kernel.extremal_jacobian(t, x, self.u, lam, self.p)  # type: ignore[no-any-return]
+        return self.kernel.extremal_jacobian(t, x, self.u, lam, self.p)
 
 
 def gradient(law: Law, key: Key, z: Sequence[Any]) -> list[Any]:

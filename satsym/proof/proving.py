@@ -20,25 +20,25 @@ from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
 from satsym.proof.shooting import Arc, Box, Inclusion, Shooting, krawczyk
 from satsym.proof.signs import hold, unique
-from satsym.proof.statement import Statement, stated
+from satsym.proof.statement import Statement, refuse, stated
 from satsym.proof.taylor import Order
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
 """How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
 COARSE = Order(18, 1e-16)
-MOST_DIGITS = 60
 
 
-def prove(case: Instance, found: Solution, digits: int = 20) -> Proof:
+def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Proof:
     """Prove that near an answer there is one extremal, and that it is a strict strong local minimum.
 
     Parameters
     ----------
     case
         The problem as it was stated.
-    found
-        Where to look; nothing that it claims is used.
+    find
+        Solves it, to know where to look; nothing that the answer claims is used. It is asked only of problems that a
+        theorem covers.
     digits
         Of the enclosures.
 
@@ -51,6 +51,9 @@ def prove(case: Instance, found: Solution, digits: int = 20) -> Proof:
     record = Proof(case.model.spec.name, case.called, Outcome.NOT_PROVED, digits=digits)
     with _precision(digits):
         try:
+            refuse(case)
+            found = find()
+            begun = time.perf_counter()
             if not found.status.answered:
                 raise NotProved(f"there is no answer to begin with: {found.message}")
             record = _proved(case, found, record)
@@ -144,7 +147,9 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
         if inclusion.inside:
             break
     if inclusion is None or not inclusion.inside:
-        raise NotProved("existence: no box about the answer is mapped into itself; more digits, or a better answer, may help")
+        raise NotProved(
+            "existence: no box about the answer is mapped into itself; more digits, or a better answer, may help"
+        )
     remainder = 10.0 ** -(digits + 6)
     order = Order(max(18, int(1.1 * (digits + 6))), remainder)
     box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + 6)))  # it lies in the former one
@@ -177,4 +182,3 @@ def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:
     zero = [[arb(0)] * len(node) for node in box.nodes]
     around, lengths = shooting.placed(values, zero, [arb(0)] * len(box.lengths))
     return Box(box.nodes, around, box.lengths, lengths)
-

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from satsym.status import BadInput
+
 
 class Outcome(str, Enum):
     """How an attempt to prove ended."""
@@ -33,7 +35,7 @@ class Enclosure:
         """
         from flint import arb
 
-        middle = ball.mid().str(digits, radius=False)
+        middle = "0" if abs(ball.mid()) <= ball.rad() else ball.mid().str(digits, radius=False)
         distance = abs(ball - arb(middle)).abs_upper()
         return cls(middle, _rounded_up(distance))
 
@@ -174,3 +176,18 @@ class Proof:
             "digits": self.digits,
             "wall_s": self.wall_s,
         }
+
+
+FEWEST_DIGITS, MOST_DIGITS = 6, 60
+
+
+def check_digits(digits: int) -> None:
+    """Refuse a number of digits that is not offered.
+
+    Raises
+    ------
+    BadInput
+        With those that are.
+    """
+    if not FEWEST_DIGITS <= digits <= MOST_DIGITS:
+        raise BadInput(f"digits: got {digits}; write a whole number from {FEWEST_DIGITS} to {MOST_DIGITS}")

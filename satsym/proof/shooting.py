@@ -219,7 +219,7 @@ class _Rows:
 
     def ended(self, k: int) -> End:
         """The conditions at the end; how it is over the box."""
-        shooting, box, n, m = self.shooting, self.box, self.n, self.m
+        shooting, box, m = self.shooting, self.box, self.m
         law = shooting.arcs[-1].law
         around = [v + d for v, d in zip(box.lengths, box.lengths_around, strict=True)]
         node, wide = box.nodes[k], self._around(k)
@@ -279,7 +279,7 @@ class Inclusion:
 
 
 def krawczyk(shooting: Shooting, box: Box, order: Order) -> Inclusion:
-    """Apply Krawczyk's operator: where the image lies inside the box, the box holds one extremal, and that in the image.
+    """Apply Krawczyk's operator: where the image is inside the box, there is one extremal in the box, in the image.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from satsym.proof.ends import positive
 from satsym.proof.identities import OPAQUE
 from satsym.proof.laws import Held, Law, Regular, Throttled
 from satsym.proof.shooting import Pass, Shooting
-from satsym.proof.taylor import Step, from_zero, polynomial
+from satsym.proof.taylor import Step, polynomial
 
 DEEPEST = 16
 """How often a step is halved to show a sign on it."""

@@ -96,7 +96,7 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     BeyondProof
         If the instance has a feature that no theorem here covers.
     """
-    _refuse(case)
+    refuse(case)
     spec, source = case.model.spec, Source(case)
     parameters = [
         source.number(value, v.unit, "parameters", v.symbol)
@@ -109,6 +109,8 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     ]
     time = _time_unit(case) if source.has_units("time") else "1"
     targets, ranges = _ends(case, source, met)
+    kernel = BallKernel(case.model)
+    _refuse_cases(kernel)
     lower, upper = (
         [
             source.number(value, v.unit, "control", v.symbol, side) if math.isfinite(value) else value
@@ -118,7 +120,7 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     )
     return Statement(
         case,
-        BallKernel(case.model),
+        kernel,
         source,
         parameters,
         initial,
@@ -139,9 +141,7 @@ def _time_unit(case: Instance) -> str:
     return units.time_unit(v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
 
 
-def _ends(
-    case: Instance, source: Source, met: dict[str, Side]
-) -> tuple[dict[int, Target], dict[int, tuple[Any, Any]]]:
+def _ends(case: Instance, source: Source, met: dict[str, Side]) -> tuple[dict[int, Target], dict[int, tuple[Any, Any]]]:
     targets: dict[int, Target] = {}
     ranges: dict[int, tuple[Any, Any]] = {}
     for i, v in enumerate(case.model.spec.states):
@@ -184,8 +184,27 @@ def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) 
     return (constant(source.number(norm, unit, *keys)), constant(arb("1e-100")), constant(1), constant(0))
 
 
-def _refuse(case: Instance) -> None:
-    """Refuse what is not recognised."""
+def _refuse_cases(kernel: BallKernel) -> None:
+    """Refuse motions and costs with cases; what controls that switch cost may be their magnitudes."""
+    spec = kernel.spec
+    for name in ("dynamics", "running_cost", "terminal_cost", *(("reference",) if spec.has_reference else ())):
+        known = {f"{control}{after}" for control in spec.control_names for after in ("", "_value")}
+        allowed = known if name == "running_cost" and spec.switching else set()
+        if set(kernel.cases(name)) - allowed:
+            raise BeyondProof("a motion or a cost that is stated by cases, or with absolute values")
+    ends = {"terminal_cost", "terminal_gradient", "reference", "boundary", "boundary_jacobian", "forward", "backward"}
+    if spec.autonomous and kernel.timed - ends:
+        raise BeyondProof("a motion that depends on time, of a model that is said not to")
+
+
+def refuse(case: Instance) -> None:
+    """Refuse what is not recognised.
+
+    Raises
+    ------
+    BeyondProof
+        With the feature.
+    """
     spec = case.model.spec
     unknown = {f.name for f in fields(case)} - _OF_INSTANCES | {f.name for f in fields(spec)} - _OF_MODELS
     if unknown:
@@ -198,6 +217,7 @@ def _refuse(case: Instance) -> None:
         (spec.multipliers, "constraints at the end other than given states"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
+        (case.solver.free_angles, "final angles that count modulo a turn"),
         (case.free, "initial values, an initial time or parameters that are free"),
         (spec.equilibria, "a model that is an attitude in orbit"),
     ):

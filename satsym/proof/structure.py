@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 from flint import arb, arb_series, ctx
 
-from satsym.arrays import Array
 from satsym.proof.arithmetic import Ball, BeyondProof, NotProved, balls
 from satsym.proof.laws import Held, Law, Regular, Throttled
 from satsym.proof.shooting import Arc
@@ -61,9 +60,7 @@ def arcs(statement: Statement, found: Solution) -> tuple[list[Law], list[float],
     return (*_regular(statement, found, path, kind), path)
 
 
-def _regular(
-    statement: Statement, found: Solution, path: Path, kind: type[Regular]
-) -> tuple[list[Law], list[float]]:
+def _regular(statement: Statement, found: Solution, path: Path, kind: type[Regular]) -> tuple[list[Law], list[float]]:
     ctx.cap = 1
     seen: list[tuple[float, Regular]] = []
     known: dict[Any, Regular] = {}
@@ -78,7 +75,8 @@ def _regular(
         seen.append((float(t), known.setdefault(law.state(), law)))
     if not seen:
         raise NotProved("there are no nodes to begin with")
-    laws, times = [], [float(path.times[0])]
+    laws: list[Law] = []
+    times = [float(path.times[0])]
     previous = times[0]
     for law, group in groupby(seen, key=lambda item: item[1]):
         members = list(group)
@@ -89,7 +87,7 @@ def _regular(
         fresh.answers.given.update(law.answers.given)
         laws.append(fresh)
         previous = members[-1][0]
-    return list(laws), [*times, float(path.times[-1])]
+    return laws, [*times, float(path.times[-1])]
 
 
 def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]]:
@@ -153,34 +151,30 @@ def placed(
         length, fractions = end - begin, [0.0]
         while fractions[-1] < 1.0:
             left = length * (1.0 - fractions[-1])
-            reached, node = _far(law, nodes[-1], left, sizes, lambda t: path(begin + length * fractions[-1] + t))
+            reached = _far(law, nodes[-1], left, sizes)
             following = fractions[-1] + max(math.floor(reached / length / FINEST), 1) * FINEST
-            whole = reached >= left or following >= 1.0
-            fractions.append(1.0 if whole else following)
-            nodes.append(path(end if whole else begin + length * following))
-            del node
+            fractions.append(1.0 if reached >= left else min(following, 1.0))
+            nodes.append(path(end if fractions[-1] == 1.0 else begin + length * fractions[-1]))
         found.append(Arc(law, tuple(fractions)))
         lengths.append(arb(length))
     return found, nodes, lengths
 
 
-def _far(
-    law: Law, start: list[Ball], left: float, sizes: Sequence[float], path: Callable[[float], list[Ball]]
-) -> tuple[float, list[Ball]]:
-    """How far from a start errors have grown as much as they may, and the state there."""
+def _far(law: Law, start: list[Ball], left: float, sizes: Sequence[float]) -> float:
+    """How long from a start it takes until errors have grown as much as they may; no longer than what is left."""
     m, t, z, flow = law.m, 0.0, start, unit(law.m)
     while True:
         z, v, h, whole = leap(law, z, arb(left - t), sizes)
         flow, t = (v * flow).mid(), t + float(h)
         grown = max(abs(float(flow[i, j].mid())) * sizes[j] / sizes[i] for i in range(m) for j in range(m))
         if whole or grown > GROWTH:
-            return (left if whole else t), z
+            return left if whole else t
 
 
 def leap(
     law: Law, z: Sequence[Ball], most: Ball, sizes: Sequence[float], terms: int = TERMS, rest: float = REMAINDER
 ) -> tuple[list[Ball], Any, Ball, bool]:
-    """A step without enclosures: where it leads, the derivatives, its length, and whether that is all that was asked."""
+    """A step without enclosures: where it leads, the derivatives, its length, and whether it is as long as asked."""
     series = expand(law, [v.mid() for v in z], terms)
     last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=True))
     if not math.isfinite(last):
@@ -199,8 +193,3 @@ def sizes_of(path: Path) -> list[float]:
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
     return [max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group]
-
-
-def as_floats(values: Sequence[Ball]) -> Array:
-    """Midpoints."""
-    return np.array([float(v.mid()) for v in values])

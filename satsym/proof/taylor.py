@@ -6,7 +6,7 @@ over a ball that the motions of the step do not leave (Corliss and Rihm). Nothin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -16,6 +16,8 @@ from satsym.proof.arithmetic import Ball, NotProved, Series, value
 
 Matrix = Any
 """An ``arb_mat``."""
+SHORTEST = 1e-9
+"""Of the length of a step that is asked for: what is left of it where no enclosure is found."""
 FEWER = 0.65
 """Of the terms, how many there are of derivatives by the start, which multiply what is small."""
 
@@ -64,7 +66,7 @@ class Step:
     range: list[Ball]
     middle: list[Series]
     series: list[Series]
-    last: list[Series]
+    last: Sequence[Series]
     flow: list[Matrix]
     costs: list[Ball]
     terms: int
@@ -85,11 +87,9 @@ class Step:
         """The integral of the cost along the motion from the midpoint."""
         return polynomial(self.costs, time)
 
-    def _ended(self, series: list[Series], time: Ball) -> list[Ball]:
+    def _ended(self, series: Sequence[Series], time: Ball) -> list[Ball]:
         n = self.terms
-        return [
-            polynomial([*(s[k] for k in range(n)), w[n]], time) for s, w in zip(series, self.last, strict=True)
-        ]
+        return [polynomial([*(s[k] for k in range(n)), w[n]], time) for s, w in zip(series, self.last, strict=True)]
 
 
 def unit(m: int) -> Matrix:
@@ -184,47 +184,56 @@ def step(
     NotProved
         If no step has an enclosure.
     """
-    n, shortest = order.terms, arb(float(h.mid()) * 1e-9)
+    n, shortest = order.terms, float(h.mid()) * SHORTEST
     near, point = expand(field, z, n), expand(field, middle, n)
-    for h, found, rest in _enclosed(field, near, h, order, sizes):
-        if found is not None:
-            break
-        if h < shortest:
+    while (found := _enclosed(field, near, h, order, sizes)).range is None:
+        h = arb(found.try_next)
+        if found.try_next < shortest:
             raise NotProved("a step of the integration has no enclosure")
-    b, last = found
+    b, last = found.range, found.last
     fewer = int(FEWER * n)
     flow = expand_flow(field, near, unit(len(z)), fewer - 1)
     flow.append(expand_flow(field, last, _within(jacobian(field, b), h), fewer)[fewer])
     ctx.cap = n + 1
     cost, last_cost = field.cost(point), field.cost(last)
     costs = [arb(0), *(cost[k] / (k + 1) for k in range(n)), last_cost[n] / (n + 1)]
-    following = arb(float(h.mid()) * min(2.0, 0.95 * (order.remainder / rest) ** (1 / n)))
-    return Step(h, b, point, near, last, flow, costs, n), following
+    return Step(h, b, point, near, last, flow, costs, n), arb(found.try_next)
 
 
-def _enclosed(
-    field: Field, near: Sequence[Series], h: Ball, order: Order, sizes: Sequence[float]
-) -> Iterator[tuple[Ball, Any, float]]:
-    """Shorter and shorter steps, each with a ball that motions do not leave and its series, where that was found."""
-    n = order.terms
-    while True:
-        tau = from_zero(h)
-        try:
-            b = [_wider(polynomial([s[k] for k in range(n)], tau)) for s in near]
-            last = expand(field, b, n)
-            rest = max(float((w[n] * h**n).abs_upper()) / size for w, size in zip(last, sizes, strict=True))
-            if rest > order.remainder * 10:  # also where it is not finite
-                shorter = 0.9 * (order.remainder / rest) ** (1 / n)
-                h = arb(float(h.mid()) * max(0.3, shorter))
-                yield h, None, rest
-                continue
-            stays = [polynomial([*(s[k] for k in range(n)), w[n]], tau) for s, w in zip(near, last, strict=True)]
-            if all(o.contains_interior(v) for o, v in zip(b, stays, strict=True)):
-                yield h, (b, last), rest or 1e-300
-        except (ArithmeticError, ValueError):  # something that may vanish is divided by
-            pass
-        h = arb(float(h.mid()) / 2)
-        yield h, None, 0.0
+@dataclass(frozen=True)
+class _Tried:
+    """What a trial of a step came to.
+
+    Attributes
+    ----------
+    try_next
+        The length to try next, after this step or in its place.
+    range, last
+        Balls that motions do not leave, and their series; no range where none was found.
+    """
+
+    try_next: float
+    range: list[Ball] | None = None
+    last: Sequence[Series] = ()
+
+
+def _enclosed(field: Field, near: Sequence[Series], h: Ball, order: Order, sizes: Sequence[float]) -> _Tried:
+    """Try a step: whether the polynomial, widened, contains itself with the remainder that it has over this range."""
+    n, length = order.terms, float(h.mid())
+    tau = from_zero(h)
+    try:
+        b = [_wider(polynomial([s[k] for k in range(n)], tau)) for s in near]
+        last = expand(field, b, n)
+        rest = max(float((w[n] * h**n).abs_upper()) / size for w, size in zip(last, sizes, strict=True))
+        if rest > 10.0 * order.remainder:
+            return _Tried(length * max(0.3, 0.9 * (order.remainder / rest) ** (1 / n)))
+        stays = [polynomial([*(s[k] for k in range(n)), w[n]], tau) for s, w in zip(near, last, strict=True)]
+        if all(o.contains_interior(v) for o, v in zip(b, stays, strict=True)):
+            longer = 0.95 * (order.remainder / rest) ** (1 / n) if rest > 0.0 else 2.0
+            return _Tried(length * min(2.0, longer), b, last)
+    except (ArithmeticError, ValueError):  # something that may vanish is divided by
+        pass
+    return _Tried(length / 2)
 
 
 def _wider(v: Ball) -> Ball:

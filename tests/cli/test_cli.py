@@ -22,8 +22,8 @@ from satsym.report.results.files import to_json
 
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = [
-    *("models", "instances", "new", "solve", "simulate", "study", "plot", "compare", "analyse", "lqr", "derive"),
-    *("latex", "report", "export", "audit", "completion", "doctor", "bench"),
+    *("models", "instances", "new", "solve", "prove", "simulate", "study", "plot", "compare", "analyse", "lqr"),
+    *("derive", "latex", "report", "export", "audit", "completion", "doctor", "bench"),
 ]
 HEAD = "satsym schema command model instance status units instance_file".split()
 SOLUTION_KEYS = (

@@ -1,0 +1,65 @@
+"""``satsym prove``: a theorem beside the answer of an instance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.help import command
+from satsym.cli.options import json_option, out_option, set_option, subject_argument
+from satsym.cli.output import answer, in_colour, live
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode, Status
+
+EXAMPLES = """\b
+Examples:
+  satsym prove return-to-orbit          what is proved of the answer, with 20 digits
+  satsym prove my_case.toml --json      the same for another program
+
+Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved here (it says which feature),
+5 not proved (it says which step fails)."""
+
+
+@command(epilog=EXAMPLES)
+@subject_argument
+@click.option(
+    "--digits", type=click.IntRange(6, 60), default=20, metavar="N", help="Significant digits; 20 by default."
+)
+@set_option
+@json_option
+@out_option
+def prove(subject: str, digits: int, values: tuple[str, ...], as_json: bool, out: Path | None) -> ExitCode:
+    """Prove that the answer is a strict local minimum.
+
+    X is a shipped instance or the path of a TOML file. It is solved; then ball arithmetic, whose every number carries a
+    bound of its error, proves that an extremal exists, that there is no other one near by, and that no motion near by
+    costs less.
+    """
+    from satsym import instance, solvers
+    from satsym.instance.numbers import changed
+    from satsym.proof.proving import prove as prove_found
+    from satsym.proof.record import Outcome
+    from satsym.report.results.objects import head, with_settings
+    from satsym.report.terminal.proof import proof_text
+    from satsym.report.terminal.solution import progress_line, with_files
+
+    case, given = instance.load(subject), dict[str, float]()
+    if values:
+        from satsym.studies.reading import settings
+
+        given = settings(case, values)
+        case = changed(case, given)
+    folder = folder_for(case.name, "prove", out, None)
+    with live() as line:
+        proof = prove_found(
+            case,
+            lambda: solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case))),
+            digits,
+        )
+    result = with_settings(head("prove", case.model.spec, case, Status.CONVERGED) | proof.to_dict(), given)
+    saved = save(folder, result, {})
+    answer(as_json, result, lambda: with_files(proof_text(proof, in_colour()), saved))
+    if proof.status is Outcome.PROVED:
+        return ExitCode.DONE
+    return ExitCode.NO_ANSWER if proof.status is Outcome.BEYOND else ExitCode.CERTIFICATE_FAILED

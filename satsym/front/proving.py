@@ -1,0 +1,77 @@
+"""Proofs as users meet them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from satsym import solution, solvers
+from satsym.front import html
+from satsym.front.instance import Instance, as_case
+from satsym.front.refusals import in_one_line
+from satsym.front.single_threaded import single_threaded
+from satsym.instance import Instance as Case
+from satsym.proof import record
+from satsym.proof.proving import prove as prove_found
+from satsym.proof.record import check_digits
+from satsym.report.results.files import to_json
+from satsym.report.terminal.proof import proof_text
+
+
+class Proof(record.Proof):
+    """A proof, or where the attempt ended."""
+
+    def to_json(self) -> str:
+        """What ``satsym prove --json`` prints of it, as text."""
+        return to_json(self.to_dict())
+
+    def __repr__(self) -> str:
+        return proof_text(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(proof_text(self))}</pre>"
+
+
+def proved(case: Case, find: Callable[[], solution.Solution], digits: int) -> Proof:
+    """The proof of what is found of a case."""
+    check_digits(digits)
+    made = prove_found(case, find, digits)
+    return Proof(**{f.name: getattr(made, f.name) for f in fields(made)})
+
+
+@single_threaded()
+@in_one_line
+def prove(instance: Instance | str | Path, digits: int = 20, **options: Any) -> Proof:
+    """Solve an instance and prove that the answer is a strict local minimum.
+
+    Parameters
+    ----------
+    instance
+        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+    digits
+        Significant digits of the enclosures, from 6 to 60.
+    options
+        Of the table [solver], instead of the instance's.
+
+    Returns
+    -------
+    Proof
+        Also where nothing is proved: ``status`` and ``reason`` say why.
+
+    Raises
+    ------
+    BadInput
+        If the instance cannot be used, with one line that says what, where and what to do.
+
+    Examples
+    --------
+    ::
+
+        proof = satsym.prove("return-to-orbit")
+        proof.status, proof.objective.text, proof.costate_initial["r"].text
+    """
+    case = as_case(instance)
+    case = case.with_(solver=options) if options else case
+    return proved(case.case, lambda: solvers.solve(case.case), digits)
