@@ -40,7 +40,7 @@ def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], size
     drawn = random.Random(SEED)
     for _ in range(POINTS):
         node = drawn.choice(list(nodes))
-        z = [arb(float(v.mid()) + SPREAD * s * drawn.uniform(-1, 1)) for v, s in zip(node, sizes, strict=True)]
+        z = [arb(float(v.mid()) + SPREAD * s * drawn.uniform(-1, 1)) for v, s in zip(node, sizes, strict=False)]
         ctx.cap = 1
         point = _Point(statement, law, z, drawn)
         point.motion()

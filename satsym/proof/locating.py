@@ -36,7 +36,7 @@ def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], di
     """
     size, fine = float("inf"), False
     for _ in range(TRIES):
-        terms, rest = (int(1.2 * digits) + 8, 10.0 ** -(digits + 8)) if fine else (TERMS, REMAINDER)
+        terms, rest = (int(1.2 * digits) + 12, 10.0 ** -(digits + 12)) if fine else (TERMS, REMAINDER)
         residuals, jacobian = _equations(shooting, nodes, lengths, terms, rest)
         move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
         scales = [*shooting.scales, *(abs(float(v.mid())) for v in lengths)]

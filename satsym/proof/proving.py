@@ -26,7 +26,11 @@ from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
 """How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
+NEAR = 1e-3
+"""How far the extremal may be from what was found, in its costates at t0 and its duration, relative to the sizes."""
 COARSE = Order(18, 1e-16)
+SPARE = 8
+"""Digits more than asked for, with which steps and boxes are computed."""
 
 
 def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Proof:
@@ -80,7 +84,7 @@ class _Stopped(Exception):
 def _precision(digits: int) -> Iterator[None]:
     """Arithmetic with enough bits; it is flint's own setting, for the whole process."""
     before = ctx.prec, ctx.cap
-    ctx.prec = 80 + int(3.6 * digits)
+    ctx.prec = 90 + int(3.6 * digits)
     try:
         yield
     finally:
@@ -123,7 +127,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
 def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, Place]:
     """The equations of the arcs that were found, and a point at which they nearly hold."""
     laws, times, path = structure.arcs(statement, found)
-    sizes = structure.sizes_of(path)
+    sizes = structure.sizes_of(statement, found, path)
     arcs, nodes, lengths = structure.placed(laws, times, path, sizes)
     shooting = Shooting(statement, tuple(Arc(arc.law, arc.fractions) for arc in arcs), tuple(sizes))
     n = laws[0].n
@@ -132,7 +136,12 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
         lengths = [statement.tf - statement.t0]
-    return shooting, located(shooting, nodes, lengths, digits)
+    place = located(shooting, nodes, lengths, digits)
+    moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
+    horizon = sum(place.lengths, arb(0)) / sum(lengths, arb(0)) - 1
+    if max(*moved, abs(float(horizon.mid()))) > NEAR:
+        raise NotProved("the answer is no extremal: the nearest one has other costates")
+    return shooting, place
 
 
 def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
@@ -150,9 +159,8 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
         raise NotProved(
             "existence: no box about the answer is mapped into itself; more digits, or a better answer, may help"
         )
-    remainder = 10.0 ** -(digits + 6)
-    order = Order(max(18, int(1.1 * (digits + 6))), remainder)
-    box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + 6)))  # it lies in the former one
+    order = Order(max(18, int(1.1 * (digits + SPARE))), 10.0 ** -(digits + SPARE))
+    box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + SPARE)))  # it lies in the former one
     last = krawczyk(shooting, box, order)
     if not last.inside:
         raise NotProved("the extremal is not located to all digits; ask for fewer")

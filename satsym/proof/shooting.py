@@ -98,7 +98,7 @@ class Shooting:
     statement: Statement
     arcs: tuple[Arc, ...]
     sizes: tuple[float, ...]
-    """Of the components."""
+    """Of the components, and of the cost."""
 
     @property
     def lengths_unknown(self) -> bool:
@@ -110,7 +110,7 @@ class Shooting:
         """Of all unknowns, in order."""
         n = self.arcs[0].law.n
         count = sum(arc.segments for arc in self.arcs)
-        return [*self.sizes[n : 2 * n], *(list(self.sizes) * count)]
+        return [*self.sizes[n : 2 * n], *(list(self.sizes[:-1]) * count)]
 
     def unknowns(self, nodes: Sequence[Sequence[Any]], lengths: Sequence[Any]) -> list[Any]:
         """The unknown ones of all numbers, in order."""

@@ -176,7 +176,7 @@ def leap(
 ) -> tuple[list[Ball], Any, Ball, bool]:
     """A step without enclosures: where it leads, the derivatives, its length, and whether it is as long as asked."""
     series = expand(law, [v.mid() for v in z], terms)
-    last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=True))
+    last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=False))
     if not math.isfinite(last):
         raise NotProved("the motion from the given costates is not finite")
     longest = 0.8 * (rest / last) ** (1 / terms) if last else math.inf
@@ -187,9 +187,11 @@ def leap(
     return there, flow.mid(), h, whole
 
 
-def sizes_of(path: Path) -> list[float]:
-    """Sizes of the components: the largest of each, no less than a share of the largest of its kind."""
+def sizes_of(statement: Statement, found: Solution, path: Path) -> list[float]:
+    """Sizes of the components and of the cost: the largest of each, no less than a share of the largest of its kind."""
     n = (len(path.values)) // 2
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
-    return [max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group]
+    rates = statement.case.model.running_cost_batch(found.times, found.x, found.u, statement.case.parameters)
+    cost = float(np.trapezoid(np.abs(np.broadcast_to(rates, found.times.shape)), found.times))
+    return [*(max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group), cost or 1.0]

@@ -34,7 +34,7 @@ class Field(Protocol):
 
 @dataclass(frozen=True)
 class Order:
-    """Terms of the series, and how large the remainder of a step may be beside the size of each component."""
+    """Terms of the series, and how large the remainder of a step may be beside the sizes of components and cost."""
 
     terms: int
     remainder: float
@@ -224,7 +224,10 @@ def _enclosed(field: Field, near: Sequence[Series], h: Ball, order: Order, sizes
     try:
         b = [_wider(polynomial([s[k] for k in range(n)], tau)) for s in near]
         last = expand(field, b, n)
-        rest = max(float((w[n] * h**n).abs_upper()) / size for w, size in zip(last, sizes, strict=True))
+        ctx.cap = n + 1
+        costly = field.cost(last)[n] * h / (n + 1)
+        rests = zip([*(w[n] for w in last), costly], sizes, strict=True)
+        rest = max(float((w * h**n).abs_upper()) / size for w, size in rests)
         if rest > 10.0 * order.remainder:
             return _Tried(length * max(0.3, 0.9 * (order.remainder / rest) ** (1 / n)))
         stays = [polynomial([*(s[k] for k in range(n)), w[n]], tau) for s, w in zip(near, last, strict=True)]
