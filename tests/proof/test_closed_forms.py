@@ -1,0 +1,71 @@
+"""Enclosures hold the closed forms of shipped problems."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import mpmath
+import pytest
+
+from satsym import instance, solvers
+from satsym.proof.proving import prove
+from satsym.proof.record import Enclosure, Outcome, Proof
+
+
+@cache
+def proved(name: str, digits: int = 25) -> Proof:
+    case = instance.load(name)
+    return prove(case, lambda: solvers.solve(case), digits)
+
+
+def holds(found: Enclosure | None, exact: mpmath.mpf) -> bool:
+    assert found is not None
+    return abs(mpmath.mpf(found.centre) - exact) <= mpmath.mpf(found.radius) < mpmath.mpf(10) ** -20 * abs(exact)
+
+
+@pytest.fixture(autouse=True)
+def digits() -> None:
+    mpmath.mp.dps = 40
+
+
+def test_a_body_on_a_line_is_brought_to_rest() -> None:
+    """In least time 2, at least |u| in time 3 for 3 - sqrt(5), at least energy in 9/4 for 9/8 - sqrt(51)/12."""
+    exact = {
+        "double-integrator-time": mpmath.mpf(2),
+        "double-integrator-fuel": 3 - mpmath.sqrt(5),
+        "double-integrator-energy": mpmath.mpf(9) / 8 - mpmath.sqrt(51) / 12,
+    }
+    for name, value in exact.items():
+        assert proved(name).status is Outcome.PROVED
+        assert holds(proved(name).objective, value), name
+    switch = proved("double-integrator-time").switching_times
+    assert len(switch) == 1
+    assert holds(switch[0], mpmath.mpf(1))
+    first, second = proved("double-integrator-energy").switching_times
+    half = mpmath.sqrt(51) / 8
+    assert holds(first, mpmath.mpf(9) / 8 - half)
+    assert holds(second, mpmath.mpf(9) / 8 + half)
+
+
+def test_least_time_of_a_pitch_manoeuvre_goes_with_the_root_of_the_torque() -> None:
+    slow, quick = proved("lapan-minimum-time"), proved("lapan-minimum-time-100s")
+    assert slow.status is quick.status is Outcome.PROVED
+    assert holds(quick.objective, mpmath.mpf(100))
+    assert holds(slow.objective, 200 / mpmath.sqrt(3))
+
+
+def test_the_brachistochrone_is_a_cycloid() -> None:
+    proof = proved("brachistochrone")
+    assert proof.status is Outcome.PROVED
+    angle = mpmath.findroot(lambda a: (a - mpmath.sin(a)) / (1 - mpmath.cos(a)) - 2, 3.5)
+    radius = 5 / (1 - mpmath.cos(angle))
+    assert holds(proof.objective, angle * mpmath.sqrt(radius / mpmath.mpf("9.80665")))
+
+
+def test_a_linear_problem_with_a_convex_cost_is_proved_globally() -> None:
+    theorem = proved("double-integrator-energy").theorem
+    assert theorem is not None
+    assert any("global" in claim for claim in theorem.claims)
+    other = proved("brachistochrone").theorem
+    assert other is not None
+    assert not any("global" in claim for claim in other.claims)
