@@ -11,7 +11,7 @@ PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n 2 --dist wor
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-versions test-processors parity lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch bench-models docs check-pages clean
+.PHONY: help demo test test-whole test-versions test-processors parity lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-proof bench-batch bench-models docs check-pages clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -75,6 +75,9 @@ bench-truth: $(VENV)/installed-bench  ## random instances of all classes beside 
 
 bench-optima: $(VENV)/installed-bench  ## problems whose optima are known, beside a direct method (takes minutes)
 	$(BIN)/python tests/bench/optima.py
+
+bench-proof: $(VENV)/installed-dev  ## prove the shipped instances and 100 random extremals, and write docs/proved.md (takes minutes)
+	$(BIN)/python -m tests.bench.proof
 
 bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes; TABLES="1 5" some)
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/bench/batch.py $(TABLES)
