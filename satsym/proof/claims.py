@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from satsym.instance.ends import Side
-from satsym.proof.arithmetic import NotProved
+from satsym.proof.arithmetic import Ball, NotProved
 from satsym.proof.ends import End
 from satsym.proof.field import Regularity
 from satsym.proof.laws import Held, Law, Throttled
 from satsym.proof.record import Hypothesis, Theorem
 from satsym.proof.signs import Shown
 from satsym.proof.statement import Statement
+from satsym.proof.walls import require_jumps
 
 FIELD = (
     "field of extremals",
@@ -21,6 +22,11 @@ BROKEN = (
     "field of broken extremals",
     "J. Noble and H. Schaettler, Sufficient conditions for relative minima of broken extremals in optimal control "
     "theory, Journal of Mathematical Analysis and Applications 269 (2002) 98-128",
+)
+CONSTRAINED = (
+    "convex problem with path constraints",
+    "R. F. Hartl, S. P. Sethi and R. G. Vickson, A survey of the maximum principles for optimal control problems with "
+    "state constraints, SIAM Review 37 (1995) 181-218",
 )
 CONVEX = (
     "convex problem",
@@ -72,6 +78,22 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
     )
 
 
+def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
+    """That multipliers of path constraints push outwards only.
+
+    Raises
+    ------
+    NotProved
+        If one does not.
+    """
+    require_jumps(jumps)
+    return Hypothesis(
+        "multipliers of path constraints are nonnegative",
+        "on boundary arcs, and where boundaries are entered, left or touched",
+        f"{len(jumps)} jumps of the costates",
+    )
+
+
 def of_field(found: Regularity) -> Hypothesis:
     """That there is no focal point."""
     jumps = f"; smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}" if found.ratios else ""
@@ -84,6 +106,14 @@ def of_field(found: Regularity) -> Hypothesis:
 
 def theorem(statement: Statement, laws: Sequence[Law], convexity: str) -> Theorem:
     """What follows where all hypotheses were shown."""
+    if statement.spec.path_constraints:
+        return Theorem(
+            *CONSTRAINED,
+            (
+                "There is exactly one extremal of this structure within unique_within of the enclosures.",
+                f"It is a global minimum of the cost: {convexity}, and path constraints are linear in the states.",
+            ),
+        )
     jumping = len(laws) > 1 and isinstance(laws[0], Held | Throttled)
     name, source = BROKEN if jumping else FIELD
     time = " and whose final time is near" if statement.tf is None else ""

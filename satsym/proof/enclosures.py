@@ -32,7 +32,7 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
     times, fractions = _times(shooting, lengths), sum(arc.segments for arc in shooting.arcs)
     kept = sorted({round(k * fractions / (MOST_NODES - 1)) for k in range(MOST_NODES)})
     final = shooting.final_time(lengths)
-    ends = [sum(lengths[: j + 1], statement.t0) for j in range(len(lengths) - 1)]
+    ends = [sum(lengths[: j + 1], statement.t0) for j in range(len(shooting.arcs) - 1)]
     cost = _cost(shooting, box, last, _share(shooting, box, last))
     end = End.at(statement, shooting.arcs[-1].law, nodes[-1], final)
     objective = cost + end.terminal[0]
@@ -53,6 +53,13 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
         switching_times=tuple(Enclosure.of(v, digits) for v in ends),
         unique_within=radius,
     )
+
+
+def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
+    """By how many times the gradients of path constraints the costates fall, junction by junction."""
+    here = shooting.unknowns(box.nodes, box.lengths)
+    _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
+    return list(found[len(shooting.arcs) :])
 
 
 def _times(shooting: Shooting, lengths: list[Ball]) -> list[Ball]:

@@ -12,12 +12,14 @@ import random
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
-from satsym.proof.jets import Jet, derivatives, variables
+from satsym.proof.jets import OPAQUE, Jet, derivatives, variables
 from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.laws import derivatives as partials
 from satsym.proof.statement import Statement
+from satsym.proof.walls import OnBoundary
 
 POINTS = 3
 SEED = 20260
@@ -45,7 +47,9 @@ def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], size
         point = _Point(statement, law, z, drawn)
         point.motion()
         point.jacobian()
-        if isinstance(law, Held):
+        if isinstance(law, OnBoundary):
+            point.boundary()
+        elif isinstance(law, Held):
             point.switching()
         elif isinstance(law, Throttled):
             point.throttle()
@@ -111,7 +115,11 @@ class _Point:
         self.kernel.answers = answers
         found = self.law.rates(self.series)
         self.equal(found[: self.n], self.kernel.dynamics(self.t, self.x, self.u, self.p), "rates of the states")
-        self.equal(found[self.n : 2 * self.n], [-v for v in h_x], "rates of the costates")
+        wanted = [-v for v in h_x]
+        if isinstance(self.law, OnBoundary):
+            push = value(self.law.multiplier(self.series))
+            wanted = [v - push * value(s) for v, s in zip(wanted, self.law.slope, strict=True)]
+        self.equal(found[self.n : 2 * self.n], wanted, "rates of the costates")
 
     def jacobian(self) -> None:
         """Derivatives of the rates are these."""
@@ -121,6 +129,34 @@ class _Point:
         found = self.law.jacobian(self.series)
         for i, row in enumerate(rates):
             self.equal(found[i * m : i * m + m], row, "derivatives of the rates")
+
+    def boundary(self) -> None:
+        """Motions that begin on the boundary, with H_u = 0 along it, keep to both; this point is moved there."""
+        law = self.law
+        assert isinstance(law, OnBoundary)
+        n, none = self.n, [constant(0) for _ in self.u]
+        states = variables([value(v) for v in self.x])
+        level = derivatives(
+            lambda: self.kernel.path_constraints(self.t, states, none, self.p, ())[law.which] + constant(0), n
+        )
+        self.equal(level[1], law.slope, "the gradient of a path constraint")
+        rows = partials(
+            law.vanishing, self.z
+        )  # what vanishes is linear, or the point is not there and all of this fails
+        d = arb_mat(len(rows), len(self.z), [v for row in rows for v in row])
+        ctx.cap = 1
+        off = arb_mat(len(rows), 1, [value(v) for v in law.vanishing(self.series)])
+        moved = (d.transpose() * (d * d.transpose()).inv() * off).entries()
+        there = _Point(self.statement, law, [a - b for a, b in zip(self.z, moved, strict=True)], self.drawn)
+        there.motion()
+        rates = [value(v) for v in law.rates(there.series)]
+        ctx.cap = 2
+        along = law.vanishing([arb_series([v, rate]) for v, rate in zip(there.z, rates, strict=True)])
+        ctx.cap = 1
+        for v in along:
+            there.equal([v[0] + 1, v[1] + 1], [arb(1), arb(1)], "a boundary arc stays on its boundary")
+        slopes, _ = there.quadratic()
+        there.vanishing(slopes)
 
     def switching(self) -> None:
         """H is linear in the controls and their magnitudes, by the switching functions and the weights."""
@@ -252,13 +288,6 @@ _SETS: dict[str, Callable[[_Point], None]] = {
     "ball": _Point.ball,
     "product": _Point.angle,
 }
-
-
-class _Opaque:
-    """A control that nothing may depend on: arithmetic with it is an error."""
-
-
-OPAQUE: Any = _Opaque()
 
 
 def _first(jet: Any, count: int) -> list[Ball]:

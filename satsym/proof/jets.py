@@ -168,3 +168,10 @@ def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ba
     for (i, j), v in found.second.items():
         second[i][j] = second[j][i] = value(v)
     return value(found.value), first, second
+
+
+class _Opaque:
+    """A number that nothing may depend on: arithmetic with it is an error."""
+
+
+OPAQUE: Any = _Opaque()

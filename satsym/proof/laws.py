@@ -7,12 +7,12 @@ on which its controls minimise H. The components are (x, lambda) or (x, lambda, 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from satsym.proof.arithmetic import Answers, Key, NotProved, Series, constant
+from satsym.proof.arithmetic import Answers, Ball, Key, NotProved, Series, constant
 from satsym.proof.kernel import BallKernel
 
 SIMULTANEOUS = "two bounds are met or left at once; the theorem asks for one at a time"
@@ -219,11 +219,16 @@ class Held(Law):
         return self.kernel.extremal_jacobian(t, x, self.u, lam, self.p)
 
 
-def gradient(law: Law, key: Key, z: Sequence[Any]) -> list[Any]:
-    """Derivatives of a condition by all components, over a ball."""
+def derivatives(function: Callable[[Sequence[Series]], list[Series]], z: Sequence[Ball]) -> list[list[Ball]]:
+    """Derivatives by all components, over a ball, of each of the series that a function returns."""
     ctx.cap = 2
-    found = []
-    for k in range(law.m):
-        series = [arb_series([v, arb(int(i == k))]) for i, v in enumerate(z)]
-        found.append(dict(law.conditions(series))[key][1])
-    return found
+    columns = []
+    for k in range(len(z)):
+        found = function([arb_series([v, arb(int(i == k))]) for i, v in enumerate(z)])
+        columns.append([v[1] for v in found])
+    return [list(row) for row in zip(*columns, strict=True)] if columns[0] else []
+
+
+def gradient(law: Law, key: Key, z: Sequence[Ball]) -> list[Ball]:
+    """Derivatives of a condition by all components, over a ball."""
+    return derivatives(lambda series: [dict(law.conditions(series))[key]], z)[0]

@@ -61,10 +61,11 @@ def _equations(
     for j, arc in enumerate(shooting.arcs):
         for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
             span = (box.lengths[j] * (arb(b) - arb(a))).mid()
-            rows.matched(_led(arc.law, box.nodes[k], span, shooting.sizes, terms, rest), k, j, arb(b) - arb(a))
+            one = _led(arc.law, box.nodes[k], span, shooting.sizes, terms, rest)
+            rows.matched(one, k, j, arb(b) - arb(a), b == 1.0)
             k += 1
         if j + 1 < len(shooting.arcs):
-            rows.met(arc.law, shooting.arcs[j + 1].law, k)
+            rows.met(j, k)
     rows.ended(k)
     return column(rows.residuals).mid(), rows.jacobian().mid()
 

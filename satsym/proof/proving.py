@@ -6,19 +6,20 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, ctx
 
 from satsym.instance import Instance
-from satsym.proof import claims, enclosures, structure
+from satsym.proof import claims, enclosures, structure, walls
 from satsym.proof.arithmetic import BeyondProof, NotProved
 from satsym.proof.convexity import convex
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
 from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
-from satsym.proof.shooting import Arc, Box, Inclusion, Shooting, krawczyk
+from satsym.proof.shooting import Box, Inclusion, Junction, Shooting, krawczyk
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated
 from satsym.proof.taylor import Order
@@ -109,36 +110,48 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
         verify(statement, arc.law, place.nodes, shooting.sizes)
     there = _enclosed(shooting, place, record.digits)
     record = enclosures.entered(record, there.shooting, there.box, there.last, there.radius)
-    steps: tuple[Callable[[], Hypothesis], ...] = (
-        lambda: claims.of_signs(hold(shooting, there.last.passed)),
-        lambda: claims.of_minimiser(unique(shooting, there.last.passed)),
-        lambda: claims.of_ends(statement, there.last.passed.end),
-        lambda: claims.of_field(regular_field(shooting, there.last.passed)),
-    )
+    passed, convexity = there.last.passed, convex(statement)
+    steps: list[Callable[[], Hypothesis]] = [
+        lambda: claims.of_signs(hold(shooting, passed)),
+        lambda: claims.of_minimiser(unique(shooting, passed)),
+        lambda: claims.of_ends(statement, passed.end),
+    ]
+    if statement.spec.path_constraints:
+        if not convexity:
+            raise _Stopped(replace(record, status=Outcome.BEYOND), "path constraints of a problem that is not convex")
+        steps.append(lambda: claims.of_jumps(enclosures.jumps(shooting, there.box, there.last)))
+    else:
+        steps.append(lambda: claims.of_field(regular_field(shooting, passed)))
     for one in steps:
         try:
             record = replace(record, hypotheses=(*record.hypotheses, one()))
         except NotProved as error:
             raise _Stopped(record, str(error)) from None
-    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convex(statement))
+    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convexity)
     return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
 
 
 def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, Place]:
     """The equations of the arcs that were found, and a point at which they nearly hold."""
-    laws, times, path = structure.arcs(statement, found)
+    path = structure.Path(found, not statement.spec.autonomous)
+    jumps: list[float] = []
+    if statement.spec.path_constraints:
+        laws, junctions, times, jumps = walls.structured(statement, found)
+    else:
+        laws, times = structure.arcs(statement, found, path)
+        junctions = [Junction.between(a, b) for a, b in pairwise(laws)]
     sizes = structure.sizes_of(statement, found, path)
     arcs, nodes, lengths = structure.placed(laws, times, path, sizes)
-    shooting = Shooting(statement, tuple(Arc(arc.law, arc.fractions) for arc in arcs), tuple(sizes))
+    shooting = Shooting(statement, tuple(arcs), tuple(junctions), tuple(sizes))
     n = laws[0].n
     nodes[0][:n] = statement.initial
     if laws[0].timed:
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
         lengths = [statement.tf - statement.t0]
-    place = located(shooting, nodes, lengths, digits)
+    place = located(shooting, nodes, [*lengths, *map(arb, jumps)], digits)
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
-    horizon = sum(place.lengths, arb(0)) / sum(lengths, arb(0)) - 1
+    horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR:
         raise NotProved("the answer is no extremal: the nearest one has other costates")
     return shooting, place

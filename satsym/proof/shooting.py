@@ -7,15 +7,15 @@ the former vanishes; the conditions at the end; and, with unknown lengths and a 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.arithmetic import Ball, Key, NotProved, Series
 from satsym.proof.ends import End
-from satsym.proof.laws import Law, gradient
+from satsym.proof.laws import Law, derivatives
 from satsym.proof.statement import Statement
 from satsym.proof.taylor import Matrix, Order, Step, column, rates, step, unit
 
@@ -37,6 +37,36 @@ class Arc:
 
 
 @dataclass(frozen=True)
+class Junction:
+    """Where an arc ends and the next one begins.
+
+    Attributes
+    ----------
+    leaving, entering
+        The condition of the former arc that vanishes at its end, and that of the latter at its beginning.
+    order
+        How many times it vanishes there: once with a slope, twice where a boundary is touched, three times where it is
+        entered or left.
+    vanishing
+        What the junction asks for, of series at its node.
+    slope
+        Where the costates jump, by a multiple of this that is unknown; else empty.
+    """
+
+    leaving: Key
+    entering: Key
+    order: int
+    vanishing: Callable[[Sequence[Series]], list[Series]]
+    slope: tuple[Ball, ...] = ()
+
+    @classmethod
+    def between(cls, law: Law, following: Law) -> Junction:
+        """Where a condition of one law vanishes with a slope."""
+        key = law.leaving(following)
+        return cls(key, following.leaving(law), 1, lambda z: [dict(law.conditions(z))[key]])
+
+
+@dataclass(frozen=True)
 class Box:
     """The unknowns: midpoints, and balls about zero that say how far from these they may be.
 
@@ -45,7 +75,7 @@ class Box:
     nodes, around
         Of each node all components; those of the first that are given have their own radius in `nodes`.
     lengths, lengths_around
-        Of the arcs.
+        Of the arcs, and after them the multiples of junctions at which costates jump.
     """
 
     nodes: list[list[Ball]]
@@ -97,6 +127,7 @@ class Shooting:
 
     statement: Statement
     arcs: tuple[Arc, ...]
+    junctions: tuple[Junction, ...]
     sizes: tuple[float, ...]
     """Of the components, and of the cost."""
 
@@ -132,6 +163,7 @@ class Shooting:
 
     def final_time(self, lengths: Sequence[Ball]) -> Ball:
         """When the last arc ends."""
+        lengths = lengths[: len(self.arcs)]
         return self.statement.t0 + sum(lengths, arb(0)) if self.lengths_unknown else self.statement.tf
 
     def run(self, box: Box, order: Order) -> Pass:
@@ -150,14 +182,14 @@ class Shooting:
                 share = arb(b) - arb(a)
                 span, around = box.lengths[j] * share, box.lengths_around[j] * share
                 one = self._segment(arc.law, box.nodes[k], box.around[k], span, around, order)
-                rows.matched(one, k, j, share)
+                rows.matched(one, k, j, share, last=b == 1.0)
                 segments.append(one)
                 k, steps = k + 1, steps + len(one.steps)
                 if steps > MOST_STEPS:
                     raise NotProved(f"more than {MOST_STEPS} steps of integration; the horizon is too long")
             found.append(segments)
             if j + 1 < len(self.arcs):
-                rows.met(arc.law, self.arcs[j + 1].law, k)
+                rows.met(j, k)
         end = rows.ended(k)
         return Pass(column(rows.residuals), rows.jacobian(), found, end)
 
@@ -201,21 +233,34 @@ class _Rows:
         self.lengths = self.n + self.m * (len(box.nodes) - 1)
         """The first place of a length."""
 
-    def matched(self, one: Segment, k: int, j: int, share: Ball) -> None:
-        """A segment leads from node k to the next."""
+    def matched(self, one: Segment, k: int, j: int, share: Ball, last: bool) -> None:
+        """A segment leads from node k to the next; where the last one of an arc ends, costates may jump."""
+        place, jump = self._jump(j) if last else (0, ())
         for i in range(self.m):
             row = self._of_node(k, [one.derivative[i, c] for c in range(self.m)])
             row[self._place(k + 1, i)] = arb(-1)
             if self.shooting.lengths_unknown:
                 row[self.lengths + j] = one.rates[i] * share
-            self._add(one.point[i] - self.box.nodes[k + 1][i], row)
+            jumped = arb(0)
+            if jump and self.n <= i < 2 * self.n:
+                jumped = self.box.lengths[place] * jump[i - self.n]
+                row[self.lengths + place] = -jump[i - self.n]
+            self._add(one.point[i] - jumped - self.box.nodes[k + 1][i], row)
 
-    def met(self, law: Law, following: Law, k: int) -> None:
-        """A condition of an arc vanishes at the node where another one begins."""
-        key = law.leaving(following)
+    def _jump(self, j: int) -> tuple[int, tuple[Ball, ...]]:
+        """The place of the multiple at the end of an arc, among the lengths, and what it multiplies."""
+        junctions = self.shooting.junctions
+        if j >= len(junctions) or not junctions[j].slope:
+            return 0, ()
+        return len(self.shooting.arcs) + sum(bool(one.slope) for one in junctions[:j]), junctions[j].slope
+
+    def met(self, j: int, k: int) -> None:
+        """What the junction behind an arc asks for vanishes at its node."""
+        vanishing = self.shooting.junctions[j].vanishing
         ctx.cap = 1
-        there = dict(law.conditions([arb_series([v]) for v in self.box.nodes[k]]))[key]
-        self._add(there[0], self._of_node(k, gradient(law, key, self._around(k))))
+        there = vanishing([arb_series([v]) for v in self.box.nodes[k]])
+        for v, row in zip(there, derivatives(vanishing, self._around(k)), strict=True):
+            self._add(v[0], self._of_node(k, row))
 
     def ended(self, k: int) -> End:
         """The conditions at the end; how it is over the box."""
@@ -235,12 +280,12 @@ class _Rows:
                 entries[m - 1] += jac[i, m]
             row = self._of_node(k, entries)
             if shooting.lengths_unknown and not law.timed:
-                row |= {self.lengths + j: jac[i, m] for j in range(len(box.lengths))}
+                row |= {self.lengths + j: jac[i, m] for j in range(len(shooting.arcs))}
             self._add(v, row)
         if shooting.lengths_unknown and shooting.statement.tf is not None:
             given = shooting.statement.tf - shooting.statement.t0
-            row = {self.lengths + j: arb(1) for j in range(len(box.lengths))}
-            self._add(sum(box.lengths, arb(0)) - given, row)
+            row = {self.lengths + j: arb(1) for j in range(len(shooting.arcs))}
+            self._add(sum(box.lengths[: len(shooting.arcs)], arb(0)) - given, row)
         return end
 
     def jacobian(self) -> Matrix:

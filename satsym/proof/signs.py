@@ -9,10 +9,11 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.arithmetic import Ball, BeyondProof, Key, NotProved, value
 from satsym.proof.ends import positive
-from satsym.proof.identities import OPAQUE
+from satsym.proof.jets import OPAQUE
 from satsym.proof.laws import Held, Law, Regular, Throttled
-from satsym.proof.shooting import Pass, Shooting
+from satsym.proof.shooting import Junction, Pass, Shooting
 from satsym.proof.taylor import Step, polynomial
+from satsym.proof.walls import OnBoundary, require_push
 
 DEEPEST = 16
 """How often a step is halved to show a sign on it."""
@@ -39,30 +40,31 @@ def hold(shooting: Shooting, passed: Pass) -> Shown:
     conditions = 0
     laws = [arc.law for arc in shooting.arcs]
     for j, (law, segments) in enumerate(zip(laws, passed.segments, strict=True)):
-        entering = law.leaving(laws[j - 1]) if j else None
-        leaving = law.leaving(laws[j + 1]) if j + 1 < len(laws) else None
+        before = shooting.junctions[j - 1] if j else None
+        after = shooting.junctions[j] if j + 1 < len(laws) else None
         steps = [step for segment in segments for step in segment.steps]
         for k, step in enumerate(steps):
             conditions += _on_step(
-                law, step, entering if k == 0 else None, leaving if k == len(steps) - 1 else None, f"arc {j + 1}"
+                law, step, before if k == 0 else None, after if k == len(steps) - 1 else None, f"arc {j + 1}"
             )
         if isinstance(law, Held):
             _require_weights(law, steps)
+        if isinstance(law, OnBoundary):
+            require_push(law, steps)
     return Shown(conditions, len(laws) - 1)
 
 
-def _on_step(law: Law, step: Step, entering: Key | None, leaving: Key | None, where: str) -> int:
+def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | None, where: str) -> int:
     n = step.terms
     ctx.cap = n + 1
     near, last = law.conditions(step.series), law.conditions(step.last)
     for (key, c), (_, d) in zip(near, last, strict=True):
         series = [*(c[k] for k in range(n)), d[n]]
-        slope = [*((k + 1) * c[k + 1] for k in range(n - 1)), n * d[n]]
         low, high = arb(0), step.h
-        if key == entering:
-            low = _part(slope, step.h, 1, where)
-        if key == leaving:
-            high = step.h - _part(slope, step.h, -1, where)
+        if before and key == before.entering:
+            low = _part(_derived(series, before.order), step.h, 1, 1, where)
+        if after and key == after.leaving:
+            high = step.h - _part(_derived(series, after.order), step.h, -1, (-1) ** after.order, where)
         if low < high and not _positive(_Condition(law, key, step, series), low, high):
             raise NotProved(
                 f"{where}: a sign that its law needs ({key[0]} {key[1]}) is not shown; another structure may be right"
@@ -70,12 +72,22 @@ def _on_step(law: Law, step: Step, entering: Key | None, leaving: Key | None, wh
     return len(near)
 
 
-def _part(slope: Sequence[Ball], h: Ball, sign: int, where: str) -> Ball:
-    """A part of a step, at its beginning (1) or at its end (-1), on which a condition rises or falls."""
+def _derived(series: Sequence[Ball], order: int) -> list[Ball]:
+    """The coefficients of a derivative."""
+    for _ in range(order):
+        series = [k * v for k, v in enumerate(series)][1:]
+    return list(series)
+
+
+def _part(derivative: Sequence[Ball], h: Ball, end: int, sign: int, where: str) -> Ball:
+    """A part of a step, at its beginning (1) or at its end (-1), on which a derivative has a sign.
+
+    A condition that vanishes there, with all derivatives of lower order, is positive on that part but for its end.
+    """
     for k in range(PARTS):
         w = h / 2**k
-        between = arb(0).union(w) if sign > 0 else (h - w).union(h)
-        if sign * polynomial(slope, between) > 0:
+        between = arb(0).union(w) if end > 0 else (h - w).union(h)
+        if sign * polynomial(derivative, between) > 0:
             return w
     raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
 
@@ -150,7 +162,7 @@ def _of_hamiltonian(law: Law, step: Step) -> str:
         return "H is linear in the controls and their magnitudes, with strict signs"
     if isinstance(law, Throttled):
         return "H is linear in the controls and their norm, with strict signs"
-    assert isinstance(law, Regular)
+    assert isinstance(law, Regular | OnBoundary)
     spec = law.kernel.spec
     if spec.control_parts:
         return "H is a cosine of the direction, of an amplitude that does not vanish"

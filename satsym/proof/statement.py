@@ -212,7 +212,11 @@ def refuse(case: Instance) -> None:
     if not spec.has_cost:
         raise BeyondProof("a model without a cost")
     for there, feature in (
-        (spec.path_constraints, "path constraints"),
+        (
+            any(one.order != 2 for one in spec.path_constraints)
+            or (spec.path_constraints and spec.control_set != "free"),
+            "path constraints of another order than two, or beside bounds of the controls",
+        ),
         (spec.interior, "points on the way"),
         (spec.multipliers, "constraints at the end other than given states"),
         (spec.chattering, "controls that chatter"),

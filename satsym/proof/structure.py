@@ -32,6 +32,8 @@ class Path:
     """What a solver found, as a function of time: states and costates between its nodes."""
 
     def __init__(self, found: Solution, timed: bool) -> None:
+        if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
+            raise NotProved("there are no costates to begin with")
         keep = np.append(np.diff(found.times) > 0.0, True)
         self.times = np.asarray(found.times)[keep]
         rows = [np.asarray(found.x)[:, keep], np.asarray(found.lam)[:, keep]]
@@ -42,7 +44,7 @@ class Path:
         return [arb(float(np.interp(t, self.times, row))) for row in self.values]
 
 
-def arcs(statement: Statement, found: Solution) -> tuple[list[Law], list[float], Path]:
+def arcs(statement: Statement, found: Solution, path: Path) -> tuple[list[Law], list[float]]:
     """Laws in order, and the times at which the first begins, each ends and the next one begins, and the last ends.
 
     Raises
@@ -50,14 +52,11 @@ def arcs(statement: Statement, found: Solution) -> tuple[list[Law], list[float],
     BeyondProof
         If controls are neither at a bound nor given by the law.
     """
-    if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
-        raise NotProved("there are no costates to begin with")
     spec = statement.spec
-    path = Path(found, not spec.autonomous)
     if spec.switching:
-        return (*_held(statement, found), path)
+        return _held(statement, found)
     kind = Throttled if spec.control_parts and spec.control_parts[0].kind == "ball" else Regular
-    return (*_regular(statement, found, path, kind), path)
+    return _regular(statement, found, path, kind)
 
 
 def _regular(statement: Statement, found: Solution, path: Path, kind: type[Regular]) -> tuple[list[Law], list[float]]:

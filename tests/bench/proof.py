@@ -93,9 +93,11 @@ def drawn(rng: np.random.Generator) -> tuple[Instance, Solution, int]:
     u = np.asarray(model.control_law_batch(times, x, costates, p, bounds))
     final = dict(zip(model.spec.state_names, map(float, x[:, -1]), strict=True))
     given = replace(case, final=final, tf=tf, path=Path("drawn"))
-    return given, Solution(
-        given, "drawn", Status.CONVERGED, "", 0.0, times, x, u, costates, ((), ()), 0, (), 0.0
-    ), conjugate
+    return (
+        given,
+        Solution(given, "drawn", Status.CONVERGED, "", 0.0, times, x, u, costates, ((), ()), 0, (), 0.0),
+        conjugate,
+    )
 
 
 def of_random(count: int) -> None:

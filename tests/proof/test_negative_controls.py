@@ -54,9 +54,7 @@ ALTERED = [
 
 @pytest.mark.parametrize(("function", "old", "new"), ALTERED)
 def test_a_kernel_with_one_altered_term_is_not_proved(solved: Solved, function: str, old: str, new: str) -> None:
-    proof = prove(
-        altered("double-integrator-energy", function, old, new), lambda: solved("double-integrator-energy")
-    )
+    proof = prove(altered("double-integrator-energy", function, old, new), lambda: solved("double-integrator-energy"))
     assert proof.status is Outcome.NOT_PROVED
     assert "contradicts" in proof.reason or "no extremal" in proof.reason
 

@@ -1,0 +1,173 @@
+"""Arcs on and beside the boundaries of path constraints of order two that are linear in the states.
+
+On a boundary the controls keep the second rate of the constraint at zero, and the costates change by a multiple of its
+gradient besides; where a boundary is entered, left or touched they jump by such a multiple (direct adjoining). In a
+convex problem, multiples that are not negative make the extremal a global minimum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from flint import arb_series, ctx
+
+from satsym.proof.arithmetic import Ball, BeyondProof, Key, NotProved, Series, constant, value
+from satsym.proof.jets import OPAQUE, Jet
+from satsym.proof.kernel import BallKernel
+from satsym.proof.laws import Law, Regular
+from satsym.proof.shooting import Junction
+from satsym.proof.statement import Statement
+from satsym.proof.taylor import Step
+from satsym.solution import Solution
+
+
+def wall(which: int) -> Key:
+    """The key of the condition that a constraint is kept."""
+    return ("path_constraints", which)
+
+
+def levels(law: Law, z: Sequence[Series]) -> list[Series]:
+    """What must not be positive."""
+    t, x, _ = law.parts(z)
+    return list(law.kernel.path_constraints(t, x, law.control(z), law.p, ()))
+
+
+def gradient_of(law: Law, which: int) -> list[Ball]:
+    """The derivatives of a constraint by the states, which do not depend on these.
+
+    Raises
+    ------
+    BeyondProof
+        If they do.
+    """
+    n, m = law.n, len(law.kernel.spec.controls)
+    ctx.cap = 1
+    try:
+        found = law.kernel.path_gradient(OPAQUE, [OPAQUE] * n, [OPAQUE] * m, law.p)
+    except TypeError:
+        raise BeyondProof("path constraints that are not linear in the states") from None
+    return [value(v) for v in found[n * which : n * which + n]]
+
+
+class BesideWalls(Regular):
+    """An arc on which no constraint is active."""
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        kept = [(wall(k), -v) for k, v in enumerate(levels(self, z))]
+        return [*super().conditions(z), *kept]
+
+
+class OnBoundary(Law):
+    """An arc on the boundary of a constraint."""
+
+    def __init__(self, kernel: BallKernel, parameters: Sequence[Series], which: int) -> None:
+        super().__init__(kernel, parameters)
+        self.which = which
+        self.slope = [constant(v) for v in gradient_of(self, which)]
+
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        m = len(self.kernel.spec.controls)
+        found = self.kernel.boundary_control(t, x, lam, self.p, ())
+        return list(found[m * self.which : m * self.which + m])
+
+    def multiplier(self, z: Sequence[Series]) -> Series:
+        """By which the gradient of the constraint enters the rates of the costates."""
+        t, x, lam = self.parts(z)
+        return self.kernel.path_multiplier(t, x, self.control(z), lam, self.p, ())[self.which] + constant(0)
+
+    def vanishing(self, z: Sequence[Series], law: Law | None = None) -> list[Series]:
+        """What is zero all along: the constraint, its rate, H_u along the boundary, and the rate of that."""
+        t, x, lam = self.parts(z)
+        u, k = (law or self).control(z), self.which
+        level = self.kernel.path_constraints(t, x, u, self.p, ())[k]
+        rate = self.kernel.path_rates(t, x, u, self.p)[2 * k]
+        others = self.kernel.path_vanishing(t, x, u, lam, self.p, ())[2 * k : 2 * k + 2]
+        return [v + constant(0) for v in (level, rate, *others)]
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        return [(wall(k), -v) for k, v in enumerate(levels(self, z)) if k != self.which]
+
+    def leaving(self, other: Law) -> Key:
+        return wall(self.which)
+
+    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        u, push = self.control(z), self.multiplier(z)
+        costates = self.kernel.costate_rate(t, x, u, lam, self.p)
+        pushed = [v - push * s for v, s in zip(costates, self.slope, strict=True)]
+        return [*(v + constant(0) for v in self.kernel.dynamics(t, x, u, self.p)), *pushed]
+
+    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
+        m = len(z)
+        given = [Jet(v, {i: constant(1)}) for i, v in enumerate(z)]
+        zero = constant(0)
+        return [
+            (jet.first.get(j, zero) if isinstance(jet, Jet) else zero) for jet in self._rates(given) for j in range(m)
+        ]
+
+
+def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float], list[float]]:
+    """Laws, junctions, times and jumps of the costates of an answer whose events are known."""
+    kernel, p = statement.kernel, statement.p
+    names = [one.name for one in statement.spec.path_constraints]
+    laws: list[Law] = [BesideWalls(kernel, p, ())]
+    junctions, times, jumps = [], [float(found.times[0])], []
+    for event in found.events:
+        which = names.index(event.name)
+        entered = event.kind == "entry"
+        if event.kind not in ("entry", "exit", "touch") or isinstance(laws[-1], OnBoundary) is not (
+            event.kind == "exit"
+        ):
+            raise BeyondProof("a structure of boundary arcs that is not recognised")
+        boundary = OnBoundary(kernel, p, which)
+        laws.append(boundary if entered else BesideWalls(kernel, p, ()))
+        order = 2 if event.kind == "touch" else 3
+        asked = {"entry": 4, "touch": 2, "exit": 0}[event.kind]
+        slope = tuple(gradient_of(boundary, which))
+        vanishing = partial(_first, boundary, laws[-1], asked)
+        junctions.append(Junction(wall(which), wall(which), order, vanishing, slope))
+        times.append(event.t)
+        jumps.append(_jump(found, event.t, slope))
+    return laws, junctions, [*times, float(found.times[-1])], jumps
+
+
+def _first(boundary: OnBoundary, law: Law, count: int, z: Sequence[Series]) -> list[Series]:
+    """The first of what vanishes on a boundary, under the law of the arc that begins there."""
+    return boundary.vanishing(z, law)[:count]
+
+
+def _jump(found: Solution, t: float, slope: Sequence[Ball]) -> float:
+    """How many times the gradient the costates fall at a time, where an answer has it twice."""
+    k = int(np.argmin(np.abs(found.times[:-1] - t) + 1e9 * (np.diff(found.times) > 0.0)))
+    fall, along = found.lam[:, k] - found.lam[:, k + 1], np.array([float(v.mid()) for v in slope])
+    return float(fall @ along / (along @ along))
+
+
+def require_push(law: OnBoundary, steps: Sequence[Step]) -> None:
+    """Show that a boundary pushes nowhere inwards.
+
+    Raises
+    ------
+    NotProved
+        If its multiplier may be negative.
+    """
+    for step in steps:
+        ctx.cap = 1
+        push = value(law.multiplier([arb_series([v]) for v in step.range]))
+        if not push >= 0:
+            raise NotProved("the multiplier of a path constraint on its boundary is not shown to be nonnegative")
+
+
+def require_jumps(jumps: Sequence[Ball]) -> None:
+    """Show that boundaries are met and left by jumps in their own direction.
+
+    Raises
+    ------
+    NotProved
+        If one may be negative.
+    """
+    if not all(jump >= 0 for jump in jumps):
+        raise NotProved("a jump of the costates at a path constraint is not shown to be nonnegative")
