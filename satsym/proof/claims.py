@@ -35,6 +35,31 @@ CONVEX = (
 )
 
 
+REST = Theorem(
+    "no control costs less than none",
+    "the running cost is a sum of squares",
+    (
+        "The global minimum of the cost is zero.",
+        "Only the motion without control has it: every other admissible control costs more.",
+    ),
+)
+
+
+def of_rest(steps: int) -> tuple[Hypothesis, ...]:
+    """What makes no control the best one."""
+    return (
+        Hypothesis(
+            "the cost is a positive definite quadratic form in the controls alone, and the end is free",
+            "by second derivatives over all controls",
+            "exactly",
+        ),
+        Hypothesis("the control zero is admissible", "it lies within all bounds", "exactly"),
+        Hypothesis(
+            "the motion without control exists until the final time", "by validated integration", f"{steps} steps"
+        ),
+    )
+
+
 def of_signs(shown: Shown) -> Hypothesis:
     """That laws are the best ones along their arcs."""
     if not shown.conditions:

@@ -7,12 +7,14 @@ from itertools import accumulate
 
 from flint import arb, arb_mat, arb_series, ctx
 
+from satsym.proof import claims
 from satsym.proof.arithmetic import Ball, value
 from satsym.proof.ends import End
 from satsym.proof.jets import derivatives, variables
 from satsym.proof.laws import Law
-from satsym.proof.record import Enclosure, Hypothesis, Node, Proof
+from satsym.proof.record import Enclosure, Hypothesis, Node, Outcome, Proof
 from satsym.proof.shooting import Box, Inclusion, Segment, Shooting
+from satsym.proof.statement import Statement
 from satsym.proof.taylor import from_zero
 
 MOST_NODES = 9
@@ -60,6 +62,23 @@ def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
     here = shooting.unknowns(box.nodes, box.lengths)
     _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
     return list(found[len(shooting.arcs) :])
+
+
+def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) -> Proof:
+    """The record of a problem in which no control costs less than none."""
+    names, digits = statement.spec.state_names, record.digits
+    zero = Enclosure("0", "0")
+    return replace(
+        record,
+        status=Outcome.PROVED,
+        hypotheses=claims.of_rest(steps),
+        theorem=claims.REST,
+        scope=claims.scope(statement),
+        costate_initial=dict.fromkeys(names, zero),
+        x_final={name: Enclosure.of(v, digits) for name, v in zip(names, end, strict=True)},
+        t_final=Enclosure.of(statement.tf, digits),
+        objective=zero,
+    )
 
 
 def _times(shooting: Shooting, lengths: list[Ball]) -> list[Ball]:

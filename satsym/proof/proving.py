@@ -19,6 +19,7 @@ from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
 from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
+from satsym.proof.rest import costs_nothing, final_state
 from satsym.proof.shooting import Box, Inclusion, Junction, Shooting, krawczyk
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated
@@ -57,11 +58,18 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
     with _precision(digits):
         try:
             refuse(case)
-            found = find()
-            begun = time.perf_counter()
-            if not found.status.answered:
-                raise NotProved(f"there is no answer to begin with: {found.message}")
-            record = _proved(case, found, record)
+            statement = stated(case, {})
+            record = replace(record, numbers=dict(statement.source.stated))
+            if case.model.spec.path_constraints and not convex(statement):
+                raise BeyondProof("path constraints of a problem that is not convex")
+            if costs_nothing(statement):
+                record = _at_rest(statement, record)
+            else:
+                found = find()
+                begun = time.perf_counter()
+                if not found.status.answered:
+                    raise NotProved(f"there is no answer to begin with: {found.message}")
+                record = _proved(case, found, record)
         except BeyondProof as error:
             record = replace(record, status=Outcome.BEYOND, reason=str(error))
         except NotProved as error:
@@ -71,6 +79,14 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
         except (ArithmeticError, ValueError) as error:
             record = replace(record, reason=f"the motion is singular near the answer ({error})")
     return replace(record, wall_s=time.perf_counter() - begun)
+
+
+def _at_rest(statement: Statement, record: Proof) -> Proof:
+    """The proof of a problem that is solved by doing nothing."""
+    sizes = [max(abs(float(v.mid())), 1e-3) for v in statement.initial]
+    order = Order(max(18, int(1.1 * (record.digits + SPARE))), 10.0 ** -(record.digits + SPARE))
+    end, steps = final_state(statement, order, [*sizes, 1.0])
+    return enclosures.at_rest(record, statement, end, steps)
 
 
 class _Stopped(Exception):
@@ -117,8 +133,6 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
         lambda: claims.of_ends(statement, passed.end),
     ]
     if statement.spec.path_constraints:
-        if not convexity:
-            raise _Stopped(replace(record, status=Outcome.BEYOND), "path constraints of a problem that is not convex")
         steps.append(lambda: claims.of_jumps(enclosures.jumps(shooting, there.box, there.last)))
     else:
         steps.append(lambda: claims.of_field(regular_field(shooting, passed)))

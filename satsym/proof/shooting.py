@@ -17,7 +17,7 @@ from satsym.proof.arithmetic import Ball, Key, NotProved, Series
 from satsym.proof.ends import End
 from satsym.proof.laws import Law, derivatives
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import Matrix, Order, Step, column, rates, step, unit
+from satsym.proof.taylor import Field, Matrix, Order, Step, column, rates, step, unit
 
 MOST_STEPS = 3000
 """Of one pass over the extremal."""
@@ -181,7 +181,7 @@ class Shooting:
             for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
                 share = arb(b) - arb(a)
                 span, around = box.lengths[j] * share, box.lengths_around[j] * share
-                one = self._segment(arc.law, box.nodes[k], box.around[k], span, around, order)
+                one = integrated(arc.law, box.nodes[k], box.around[k], span, around, order, self.sizes)
                 rows.matched(one, k, j, share, last=b == 1.0)
                 segments.append(one)
                 k, steps = k + 1, steps + len(one.steps)
@@ -193,32 +193,46 @@ class Shooting:
         end = rows.ended(k)
         return Pass(column(rows.residuals), rows.jacobian(), found, end)
 
-    def _segment(
-        self, law: Law, node: list[Ball], around: list[Ball], span: Ball, slack: Ball, order: Order
-    ) -> Segment:
-        point, d, left, h = list(node), unit(law.m), span, span
-        steps, deviations, errors, start = [], [], [], column(around)
-        while True:
-            h = min(h, left, key=lambda v: float(v.mid()))
-            last = not h < left
-            middle = [v.mid() for v in point]
-            error = column([p - v for p, v in zip(point, middle, strict=True)])
-            deviation = (d * start).entries()
-            z = [p + e for p, e in zip(point, deviation, strict=True)]
-            one, following = step(law, middle, z, left + slack if last else h, order, self.sizes)
-            last = last and one.h.contains(left)
-            steps.append(one)
-            deviations.append(deviation)
-            errors.append(error.entries())
-            there = one.from_middle(left if last else one.h)
-            v = one.derivative()
-            point = [p + e for p, e in zip(there, (v * error).entries(), strict=True)]
-            d = v * d
-            if last:
-                return Segment(point, d, rates(law, one.reached(one.h)), steps, deviations, errors)
-            left, h = left - one.h, following
-            if len(steps) > MOST_STEPS:
-                raise NotProved(f"more than {MOST_STEPS} steps in a segment")
+
+def integrated(
+    law: Field,
+    node: list[Ball],
+    around: list[Ball],
+    span: Ball,
+    slack: Ball,
+    order: Order,
+    sizes: Sequence[float],
+) -> Segment:
+    """Integrate over a segment, whose length is a span and a slack about zero.
+
+    Raises
+    ------
+    NotProved
+        If it has no enclosure.
+    """
+    point, d, left, h = list(node), unit(len(node)), span, span
+    steps, deviations, errors, start = [], [], [], column(around)
+    while True:
+        h = min(h, left, key=lambda v: float(v.mid()))
+        last = not h < left
+        middle = [v.mid() for v in point]
+        error = column([p - v for p, v in zip(point, middle, strict=True)])
+        deviation = (d * start).entries()
+        z = [p + e for p, e in zip(point, deviation, strict=True)]
+        one, following = step(law, middle, z, left + slack if last else h, order, sizes)
+        last = last and one.h.contains(left)
+        steps.append(one)
+        deviations.append(deviation)
+        errors.append(error.entries())
+        there = one.from_middle(left if last else one.h)
+        v = one.derivative()
+        point = [p + e for p, e in zip(there, (v * error).entries(), strict=True)]
+        d = v * d
+        if last:
+            return Segment(point, d, rates(law, one.reached(one.h)), steps, deviations, errors)
+        left, h = left - one.h, following
+        if len(steps) > MOST_STEPS:
+            raise NotProved(f"more than {MOST_STEPS} steps in a segment")
 
 
 class _Rows:

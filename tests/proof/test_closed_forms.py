@@ -54,6 +54,25 @@ def test_least_time_of_a_pitch_manoeuvre_goes_with_the_root_of_the_torque() -> N
     assert holds(slow.objective, 200 / mpmath.sqrt(3))
 
 
+def test_a_wall_is_kept_at_least_cost() -> None:
+    """4/(9 l) with the wall at l < 1/6, which is entered at 3 l."""
+    for name, wall, factor in (("bryson-denham", "0.1111111111111111", 1), ("breakwell", "0.1", 1), ("beam", "0.1", 2)):
+        proof, level = proved(name), mpmath.mpf(wall)
+        assert proof.status is Outcome.PROVED
+        assert holds(proof.objective, factor * 4 / (9 * level)), name
+        assert holds(proof.switching_times[0], 3 * level)
+        assert proof.theorem is not None
+        assert "global" in proof.theorem.claims[-1]
+
+
+def test_where_nothing_is_asked_of_the_end_doing_nothing_is_best() -> None:
+    case = instance.load("its-thesis")
+    proof = prove(case, lambda: pytest.fail("nothing need be solved"))
+    assert proof.status is Outcome.PROVED
+    assert proof.objective == Enclosure("0", "0")
+    assert float(proof.x_final["r"].centre) == pytest.approx(25.0, abs=0.6)  # on its parabola, as the README says
+
+
 def test_the_brachistochrone_is_a_cycloid() -> None:
     proof = proved("brachistochrone")
     assert proof.status is Outcome.PROVED

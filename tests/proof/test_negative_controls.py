@@ -83,7 +83,8 @@ def test_a_law_that_leaves_out_a_bound_is_not_proved() -> None:
 @pytest.mark.parametrize(
     ("name", "feature"),
     [
-        ("bryson-denham", "path constraints"),
+        ("return-above", "path constraints of a problem that is not convex"),
+        ("rayleigh-mixed", "path constraints of another order"),
         ("inspection", "path constraints"),
         ("fuller", "chatter"),
         ("chain", "free with a law of the kind stationary"),
@@ -105,9 +106,16 @@ def test_what_is_free_at_the_start_or_counts_modulo_a_turn_is_refused() -> None:
     assert prove(turning, lambda: pytest.fail()).status is Outcome.BEYOND
 
 
-def test_controls_at_a_bound_that_nothing_pushes_to_are_not_proved(solved: Solved) -> None:
-    """With nothing asked of the end no control is best, and it lies on its bound: the sign is not strict."""
-    case = instance.load("its-thesis")
-    short = replace(case, tf=1.0)
-    proof = prove(short, lambda: solvers.solve(short))
+def test_a_wall_that_is_left_out_is_not_proved() -> None:
+    """Without its wall the parabola passes it; with a multiplier that pulls, nothing is proved either."""
+    case = instance.load("bryson-denham")
+    far = replace(case, parameters=(0.3,))
+    without = solvers.solve(far)
+    assert without.events == ()
+    proof = prove(case, lambda: replace(without, instance=case))
+    assert proof.status is Outcome.NOT_PROVED
+    assert "path_constraints" in proof.reason
+    with_wall = solvers.solve(case)
+    pulled = replace(with_wall, lam=with_wall.lam * 1.5)
+    proof = prove(case, lambda: pulled)
     assert proof.status is Outcome.NOT_PROVED
