@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from satsym.instance.ends import Side
-from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.balls.arithmetic import Ball, NotProved
 from satsym.proof.ends import End
 from satsym.proof.field import Regularity
-from satsym.proof.laws import Held, Law, Throttled
+from satsym.proof.laws import AtLevels, Law, Throttled
 from satsym.proof.record import Hypothesis, Theorem
 from satsym.proof.signs import Shown
 from satsym.proof.statement import Statement
@@ -40,7 +40,7 @@ REST = Theorem(
     "the running cost is a sum of squares",
     (
         "The global minimum of the cost is zero.",
-        "Only the motion without control has it: every other admissible control costs more.",
+        "Only the uncontrolled motion has it: every other admissible control costs more.",
     ),
 )
 
@@ -54,9 +54,7 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
             "exactly",
         ),
         Hypothesis("the control zero is admissible", "it lies within all bounds", "exactly"),
-        Hypothesis(
-            "the motion without control exists until the final time", "by validated integration", f"{steps} steps"
-        ),
+        Hypothesis("the uncontrolled motion exists until the final time", "by validated integration", f"{steps} steps"),
     )
 
 
@@ -139,7 +137,7 @@ def theorem(statement: Statement, laws: Sequence[Law], convexity: str) -> Theore
                 f"It is a global minimum of the cost: {convexity}, and path constraints are linear in the states.",
             ),
         )
-    jumping = len(laws) > 1 and isinstance(laws[0], Held | Throttled)
+    jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
     name, source = BROKEN if jumping else FIELD
     time = " and whose final time is near" if statement.tf is None else ""
     least = "a maximum of the objective" if statement.spec.maximise else "a minimum of the cost"

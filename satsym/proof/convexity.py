@@ -11,8 +11,8 @@ from typing import Any
 
 from flint import arb, ctx
 
-from satsym.proof.arithmetic import Answers, Ball, constant, value
-from satsym.proof.jets import Jet, variables
+from satsym.proof.balls.arithmetic import Answers, Ball, constant, value
+from satsym.proof.balls.jets import Jet, variables
 from satsym.proof.statement import Statement
 
 

@@ -8,14 +8,14 @@ from itertools import accumulate
 from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof import claims
-from satsym.proof.arithmetic import Ball, value
+from satsym.proof.balls.arithmetic import Ball, value
+from satsym.proof.balls.jets import derivatives, variables
+from satsym.proof.balls.taylor import from_zero
 from satsym.proof.ends import End
-from satsym.proof.jets import derivatives, variables
 from satsym.proof.laws import Law
 from satsym.proof.record import Enclosure, Hypothesis, Node, Outcome, Proof
 from satsym.proof.shooting import Box, Inclusion, Segment, Shooting
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import from_zero
 
 MOST_NODES = 9
 """Of the record; more would say nothing more."""

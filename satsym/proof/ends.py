@@ -8,11 +8,11 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, constant, value
-from satsym.proof.jets import derivatives, variables
+from satsym.proof.balls.arithmetic import Ball, constant, value
+from satsym.proof.balls.jets import derivatives, variables
+from satsym.proof.balls.taylor import Matrix, rates
 from satsym.proof.laws import Law
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import Matrix, rates
 
 
 @dataclass(frozen=True)

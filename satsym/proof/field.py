@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
-from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.balls.arithmetic import Ball, NotProved
+from satsym.proof.balls.taylor import Matrix, Step, rates, unit
 from satsym.proof.ends import positive
-from satsym.proof.laws import Held, Law, Throttled, gradient
+from satsym.proof.laws import AtLevels, Law, Throttled, gradient
 from satsym.proof.shooting import Pass, Segment, Shooting
-from satsym.proof.taylor import Matrix, Step, rates, unit
 
 DEEPEST = 10
 """How often a step is halved to show that X is regular on it."""
@@ -141,7 +141,7 @@ def _regular(step: Step, w: Matrix, sizes: Sequence[float], low: float, high: fl
 
 def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -> tuple[Matrix, Ball | None]:
     """W behind the end of an arc. Where the motion jumps there, X does, and keeps the sign of its determinant."""
-    if not isinstance(law, Held | Throttled):
+    if not isinstance(law, AtLevels | Throttled):
         return w, None
     n = law.n
     there = segment.steps[-1].reached(segment.steps[-1].h)
@@ -183,7 +183,7 @@ def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
 def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
     """Diagonals of W, at later times, of the field of all extremals from the initial state."""
     n, flow = shooting.arcs[0].law.n, unit(shooting.arcs[0].law.m)
-    jumping = isinstance(shooting.arcs[0].law, Held | Throttled)
+    jumping = isinstance(shooting.arcs[0].law, AtLevels | Throttled)
     reach = passed.segments[:1] if jumping else passed.segments
     steps = [step for segments in reach for segment in segments for step in segment.steps]
     wanted = {max(1, len(steps) // part) for part in (2, 4, 8, 16)}

@@ -1,7 +1,7 @@
 """Whether a generated kernel is what it says: its laws and derivatives, against its own motion and costs.
 
 The problem is what ``dynamics``, ``running_cost`` and ``terminal_cost`` say. From these alone first and second
-derivatives of H are computed, by :mod:`satsym.proof.jets`, at random points near the extremal, and compared with what
+derivatives of H are computed (:mod:`satsym.proof.balls.jets`), at random points near the extremal, and compared with what
 the proof uses of the kernel besides. Both sides are analytic functions, with the comparisons of the arc answered as
 they are along it: two that differ anywhere differ at almost every point.
 """
@@ -14,9 +14,9 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
-from satsym.proof.jets import OPAQUE, Jet, derivatives, variables
-from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.balls.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
+from satsym.proof.balls.jets import OPAQUE, Jet, derivatives, variables
+from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.laws import derivatives as partials
 from satsym.proof.statement import Statement
 from satsym.proof.walls import OnBoundary
@@ -49,7 +49,7 @@ def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], size
         point.jacobian()
         if isinstance(law, OnBoundary):
             point.boundary()
-        elif isinstance(law, Held):
+        elif isinstance(law, AtLevels):
             point.switching()
         elif isinstance(law, Throttled):
             point.throttle()

@@ -12,8 +12,8 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from satsym.proof.arithmetic import Answers, Ball, Key, NotProved, Series, constant
-from satsym.proof.kernel import BallKernel
+from satsym.proof.balls.arithmetic import Answers, Ball, Key, NotProved, Series, constant
+from satsym.proof.balls.kernel import BallKernel
 
 SIMULTANEOUS = "two bounds are met or left at once; the theorem asks for one at a time"
 
@@ -167,7 +167,7 @@ class Throttled(Regular):
 THROTTLE: Key = ("throttle_slope", 0)
 
 
-class Held(Law):
+class AtLevels(Law):
     """Controls at an end of their bounds, or at zero where their magnitudes cost something.
 
     Parameters
@@ -203,7 +203,7 @@ class Held(Law):
         return found
 
     def leaving(self, other: Law) -> Key:
-        assert isinstance(other, Held)
+        assert isinstance(other, AtLevels)
         found = [i for i, (a, b) in enumerate(zip(self.held, other.held, strict=True)) if a != b]
         if len(found) != 1 or abs(self.held[found[0]] - other.held[found[0]]) != 1:
             raise NotProved(SIMULTANEOUS)

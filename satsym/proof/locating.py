@@ -7,11 +7,11 @@ from typing import Any
 
 from flint import arb
 
-from satsym.proof.arithmetic import Ball, NotProved
+from satsym.proof.balls.arithmetic import Ball, NotProved
+from satsym.proof.balls.taylor import column, rates, unit
 from satsym.proof.laws import Law
 from satsym.proof.shooting import Box, Segment, Shooting, _Rows, inverse
 from satsym.proof.structure import REMAINDER, TERMS, leap
-from satsym.proof.taylor import column, rates, unit
 
 TRIES = 12
 SETTLED = 1e-8

@@ -13,7 +13,8 @@ from flint import arb, ctx
 
 from satsym.instance import Instance
 from satsym.proof import claims, enclosures, structure, walls
-from satsym.proof.arithmetic import BeyondProof, NotProved
+from satsym.proof.balls.arithmetic import BeyondProof, NotProved
+from satsym.proof.balls.taylor import Order
 from satsym.proof.convexity import convex
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
@@ -23,7 +24,6 @@ from satsym.proof.rest import costs_nothing, final_state
 from satsym.proof.shooting import Box, Inclusion, Junction, Shooting, krawczyk
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated
-from satsym.proof.taylor import Order
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)

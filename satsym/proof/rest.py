@@ -13,12 +13,12 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx
 
-from satsym.proof.arithmetic import Ball, NotProved, Series, constant, value
+from satsym.proof.balls.arithmetic import Ball, NotProved, Series, constant, value
+from satsym.proof.balls.jets import OPAQUE, Jet, derivatives, variables
+from satsym.proof.balls.taylor import Order
 from satsym.proof.ends import positive
-from satsym.proof.jets import OPAQUE, Jet, derivatives, variables
 from satsym.proof.shooting import integrated
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import Order
 
 POINTS, SEED = 3, 20261
 

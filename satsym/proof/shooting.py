@@ -13,11 +13,11 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, Key, NotProved, Series
+from satsym.proof.balls.arithmetic import Ball, Key, NotProved, Series
+from satsym.proof.balls.taylor import Field, Matrix, Order, Step, column, rates, step, unit
 from satsym.proof.ends import End
 from satsym.proof.laws import Law, derivatives
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import Field, Matrix, Order, Step, column, rates, step, unit
 
 MOST_STEPS = 3000
 """Of one pass over the extremal."""

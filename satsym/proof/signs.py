@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, BeyondProof, Key, NotProved, value
+from satsym.proof.balls.arithmetic import Ball, BeyondProof, Key, NotProved, value
+from satsym.proof.balls.jets import OPAQUE
+from satsym.proof.balls.taylor import Step, polynomial
 from satsym.proof.ends import positive
-from satsym.proof.jets import OPAQUE
-from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.shooting import Junction, Pass, Shooting
-from satsym.proof.taylor import Step, polynomial
 from satsym.proof.walls import OnBoundary, require_push
 
 DEEPEST = 16
@@ -47,7 +47,7 @@ def hold(shooting: Shooting, passed: Pass) -> Shown:
             conditions += _on_step(
                 law, step, before if k == 0 else None, after if k == len(steps) - 1 else None, f"arc {j + 1}"
             )
-        if isinstance(law, Held):
+        if isinstance(law, AtLevels):
             _require_weights(law, steps)
         if isinstance(law, OnBoundary):
             require_push(law, steps)
@@ -125,7 +125,7 @@ def _positive(condition: _Condition, low: Ball, high: Ball, depth: int = DEEPEST
     return _positive(condition, low, middle, depth - 1) and _positive(condition, middle, high, depth - 1)
 
 
-def _require_weights(law: Held, steps: Sequence[Step]) -> None:
+def _require_weights(law: AtLevels, steps: Sequence[Step]) -> None:
     """Magnitudes may cost something, but bring nothing, or H is not convex in the controls."""
     for step in steps:
         ctx.cap = 1
@@ -158,7 +158,7 @@ def unique(shooting: Shooting, passed: Pass) -> str:
 
 
 def _of_hamiltonian(law: Law, step: Step) -> str:
-    if isinstance(law, Held):
+    if isinstance(law, AtLevels):
         return "H is linear in the controls and their magnitudes, with strict signs"
     if isinstance(law, Throttled):
         return "H is linear in the controls and their norm, with strict signs"

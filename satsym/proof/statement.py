@@ -11,9 +11,9 @@ from flint import arb
 from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.instance.resolve import REFERENCE
-from satsym.proof.arithmetic import Ball, BeyondProof, constant
-from satsym.proof.exact import Source
-from satsym.proof.kernel import BallKernel
+from satsym.proof.balls.arithmetic import Ball, BeyondProof, constant
+from satsym.proof.balls.exact import Source
+from satsym.proof.balls.kernel import BallKernel
 from satsym.spec import ProblemSpec
 
 _OF_INSTANCES = frozenset(
@@ -240,4 +240,4 @@ def refuse(case: Instance) -> None:
     if not known or part.turned_by or (part.kind == "angle" and len(part.controls) != 1):
         raise BeyondProof(f"a control set of the kind {part.kind} with a law of the kind {part.branch}")
     if part.kind == "ball" and (case.norms[part.name][0] != 0.0 or len(part.controls) != 2):
-        raise BeyondProof("a least norm of the controls, or a vector of other than two controls")
+        raise BeyondProof("a minimum norm of the controls, or a vector of other than two controls")

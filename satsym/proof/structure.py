@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, BeyondProof, NotProved, balls
-from satsym.proof.laws import Held, Law, Regular, Throttled
+from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved, balls
+from satsym.proof.balls.taylor import expand, expand_flow, polynomial, unit
+from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.shooting import Arc
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import expand, expand_flow, polynomial, unit
 from satsym.solution import Solution
 
 GROWTH = 20.0
@@ -111,12 +111,12 @@ def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]
             if members[-1][1] - members[0][0] > 0.01 * float(times[-1] - times[0]):
                 raise BeyondProof("an arc on which a control is at none of its bounds (singular)")
             continue
-        if laws and isinstance(laws[-1], Held) and laws[-1].held == held:
+        if laws and isinstance(laws[-1], AtLevels) and laws[-1].held == held:
             ends[-1] = members[-1][1]
             continue
         if laws:
             ends[-1] = (ends[-1] + members[0][0]) / 2
-        laws.append(Held(statement.kernel, statement.p, levels, held))
+        laws.append(AtLevels(statement.kernel, statement.p, levels, held))
         ends.append(members[-1][1])
     if not laws:
         raise NotProved("no arc of the controls is known")

@@ -13,13 +13,13 @@ from functools import partial
 import numpy as np
 from flint import arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, BeyondProof, Key, NotProved, Series, constant, value
-from satsym.proof.jets import OPAQUE, Jet
-from satsym.proof.kernel import BallKernel
+from satsym.proof.balls.arithmetic import Ball, BeyondProof, Key, NotProved, Series, constant, value
+from satsym.proof.balls.jets import OPAQUE, Jet
+from satsym.proof.balls.kernel import BallKernel
+from satsym.proof.balls.taylor import Step
 from satsym.proof.laws import Law, Regular
 from satsym.proof.shooting import Junction
 from satsym.proof.statement import Statement
-from satsym.proof.taylor import Step
 from satsym.solution import Solution
 
 

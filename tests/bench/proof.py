@@ -57,7 +57,9 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
     lines = ["| instance | objective J | final time | theorem | s |", "| --- | --- | --- | --- | --- |"]
     for name, proof, seconds in found:
         if proof.status is Outcome.PROVED:
-            assert proof.theorem and proof.objective and proof.t_final
+            assert proof.theorem
+            assert proof.objective
+            assert proof.t_final
             cells = [name, proof.objective.text, proof.t_final.text, proof.theorem.name, f"{seconds:.1f}"]
             lines.append("| " + " | ".join(cells) + " |")
     lines += ["", "Not proved, with the step that fails, or beyond what is proved here, with the feature:", ""]

@@ -1,4 +1,4 @@
-"""Extremals behind a conjugate or a focal point are not proved, those before it are; the numbers are the closed forms."""
+"""Extremals behind a conjugate or a focal point are not proved, those before it are, with their closed forms."""
 
 from __future__ import annotations
 

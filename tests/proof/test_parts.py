@@ -10,11 +10,11 @@ import pytest
 from flint import arb, ctx
 
 from satsym import instance
-from satsym.proof.arithmetic import mathematics
-from satsym.proof.exact import Source, _factor
-from satsym.proof.jets import derivatives, variables
+from satsym.proof.balls.arithmetic import mathematics
+from satsym.proof.balls.exact import Source, _factor
+from satsym.proof.balls.jets import derivatives, variables
+from satsym.proof.balls.taylor import Order, column, step, unit
 from satsym.proof.record import Enclosure
-from satsym.proof.taylor import Order, column, step, unit
 
 PARAMETRIC = """
 model = "polar_orbit"

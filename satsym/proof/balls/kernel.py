@@ -13,7 +13,7 @@ from satsym.kernels import Kernels
 from satsym.kernels.bodies import Unexpected
 from satsym.kernels.checking import check
 from satsym.kernels.loading import shipped_text
-from satsym.proof.arithmetic import Answers, BeyondProof, constant, mathematics
+from satsym.proof.balls.arithmetic import Answers, BeyondProof, constant, mathematics
 
 ROUNDED = 15
 """Digits from which a number of generated code may be a rounded one."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, constant, value
+from satsym.proof.balls.arithmetic import Ball, constant, value
 
 _First = dict[int, Any]
 _Second = dict[tuple[int, int], Any]

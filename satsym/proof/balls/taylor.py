@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.arithmetic import Ball, NotProved, Series, value
+from satsym.proof.balls.arithmetic import Ball, NotProved, Series, value
 
 Matrix = Any
 """An ``arb_mat``."""

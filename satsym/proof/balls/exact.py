@@ -14,8 +14,8 @@ from flint import arb
 
 from satsym import units
 from satsym.instance import Instance, files
-from satsym.proof.arithmetic import Ball, BeyondProof
-from satsym.proof.kernel import exactly
+from satsym.proof.balls.arithmetic import Ball, BeyondProof
+from satsym.proof.balls.kernel import exactly
 from satsym.status import BadInput
 from satsym.wording import printable
 
