@@ -35,6 +35,14 @@ CONVEX = (
 )
 
 
+BEST = (
+    "It is strictly better than all other admissible motions whose states stay near it, however different their "
+    "controls are (a strict strong local optimum)."
+)
+BEST_AT_FREE_TIMES = (
+    "It is strictly better than all other admissible motions whose states stay near it and whose final time is near, "
+    "however different their controls are (a strict strong local optimum)."
+)
 REST = Theorem(
     "no control costs less than none",
     "the running cost is a sum of squares",
@@ -119,33 +127,38 @@ def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
 
 def of_field(found: Regularity) -> Hypothesis:
     """That there is no focal point."""
-    jumps = f"; smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}" if found.ratios else ""
+    parts = [f"{found.pieces} pieces"]
+    if found.ratios:
+        parts.append(f"smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}")
     return Hypothesis(
         "a field of extremals about this one is regular on the closed interval, and its form at the end positive",
         f"W(t0) = {found.start}; no conjugate or focal point",
-        f"{found.pieces} pieces{jumps}",
+        "; ".join(parts),
     )
 
 
-def theorem(statement: Statement, laws: Sequence[Law], convexity: str) -> Theorem:
-    """What follows where all hypotheses were shown."""
+def theorem(statement: Statement, laws: Sequence[Law], convexity: str, radius: float) -> Theorem:
+    """What follows where all hypotheses were shown.
+
+    Parameters
+    ----------
+    convexity
+        In what the problem is convex, in words; empty where that is not known.
+    radius
+        Of the box that holds one extremal only, relative to the sizes.
+    """
+    one = f"There is exactly one extremal of this structure within {radius:g}, relative to the sizes of its components."
     if statement.spec.path_constraints:
         return Theorem(
             *CONSTRAINED,
             (
-                "There is exactly one extremal of this structure within unique_within of the enclosures.",
+                one,
                 f"It is a global minimum of the cost: {convexity}, and path constraints are linear in the states.",
             ),
         )
     jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
     name, source = BROKEN if jumping else FIELD
-    time = " and whose final time is near" if statement.tf is None else ""
-    least = "a maximum of the objective" if statement.spec.maximise else "a minimum of the cost"
-    claimed: tuple[str, ...] = (
-        "There is exactly one extremal of this structure within unique_within of the enclosures.",
-        f"It is strictly {least} among all admissible motions whose states stay near it{time}, however different the "
-        "controls are (a strict strong local optimum).",
-    )
+    claimed: tuple[str, ...] = (one, BEST_AT_FREE_TIMES if statement.tf is None else BEST)
     if convexity:
         name, source = f"{name}; {CONVEX[0]}", f"{source}; {CONVEX[1]}"
         claimed = (*claimed, f"It is global: {convexity}.")
@@ -156,12 +169,10 @@ def scope(statement: Statement) -> str:
     """Which problem is proved, and what is not claimed."""
     path = statement.source.path
     numbers = (
-        f"decimals of {path} and of the generated module are exact rational numbers, degrees are parts of pi"
+        f"decimals of {path} and of the generated module are exact rational numbers, degrees are parts of pi."
         if path
-        else "numbers given in Python are the binary fractions that they are, defaults of the model exact decimals"
+        else "numbers given in Python are the binary fractions that they are, defaults of the model exact decimals."
     )
-    return (
-        f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers}. Derivatives and "
-        "laws of the generated kernel were compared with its motion and costs at random points. Near means within some "
-        "distance that the theorem does not give."
-    )
+    compared = "Derivatives and laws of the generated kernel were compared with its motion and costs at random points."
+    near = "Near means within some distance that the theorem does not give."
+    return f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers} {compared} {near}"

@@ -31,7 +31,7 @@ class Regularity:
     Attributes
     ----------
     start
-        How W(t0) was chosen.
+        How W(t0) was chosen; W_k is that of all extremals from the initial state, after k steps.
     pieces
         Into how many the interval fell, on each of which X was shown to be regular.
     ratios
@@ -197,7 +197,7 @@ def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
             continue
         for kappa in (1, 8, 64):
             yield (
-                f"-{kappa} diag W of all extremals from the start, after {k} steps",
+                f"-{kappa} diag W_{k}",
                 _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)]),
             )
 

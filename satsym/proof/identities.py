@@ -1,9 +1,9 @@
 """Whether a generated kernel is what it says: its laws and derivatives, against its own motion and costs.
 
 The problem is what ``dynamics``, ``running_cost`` and ``terminal_cost`` say. From these alone first and second
-derivatives of H are computed (:mod:`satsym.proof.balls.jets`), at random points near the extremal, and compared with what
-the proof uses of the kernel besides. Both sides are analytic functions, with the comparisons of the arc answered as
-they are along it: two that differ anywhere differ at almost every point.
+derivatives of H are computed (:mod:`satsym.proof.balls.jets`), at random points near the extremal, and compared with
+what the proof uses of the kernel besides. Both sides are analytic functions, with the comparisons of the arc answered
+as they are along it: two that differ anywhere differ at almost every point.
 """
 
 from __future__ import annotations

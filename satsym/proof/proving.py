@@ -141,7 +141,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
             record = replace(record, hypotheses=(*record.hypotheses, one()))
         except NotProved as error:
             raise _Stopped(record, str(error)) from None
-    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convexity)
+    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convexity, there.radius)
     return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
 
 

@@ -16,11 +16,8 @@ def proof_text(proof: Proof, colour: bool = False) -> str:
     if colour:
         status = f"\x1b[{_COLOURS[proof.status]}m{status}\x1b[0m"
     heading = say("<name>, model <model>", name=proof.instance, model=proof.model)
-    facts = [
-        (say(name), _shown(value))
-        for name, value in (("objective J", proof.objective), ("final time", proof.t_final))
-        if value is not None
-    ]
+    known = ((say("cost J"), proof.objective), (say("final time"), proof.t_final))
+    facts = [(name, _shown(value)) for name, value in known if value is not None]
     facts += [(say("change of law"), _shown(t)) for t in proof.switching_times]
     costates = [(name, _shown(value)) for name, value in proof.costate_initial.items()]
     steps = [
@@ -41,6 +38,7 @@ def proof_text(proof: Proof, colour: bool = False) -> str:
             [line for claim in proof.theorem.claims for line in wrapped(message(claim))],
             wrapped(say("Theorem: <name> (<source>).", name=message(proof.theorem.name), source=proof.theorem.source)),
             wrapped(message(proof.scope)),
+            wrapped(", ".join(f"{name} = {number}" for name, number in proof.numbers.items())),
         ]
     return joined(blocks)
 
