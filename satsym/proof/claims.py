@@ -11,7 +11,7 @@ from satsym.proof.field import Regularity
 from satsym.proof.laws import AtLevels, Law, Throttled
 from satsym.proof.record import Hypothesis, Theorem
 from satsym.proof.signs import Shown
-from satsym.proof.statement import Statement
+from satsym.proof.statement import Statement, walled
 from satsym.proof.walls import require_jumps
 
 FIELD = (
@@ -148,7 +148,7 @@ def theorem(statement: Statement, laws: Sequence[Law], convexity: str, radius: f
         Of the box that holds one extremal only, relative to the sizes.
     """
     one = f"There is exactly one extremal of this structure within {radius:g}, relative to the sizes of its components."
-    if statement.spec.path_constraints:
+    if walled(statement):
         return Theorem(
             *CONSTRAINED,
             (
@@ -159,7 +159,7 @@ def theorem(statement: Statement, laws: Sequence[Law], convexity: str, radius: f
     jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
     name, source = BROKEN if jumping else FIELD
     claimed: tuple[str, ...] = (one, BEST_AT_FREE_TIMES if statement.tf is None else BEST)
-    if convexity:
+    if convexity and not statement.spec.path_constraints:
         name, source = f"{name}; {CONVEX[0]}", f"{source}; {CONVEX[1]}"
         claimed = (*claimed, f"It is global: {convexity}.")
     return Theorem(name, source, claimed)

@@ -18,6 +18,7 @@ from satsym.proof.balls.arithmetic import Answers, Ball, BeyondProof, NotProved,
 from satsym.proof.balls.jets import OPAQUE, Jet, derivatives, variables
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.laws import derivatives as partials
+from satsym.proof.mixed import OnMixed
 from satsym.proof.statement import Statement
 from satsym.proof.walls import OnBoundary
 
@@ -49,6 +50,8 @@ def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], size
         point.jacobian()
         if isinstance(law, OnBoundary):
             point.boundary()
+        elif isinstance(law, OnMixed):
+            point.mixed()
         elif isinstance(law, AtLevels):
             point.switching()
         elif isinstance(law, Throttled):
@@ -119,6 +122,9 @@ class _Point:
         if isinstance(self.law, OnBoundary):
             push = value(self.law.multiplier(self.series))
             wanted = [v - push * value(s) for v, s in zip(wanted, self.law.slope, strict=True)]
+        if isinstance(self.law, OnMixed):
+            push, slope = value(self.law.multiplier(self.series)), self.law.slope(self.series)
+            wanted = [v - push * value(s) for v, s in zip(wanted, slope, strict=True)]
         self.equal(found[self.n : 2 * self.n], wanted, "rates of the costates")
 
     def jacobian(self) -> None:
@@ -157,6 +163,28 @@ class _Point:
             there.equal([v[0] + 1, v[1] + 1], [arb(1), arb(1)], "a boundary arc stays on its boundary")
         slopes, _ = there.quadratic()
         there.vanishing(slopes)
+
+    def mixed(self) -> None:
+        """The control is on the boundary, which limits it by the states alone, and H falls across it."""
+        law = self.law
+        assert isinstance(law, OnMixed)
+        k, n = law.which, self.n
+
+        def level(x: Sequence[Any], u: Sequence[Any]) -> Any:
+            return self.kernel.path_constraints(self.t, x, u, self.p, ())[k] + constant(0)
+
+        states, controls = variables([value(v) for v in self.x]), variables([value(v) for v in self.u])
+        at, slope, _ = derivatives(lambda: level(states, self.u), n)
+        self.equal([at + 1], [arb(1)], "a boundary arc is on its boundary")
+        self.equal(law.slope(self.series), slope, "the gradient of a path constraint")
+        _, (effect,), _ = derivatives(lambda: level(self.x, controls), 1)
+        try:
+            (stated,) = (value(v) for v in self.kernel.path_effect(self.t, self.x, [OPAQUE], self.p)[k : k + 1])
+        except TypeError:
+            raise BeyondProof("a path constraint that is not linear in the control") from None
+        self.equal([stated], [effect], "how a path constraint depends on the control")
+        (push,), _ = self.quadratic()
+        self.equal([push + value(law.multiplier(self.series)) * effect + 1], [arb(1)], "the multiplier of a boundary")
 
     def switching(self) -> None:
         """H is linear in the controls and their magnitudes, by the switching functions and the weights."""

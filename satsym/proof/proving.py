@@ -12,7 +12,7 @@ from typing import Any
 from flint import arb, ctx
 
 from satsym.instance import Instance
-from satsym.proof import claims, enclosures, structure, walls
+from satsym.proof import claims, enclosures, mixed, structure, walls
 from satsym.proof.balls.arithmetic import BeyondProof, NotProved
 from satsym.proof.balls.taylor import Order
 from satsym.proof.convexity import convex
@@ -23,7 +23,7 @@ from satsym.proof.record import Hypothesis, Outcome, Proof
 from satsym.proof.rest import costs_nothing, final_state
 from satsym.proof.shooting import Box, Inclusion, Junction, Shooting, krawczyk
 from satsym.proof.signs import hold, unique
-from satsym.proof.statement import Statement, refuse, stated
+from satsym.proof.statement import Statement, refuse, stated, walled
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
@@ -60,7 +60,7 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
             refuse(case)
             statement = stated(case, {})
             record = replace(record, numbers=dict(statement.source.stated))
-            if case.model.spec.path_constraints and not convex(statement):
+            if walled(statement) and not convex(statement):
                 raise BeyondProof("path constraints of a problem that is not convex")
             if costs_nothing(statement):
                 record = _at_rest(statement, record)
@@ -132,7 +132,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
         lambda: claims.of_minimiser(unique(shooting, passed)),
         lambda: claims.of_ends(statement, passed.end),
     ]
-    if statement.spec.path_constraints:
+    if walled(statement):
         steps.append(lambda: claims.of_jumps(enclosures.jumps(shooting, there.box, there.last)))
     else:
         steps.append(lambda: claims.of_field(regular_field(shooting, passed)))
@@ -149,8 +149,10 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     """The equations of the arcs that were found, and a point at which they nearly hold."""
     path = structure.Path(found, not statement.spec.autonomous)
     jumps: list[float] = []
-    if statement.spec.path_constraints:
+    if walled(statement):
         laws, junctions, times, jumps = walls.structured(statement, found)
+    elif statement.spec.path_constraints:
+        laws, junctions, times = mixed.structured(statement, found)
     else:
         laws, times = structure.arcs(statement, found, path)
         junctions = [Junction.between(a, b) for a, b in pairwise(laws)]

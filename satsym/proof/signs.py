@@ -12,6 +12,7 @@ from satsym.proof.balls.jets import OPAQUE
 from satsym.proof.balls.taylor import Step, polynomial
 from satsym.proof.ends import positive
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
+from satsym.proof.mixed import OnMixed
 from satsym.proof.shooting import Junction, Pass, Shooting
 from satsym.proof.walls import OnBoundary, require_push
 
@@ -162,7 +163,7 @@ def _of_hamiltonian(law: Law, step: Step) -> str:
         return "H is linear in the controls and their magnitudes, with strict signs"
     if isinstance(law, Throttled):
         return "H is linear in the controls and their norm, with strict signs"
-    assert isinstance(law, Regular | OnBoundary)
+    assert isinstance(law, Regular | OnBoundary | OnMixed)
     spec = law.kernel.spec
     if spec.control_parts:
         return "H is a cosine of the direction, of an amplitude that does not vanish"

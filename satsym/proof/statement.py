@@ -134,6 +134,16 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     )
 
 
+def walled(statement: Statement) -> bool:
+    """Whether path constraints limit the states alone."""
+    return bool(statement.spec.path_constraints) and not mixed(statement.spec)
+
+
+def mixed(spec: ProblemSpec) -> bool:
+    """Whether path constraints hold the control itself."""
+    return any(one.order == 0 for one in spec.path_constraints)
+
+
 def _time_unit(case: Instance) -> str:
     from satsym import units
 
@@ -211,12 +221,11 @@ def refuse(case: Instance) -> None:
         raise BeyondProof(f"a feature that proofs do not know ({', '.join(sorted(unknown))})")
     if not spec.has_cost:
         raise BeyondProof("a model without a cost")
+    orders = {one.order for one in spec.path_constraints}
     for there, feature in (
-        (
-            any(one.order != 2 for one in spec.path_constraints)
-            or (spec.path_constraints and spec.control_set != "free"),
-            "path constraints of another order than two, or beside bounds of the controls",
-        ),
+        (spec.path_constraints and spec.control_set != "free", "path constraints beside bounds of the controls"),
+        (orders not in (set(), {0}, {2}), "path constraints of order one, or of several orders"),
+        (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),
         (spec.multipliers, "constraints at the end other than given states"),
         (spec.chattering, "controls that chatter"),

@@ -65,6 +65,15 @@ def test_a_wall_is_kept_at_least_cost() -> None:
         assert "global" in proof.theorem.claims[-1]
 
 
+def test_a_limit_of_the_control_by_the_state_is_kept_and_its_cost_found() -> None:
+    """The optimum is that of SciPy's integrator with a root finder, in tests/bench/optima.toml, to its digits."""
+    proof = proved("rayleigh-mixed")
+    assert proof.status is Outcome.PROVED
+    assert len(proof.switching_times) == 3
+    assert proof.objective is not None
+    assert float(proof.objective.centre) == pytest.approx(44.804444908361, rel=1e-13)
+
+
 def test_where_nothing_is_asked_of_the_end_doing_nothing_is_best() -> None:
     case = instance.load("its-thesis")
     proof = prove(case, lambda: pytest.fail("nothing need be solved"))

@@ -1,4 +1,4 @@
-"""Extremals that switch: which of two is best is known in closed form, for L = -q^2/2, q' = u, |u| <= 1, q(0) = q(T) = 0.
+"""Extremals that switch, of which it is known which is best: L = -q^2/2, q' = u, |u| <= 1, q(0) = q(T) = 0.
 
 Up and down is best. Up, down and up again is an extremal as well, but of all motions with two switches it costs most.
 """
@@ -6,6 +6,7 @@ Up and down is best. Up, down and up again is an extremal as well, but of all mo
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def zigzag(given: Instance, switches: list[float], first: float, costate: float)
     """The extremal with these switches; its costate grows at the rate q."""
     edges = [0.0, *switches, 4.0]
     t, x, u, lam, q, speed = [], [], [], [], 0.0, first
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         s = np.linspace(0.0, b - a, 21)
         t.append(a + s)
         x.append(q + speed * s)
