@@ -193,6 +193,9 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
     last = krawczyk(shooting, box, order)
     if not last.inside:
         raise NotProved("the extremal is not located to all digits; ask for fewer")
+    lengths = zip(box.lengths, box.lengths_around, strict=True)
+    if not all(a + b > 0 for a, b in list(lengths)[: len(shooting.arcs)]):
+        raise NotProved("an arc has no positive length")
     return Located(shooting, box, last, radius)
 
 

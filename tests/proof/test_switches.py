@@ -78,3 +78,11 @@ def test_controls_on_the_wrong_side_of_their_switching_function_are_not() -> Non
     given = case(0.0)
     proof = prove(given, lambda: zigzag(given, [2.0], -1.0, -2.0))
     assert proof.status is Outcome.NOT_PROVED
+
+
+def test_an_arc_of_negative_length_is_none() -> None:
+    """From q = 0 to q = 4.5 in the time 4: at unit speed the equations hold with a second arc that runs backwards."""
+    given = case(4.5)
+    proof = prove(given, lambda: zigzag(given, [3.9], 1.0, -(4.25**2) / 2))
+    assert proof.status is Outcome.NOT_PROVED
+    assert proof.reason == "an arc has no positive length"
