@@ -61,12 +61,15 @@ def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | No
     near, last = law.conditions(step.series), law.conditions(step.last)
     for (key, c), (_, d) in zip(near, last, strict=True):
         series = [*(c[k] for k in range(n)), d[n]]
-        low, high = arb(0), step.h
+        first = last_part = 0.0
         if before and key == before.entering:
-            low = _part(_derived(series, before.order), step.h, 1, 1, where)
+            first = _part(_derived(series, before.order), step.h, 1, 1, where)
         if after and key == after.leaving:
-            high = step.h - _part(_derived(series, after.order), step.h, -1, (-1) ** after.order, where)
-        if low < high and not _positive(_Condition(law, key, step, series), low, high):
+            last_part = _part(_derived(series, after.order), step.h, -1, (-1) ** after.order, where)
+        if first + last_part >= 1.0:
+            continue
+        low, high = step.h * first, step.h * (1.0 - last_part)
+        if not _positive(_Condition(law, key, step, series), low, high):
             raise NotProved(
                 f"{where}: a sign that its law needs ({key[0]} {key[1]}) is not shown; another structure may be right"
             )
@@ -80,8 +83,8 @@ def _derived(series: Sequence[Ball], order: int) -> list[Ball]:
     return list(series)
 
 
-def _part(derivative: Sequence[Ball], h: Ball, end: int, sign: int, where: str) -> Ball:
-    """A part of a step, at its beginning (1) or at its end (-1), on which a derivative has a sign.
+def _part(derivative: Sequence[Ball], h: Ball, end: int, sign: int, where: str) -> float:
+    """The share of a step, from its beginning (1) or up to its end (-1), on which a derivative has a sign.
 
     A condition that vanishes there, with all derivatives of lower order, is positive on that part but for its end.
     """
@@ -89,7 +92,7 @@ def _part(derivative: Sequence[Ball], h: Ball, end: int, sign: int, where: str) 
         w = h / 2**k
         between = arb(0).union(w) if end > 0 else (h - w).union(h)
         if sign * polynomial(derivative, between) > 0:
-            return w
+            return float(2.0**-k)
     raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
 
 
