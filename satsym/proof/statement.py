@@ -203,6 +203,9 @@ def _refuse_cases(kernel: BallKernel) -> None:
         if set(kernel.cases(name)) - allowed:
             raise BeyondProof("a motion or a cost that is stated by cases, or with absolute values")
     ends = {"terminal_cost", "terminal_gradient", "reference", "boundary", "boundary_jacobian", "forward", "backward"}
+    moving = {name for name in kernel.timed - ends if name.startswith("path_")}
+    if moving:
+        raise BeyondProof("path constraints that depend on time")
     if spec.autonomous and kernel.timed - ends:
         raise BeyondProof("a motion that depends on time, of a model that is said not to")
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,10 +30,10 @@ LARGEST = 0.25
 """Random costates at t0 are uniform between its negative and it, horizons one of the former."""
 
 
-def of_shipped() -> list[tuple[str, Proof, float]]:
-    """Proofs of the shipped instances that have a cost, each with the processor time of proving."""
+def of_shipped(names: Sequence[str]) -> list[tuple[str, Proof, float]]:
+    """Proofs of those of these shipped instances that have a cost, each with the processor time of proving."""
     found = []
-    for name in instance.shipped():
+    for name in names:
         case = instance.load(name)
         if not case.model.spec.has_cost:
             continue
@@ -121,11 +122,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--random", type=int, default=RANDOM, help="random extremals, by default 100")
     parser.add_argument("--only-random", action="store_true")
+    parser.add_argument("--only", nargs="*", metavar="NAME", help="print the rows of these instances, write nothing")
     asked = parser.parse_args()
     if not asked.only_random:
-        found = of_shipped()
+        found = of_shipped(asked.only or instance.shipped())
         proved = [seconds for _, proof, seconds in found if proof.status is Outcome.PROVED]
         print(f"{len(proved)} proved, in {sum(proved):.0f} s together")
+        if asked.only:
+            print(table(found))
+            return 0
         text = PAGE.read_text(encoding="utf-8")
         before, after = text.partition(BEGIN)[0], text.partition(END)[2]
         PAGE.write_text(before + BEGIN + "\n" + table(found) + "\n" + END + after, encoding="utf-8")
