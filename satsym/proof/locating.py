@@ -10,7 +10,7 @@ from flint import arb
 from satsym.proof.balls.arithmetic import Ball, NotProved
 from satsym.proof.balls.taylor import column, rates, unit
 from satsym.proof.laws import Law
-from satsym.proof.shooting import Box, Segment, Shooting, _Rows, inverse
+from satsym.proof.shooting import Box, Rows, Segment, Shooting, inverse
 from satsym.proof.structure import REMAINDER, TERMS, leap
 
 TRIES = 12
@@ -57,7 +57,7 @@ def _equations(
     m = shooting.arcs[0].law.m
     zero = [[arb(0)] * m for _ in nodes]
     box = Box([[v.mid() for v in node] for node in nodes], zero, lengths, [arb(0)] * len(lengths))
-    rows, k = _Rows(shooting, box), 0
+    rows, k = Rows(shooting, box), 0
     for j, arc in enumerate(shooting.arcs):
         for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
             span = (box.lengths[j] * (arb(b) - arb(a))).mid()

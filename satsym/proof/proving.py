@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -54,31 +55,37 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
         Also where nothing is proved: ``status`` and ``reason`` say why.
     """
     begun = time.perf_counter()
-    record = Proof(case.model.spec.name, case.called, Outcome.NOT_PROVED, digits=digits)
-    with _precision(digits):
-        try:
-            refuse(case)
-            statement = stated(case, {})
-            record = replace(record, numbers=dict(statement.source.stated))
-            if walled(statement) and not convex(statement):
-                raise BeyondProof("path constraints of a problem that is not convex")
-            if costs_nothing(statement):
-                record = _at_rest(statement, record)
-            else:
-                found = find()
-                begun = time.perf_counter()
-                if not found.status.answered:
-                    raise NotProved(f"there is no answer to begin with: {found.message}")
-                record = _proved(case, found, record)
-        except BeyondProof as error:
-            record = replace(record, status=Outcome.BEYOND, reason=str(error))
-        except NotProved as error:
-            record = replace(record, reason=str(error))
-        except _Stopped as stopped:
-            record = replace(stopped.record, reason=stopped.reason)
-        except (ArithmeticError, ValueError) as error:
-            record = replace(record, reason=f"the motion is singular near the answer ({error})")
+    record = _tried(Proof(case.model.spec.name, case.called, Outcome.NOT_PROVED, digits=digits), partial(_first, case))
+    if not record.reason and record.status is Outcome.NOT_PROVED:
+        found = find()
+        begun = time.perf_counter()
+        record = _tried(record, partial(_proved, case, found))
     return replace(record, wall_s=time.perf_counter() - begun)
+
+
+def _tried(record: Proof, attempt: Callable[[Proof], Proof]) -> Proof:
+    """The record after an attempt, with the reason where that ends without a proof."""
+    try:
+        with _precision(record.digits):
+            return attempt(record)
+    except BeyondProof as error:
+        return replace(record, status=Outcome.BEYOND, reason=str(error))
+    except NotProved as error:
+        return replace(record, reason=str(error))
+    except _Stopped as stopped:
+        return replace(stopped.record, reason=stopped.reason)
+    except (ArithmeticError, ValueError) as error:
+        return replace(record, reason=f"the motion is singular near the answer ({error})")
+
+
+def _first(case: Instance, record: Proof) -> Proof:
+    """What is known before anything is solved: that a theorem covers the problem, or that doing nothing is best."""
+    refuse(case)
+    statement = stated(case, {})
+    record = replace(record, numbers=dict(statement.source.stated))
+    if walled(statement) and not convex(statement):
+        raise BeyondProof("path constraints of a problem that is not convex")
+    return _at_rest(statement, record) if costs_nothing(statement) else record
 
 
 def _at_rest(statement: Statement, record: Proof) -> Proof:
@@ -119,6 +126,8 @@ class Located:
 
 
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
+    if not found.status.answered:
+        raise NotProved(f"there is no answer to begin with: {found.message}")
     statement = stated(case, dict(found.instance.met))
     record = replace(record, numbers=dict(statement.source.stated))
     shooting, place = _begun(statement, found, record.digits)

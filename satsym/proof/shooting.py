@@ -174,7 +174,7 @@ class Shooting:
         NotProved
             If a segment has no enclosure.
         """
-        rows = _Rows(self, box)
+        rows = Rows(self, box)
         found, k, steps = [], 0, 0
         for j, arc in enumerate(self.arcs):
             segments = []
@@ -235,7 +235,7 @@ def integrated(
             raise NotProved(f"more than {MOST_STEPS} steps in a segment")
 
 
-class _Rows:
+class Rows:
     """The equations, put together segment by segment."""
 
     def __init__(self, shooting: Shooting, box: Box) -> None:
