@@ -42,16 +42,16 @@ def shipped() -> list[Path]:
 
 def models() -> list[str]:
     """Names of the generated models that come with satsym, without importing them."""
-    found = {file.stem for folder in _generated() for file in folder.glob(f"*{SUFFIX}")}
+    found = {file.stem for folder in generated() for file in folder.glob(f"*{SUFFIX}")}
     return sorted(name for name in found if is_name(name))
 
 
 def is_model(name: str) -> bool:
     """Whether a generated model of this name comes with satsym."""
-    return is_name(name) and any((folder / f"{name}{SUFFIX}").is_file() for folder in _generated())
+    return is_name(name) and any((folder / f"{name}{SUFFIX}").is_file() for folder in generated())
 
 
-def _generated() -> list[Path]:
+def generated() -> list[Path]:
     """Where the modules lie."""
     found = find_spec(GENERATED)
     return [Path(folder) for folder in (found and found.submodule_search_locations) or ()]

@@ -27,9 +27,10 @@ from satsym.auditing.judged import Judged
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
 from satsym.auditing.run import audit as judge
+from satsym.records import shelf
 
 _JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
-_READ = (("satsym.derivations", "*.py"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
+_READ = (("satsym.generated", "*.json"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
 """What judging takes from beside the modules it imports, by package and pattern."""
 
 _DERIVING = 30
@@ -125,6 +126,9 @@ def _digest(ledger: Ledger) -> str:
     digest = hashlib.blake2b(program().encode(), digest_size=16)
     for path in documents.read_from(ledger.path):
         digest.update(path.read_bytes())
+    with shelf.opened(ledger.folder):
+        for found in filter(None, map(shelf.path_of, ledger.models)):
+            digest.update(found.read_bytes())
     return digest.hexdigest()
 
 

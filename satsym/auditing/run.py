@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.formula import budget
+from satsym.records import shelf
 from satsym.wording import printable
 
 if TYPE_CHECKING:
@@ -33,6 +34,11 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     BadInput
         If a row names what no derivation has, or is held against what it cannot be compared with.
     """
+    with shelf.opened(ledger.folder):
+        return _judged(ledger, items, announce)
+
+
+def _judged(ledger: Ledger, items: Sequence[str], announce: Callable[[str], None]) -> list[Judged]:
     from satsym.auditing.comparison.bench import Bench
     from satsym.auditing.verdict import verdicts
 

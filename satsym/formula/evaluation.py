@@ -217,6 +217,13 @@ class Engine(ABC, Generic[S]):
         """Our symbol of a name."""
         return self._sources.symbol(name)
 
+    def along(self, expression: S) -> S:
+        """The derivative of an expression by time, along the motion."""
+        terms = [self.derivative(expression, "t")]
+        for name, rate in self._sources.rates().items():
+            terms.append(self.multiply([self.derivative(expression, name), self._sources.name(rate)]))
+        return self.add(terms)
+
     def at(self, address: str) -> Value:
         """A derived thing; of an equation, its right-hand side."""
         found = self._sources.address(address)

@@ -136,6 +136,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "lhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).lhs),
     "rhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).rhs),
     "diff": Operation(_diff, 2, MANY),
+    "d": Operation(lambda engine, tree: engine.along(engine.scalar(tree.arguments[0]))),  # by time, along the motion
     "subs": Operation(_subs),  # subs(e, x=..., y=...), all at once
     "solve": Operation(_solve, 2, 2),  # the only solution of a linear equation for a symbol
     "matrix": Operation(lambda engine, tree: engine.matrix(tree.arguments[0])),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeAlias, TypeVar
 
@@ -65,6 +65,8 @@ class Sources(Generic[S]):
     address: Callable[[str], Value]
     row: Callable[[str], Value]
     symbol: Callable[[str], str] = str
+    rates: Callable[[], Mapping[str, str]] = dict
+    """State or costate -> the name of its rate."""
 
 
 def without(matrix: Matrix[S], i: int, j: int) -> Matrix[S]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from satsym import symbolic
 from satsym.front.refusals import in_one_line
 from satsym.kernels.digest import sealed
+from satsym.records import record
 from satsym.report import artefacts
 from satsym.status import BadInput
 from satsym.symbolic import Model, Problem, loader
@@ -160,7 +161,7 @@ class Derivation:
         return document.render(self.derived, language=lang, standalone=not fragment)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write ``NAME.py`` and ``NAME.tex``, as ``satsym derive --out`` does; their paths.
+        """Write ``NAME.py``, ``NAME.tex`` and ``NAME.derivation.json``, as ``satsym derive --out`` does; their paths.
 
         Raises
         ------
@@ -171,7 +172,8 @@ class Derivation:
 
         check_writable(Path(folder))
         module = sealed(self._generated[0], Path(folder), self.stating)
-        texts = {f"{self.name}.py": module, f"{self.name}.tex": self.latex()}
+        recorded = artefacts.recorded_text(self.derived, Path(self.source), Path(folder), self.stating)
+        texts = {f"{self.name}.py": module, f"{self.name}.tex": self.latex(), f"{self.name}{record.SUFFIX}": recorded}
         return artefacts.write(texts, Path(folder))
 
     def __repr__(self) -> str:

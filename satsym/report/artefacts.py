@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym.kernels.digest import sealed
+from satsym.records import record
 from satsym.report import stamps
 from satsym.report.results.files import write_text
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from satsym.kernels import Kernels
     from satsym.symbolic import Derivation, Model, Problem
 
-SUFFIXES = (".py", ".tex")
+SUFFIXES = (".py", ".tex", record.SUFFIX)
 KEPT = "__init__.py"
 """The one file of the generated folder that people write."""
 
@@ -129,7 +130,12 @@ def _sealed_anew(stated: Mapping[Path, Mapping[str, str]], jobs: Sequence[Job], 
         for name in names.keys() - derived:
             for suffix in SUFFIXES:
                 text = (folder / f"{name}{suffix}").read_text(encoding="utf-8")
-                texts[f"{name}{suffix}"] = sealed(text, folder, loader.stating(path)) if suffix == ".py" else text
+                if suffix == ".py":
+                    text = sealed(text, folder, loader.stating(path))
+                elif suffix == record.SUFFIX:
+                    anew = record.with_sources(record.from_text(text), folder, loader.stating(path))
+                    text = record.text_of(anew)
+                texts[f"{name}{suffix}"] = text
     return texts
 
 
@@ -158,7 +164,7 @@ def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
 
 
 def _rendered(job: Job) -> dict[str, str]:
-    """The two files of one problem."""
+    """The files of one problem."""
     from satsym.symbolic import derive, loader
     from satsym.symbolic.time_limit import within
 
@@ -171,7 +177,7 @@ def _rendered(job: Job) -> dict[str, str]:
 def files(
     problem: Problem | Model, derive: Callable[[Problem | Model], Derivation], path: Path, folder: Path
 ) -> dict[str, str]:
-    """File name -> text of the two files of one problem, the generated module verified against its derivation.
+    """File name -> text of the files of one problem, the generated module verified against its derivation.
 
     Parameters
     ----------
@@ -193,7 +199,18 @@ def files(
     in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
     text, _ = generated(in_minimum_form, source_of(path))
     text = sealed(text, folder, loader.stating(path))
-    return {f"{problem.name}.py": text, f"{problem.name}.tex": latex.render(derivation)}
+    return {
+        f"{problem.name}.py": text,
+        f"{problem.name}.tex": latex.render(derivation),
+        f"{problem.name}{record.SUFFIX}": recorded_text(derivation, path, folder, loader.stating(path)),
+    }
+
+
+def recorded_text(derivation: Derivation, path: Path, folder: Path, stating: Mapping[Path, str]) -> str:
+    """The record of a derivation: what audits read in the place of the file that states it."""
+    from satsym.symbolic.lookup.recording import recorded
+
+    return record.text_of(record.with_sources(recorded(derivation, source_of(path)), folder, stating))
 
 
 def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
@@ -233,7 +250,7 @@ def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[
     """
     names = set(rendered)
     if whole and folder.is_dir():
-        names |= {p.name for p in folder.iterdir() if p.suffix in SUFFIXES and p.name != KEPT}
+        names |= {p.name for p in folder.iterdir() if p.name.endswith(SUFFIXES) and p.name != KEPT}
     found = []
     for name in sorted(names):
         path = folder / name

@@ -80,7 +80,7 @@ def keep(path: Path, before: Stamp | None, known: str, identities: Mapping[str, 
         return
     problems = {}
     for name, identity in identities.items():
-        files = {file: _digest(text) for file, text in texts.items() if Path(file).stem == name}
+        files = {file: _digest(text) for file, text in texts.items() if file.partition(".")[0] == name}
         problems[name] = Made(identity, files) if files or before is None else before.problems[name]
     reached = {str(each): digest for each, digest in loader.reached(path).items()}
     user_cache.write(_place(path), msgspec.json.encode(Stamp(known, reached, problems)))

@@ -239,7 +239,7 @@ def test_what_only_the_derivation_knows_is_refused_with_its_line(audited: Run, t
     path = write(tmp_path, [GOOD, row("2", "u2", "polar_orbit:first_order.thetas")])
     code, out, err = audited(path)
     assert (code, out) == (3, "")
-    assert 'row 2: "polar_orbit:first_order.thetas": the step has no "thetas"' in complaint(err)
+    assert 'row 2: holds: "polar_orbit:first_order.thetas": the step has no "thetas"' in complaint(err)
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from satsym.formula.field import Undecided
 from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
 from satsym.formula.values import Matrix, Relation, Sources, Value
 from satsym.formula.writing import written
+from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.symbolic.lookup import library
 from satsym.symbolic.lookup.library import Names
@@ -85,6 +86,12 @@ class Bench:
         return library.dimensions_of(
             self.ledger.models, {name: table.unit for name, table in self.ledger.symbols.items()}
         )
+
+    def _rates(self) -> dict[str, str]:
+        found: dict[str, str] = {}
+        for model in self.ledger.models:
+            found = {**record.rates(shelf.find(model)), **found}
+        return found
 
     def plain_expression(self, formula: Node) -> Any:
         """A formula in our names as an expression of sympy's, in which definitions keep their names.
@@ -219,7 +226,7 @@ class Bench:
         def symbol(text: str) -> str:
             return self._symbol_meant(row, text) if theirs else text
 
-        sources: Sources[Any] = Sources(name, address, other, symbol)
+        sources: Sources[Any] = Sources(name, address, other, symbol, self._rates)
         return Calculus(sources, self.names.positive) if kind is Calculus else Sympy(sources)
 
     def _at(self, row: Row, address: str) -> Both:

@@ -268,7 +268,14 @@ def _exchanges(m: int, n: int) -> Iterator[tuple[Said, list[int]]]:
         yield say("entries", one, other, table="exchanges"), order.tolist()
 
 
-def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str, derived: str) -> Said:
+def wrong_formula(
+    labels: Sequence[str],
+    remedy: Remedy | None,
+    difference: str,
+    why: str,
+    derived: str,
+    writer: Callable[[Node], str] = written,
+) -> Said:
     """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
     if why:
         return say("wrong_size", why)
@@ -278,18 +285,18 @@ def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str,
         )
     if remedy.exchange:
         return sentence(remedy.exchange)
-    return sentence(joined((joined([_place(labels[i]), in_words(edit)], "") for i, edit in remedy.edits), "; "))
+    return sentence(joined((joined([_place(labels[i]), in_words(edit, writer)], "") for i, edit in remedy.edits), "; "))
 
 
-def in_words(edit: Edit) -> Said:
-    """One edit, as a clause."""
+def in_words(edit: Edit, writer: Callable[[Node], str] = written) -> Said:
+    """One edit, as a clause, in which formulas are written in some notation."""
     old, new = edit.old, edit.new
     if edit.change is Change.SIGN:
         old = old.operand if isinstance(old, Neg) else old
     term = new.terms[-1] if edit.change is Change.MISSING_TERM and isinstance(new, Add) else new
     table, kind = "repeated_edits" if edit.times > 1 else "edits", edit.change.name.lower()
     known = kind if kind in tables()[table] else "other"
-    return say(known, written(old), written(new), _signed(term), str(edit.times), table=table)
+    return say(known, writer(old), writer(new), _signed(term, writer), str(edit.times), table=table)
 
 
 def _place(label: str) -> Said:
@@ -301,5 +308,5 @@ def _place(label: str) -> Said:
     return Said(f"entry ({label}): ", f"entri ({label}): ") if label[0].isdigit() else Said(f"{label}: ")
 
 
-def _signed(term: Node) -> str:
-    return written(term) if isinstance(term, Neg) else f"+{written(term)}"
+def _signed(term: Node, writer: Callable[[Node], str]) -> str:
+    return writer(term) if isinstance(term, Neg) else f"+{writer(term)}"

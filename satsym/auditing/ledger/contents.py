@@ -69,6 +69,10 @@ class Ledger:
     symbols: Mapping[str, SymbolTable]
     inputs: Mapping[str, str]
     rows: tuple[Row, ...]
+    model: str = ""
+    """The model whose names are its own, without the folder."""
+    folder: Path | None = None
+    """Where records of derivations lie, beside the shipped ones."""
 
     @cached_property
     def models(self) -> tuple[str, ...]:
@@ -77,7 +81,7 @@ class Ledger:
         trees += [meaning for scope in self.scopes.values() for meaning in scope.meanings.values()]
         texts = [part.value for tree in trees for _, part in walk(tree) if isinstance(part, Text)]
         named = (text.partition(":")[0] for text in texts if is_address(text))
-        return tuple(dict.fromkeys(filter(None, (self.document.model, *named))))
+        return tuple(dict.fromkeys(filter(None, (self.model, *named))))
 
     def uncovered(self) -> list[str]:
         """Numbers of the document that have no row."""

@@ -25,6 +25,7 @@ from satsym.formula.cells import calls_in
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files
+from satsym.records import shelf
 from satsym.status import BadInput
 from satsym.wording import printable, refuse_unknown, shown, suggestion
 
@@ -42,7 +43,13 @@ def read(path: Path) -> Ledger:
     """
     parts = _parts(path)
     allowance = budget.Allowance(counted=path not in documents.shipped())
-    return allowance.within(budget.READING, lambda: _Reader(path, parts).ledger(documents.named(path)))
+    return allowance.within(budget.READING, lambda: _read(path, parts))
+
+
+def _read(path: Path, parts: Sequence[Part]) -> Ledger:
+    reader = _Reader(path, parts)
+    with shelf.opened(reader.folder):
+        return reader.ledger(documents.named(path))
 
 
 def _parts(path: Path) -> list[Part]:
@@ -76,11 +83,21 @@ class _Reader:
         self._tree = dict(head)
         for tree in chapters:
             self._tree["row"] = [*self._tree.get("row", []), *tree["row"]]
+        document = self._tree.get("document", {})
+        stated = document.get("model", "") if isinstance(document, dict) else ""
+        with self._telling("document", "model"):
+            home = path if path.is_dir() else path.parent
+            self.folder, self._model = (
+                shelf.place_of(stated, home) if stated and isinstance(stated, str) else (None, "")
+            )
 
     def ledger(self, name: str) -> Ledger:
         """The ledger, checked."""
         self._refuse_unknown_tables()
         document = self._document()
+        with self._telling("document", "model"):
+            if self._model:
+                shelf.find(self._model)
         self._symbols = self._entries("symbols", _symbol)
         self._inputs = self._entries("inputs", _input)
         self._derived: dict[str, Node] = {}
@@ -88,6 +105,9 @@ class _Reader:
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
         self._own = {*self._symbols, *notation.self_named(self._scopes), *notation.CONSTANTS}
+        with self._telling("document", "model"):
+            for model in {self._model, *vocabulary.models_in(self._tree)} - {""}:
+                self._own.update(vocabulary.names_of(model))
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:
@@ -96,7 +116,8 @@ class _Reader:
         self._check_references(found)
         self._check_units(found)
         found = indonesian.added(found, documents.beside(self._path, documents.INDONESIAN))
-        return Ledger(self._path, name, document, self._scopes, self._symbols, self._inputs, tuple(found))
+        tables = self._scopes, self._symbols, self._inputs
+        return Ledger(self._path, name, document, *tables, tuple(found), self._model, self.folder)
 
     def _refuse_unknown_tables(self) -> None:
         for key in self._tree:
@@ -109,9 +130,6 @@ class _Reader:
     def _document(self) -> DocumentTable:
         with self._telling("document", ""):
             found: DocumentTable = schema.table(self._tree.get("document", {}), DocumentTable)
-        with self._telling("document", "model"):
-            if found.model:
-                vocabulary.check_model(found.model)
         with self._telling("document", "key"):
             reading.checked_name(found.key)
         return found

@@ -1,31 +1,21 @@
-"""Which names a ledger may use for derived things, told from the text of the derivation files alone.
-
-Deriving takes a second; a misspelt name is refused before that. What passes here and is no name of the derivation
-after all is refused once it has been derived.
-"""
+"""Which names a ledger may use for derived things: those of the derivations that it names, and its own."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import cache
-from importlib.resources import files
+from typing import Any
 
+from satsym import source_files
 from satsym.formula.cells import Formula, cells
-from satsym.formula.reading import MAX_NAME
 from satsym.formula.tree import Call, Sym, Text, walk
+from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9_]*:[A-Za-z][A-Za-z0-9_]*\.[A-Za-z][A-Za-z0-9_.]*\Z")
-_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_FIXED = (
-    "t t_f H H_star L S u_max energy angular_momentum jacobi_integral r_vector v_vector a_vector F_vector residual_t_f"
-).split()
-_PARTS = "d lambda residual given on reference target momentum nu hat star 0 min max dot ddot".split()
-"""What names are made with in deriving, beside words of the derivation files."""
-_ENTRY = re.compile(r"^[A-Z][A-Za-z]*_")
-"""What the name of an entry of a matrix begins with."""
+_WITHIN = re.compile(r"(?<![A-Za-z0-9_])([a-z][a-z0-9_]{0,99}):[A-Za-z][A-Za-z0-9_]*\.[A-Za-z]")
 
 
 def is_address(text: str) -> bool:
@@ -33,18 +23,26 @@ def is_address(text: str) -> bool:
     return ADDRESS.match(text.strip()) is not None
 
 
-def knows(name: str, own: Collection[str]) -> bool:
-    """Whether a derivation may have this name, or the ledger declares it as its own."""
-    made = len(name) <= MAX_NAME and all(part in _words() for part in _ENTRY.sub("", name).split("_"))
-    return made or name in own or name in _words()
+def models_in(tree: Any) -> Iterator[str]:
+    """Models that addresses begin with, wherever they stand in the tables of a ledger."""
+    if isinstance(tree, str):
+        yield from _WITHIN.findall(tree)
+    elif isinstance(tree, dict | list):
+        for part in tree.values() if isinstance(tree, dict) else tree:
+            yield from models_in(part)
+
+
+def names_of(model: str) -> Collection[str]:
+    """The names that the derivation of a model has; none where there is no such derivation."""
+    return shelf.find(model).names if shelf.path_of(model) else ()
 
 
 def check(tree: Formula, own: Collection[str]) -> None:
     """Refuse unknown names and malformed addresses."""
     for cell in cells(tree):
         for _, part in walk(cell):
-            if isinstance(part, Sym) and not knows(part.name, own):
-                hint = suggestion(part.name, sorted({*own, *_FIXED}))
+            if isinstance(part, Sym) and part.name not in own and part.name not in _shipped():
+                hint = suggestion(part.name, sorted(own))
                 raise BadInput(
                     f"{shown(part.name)} is no name of a derivation; {hint} (a symbol of your own: [symbols])"
                 )
@@ -57,23 +55,13 @@ def check(tree: Formula, own: Collection[str]) -> None:
                 _check_address(part.value)
 
 
+@cache
+def _shipped() -> frozenset[str]:
+    """The names of all derivations that come with satsym: such as a scope may have that no row names a model of."""
+    return frozenset(name for model in source_files.models() for name in names_of(model))
+
+
 def _check_address(address: str) -> None:
     if not is_address(address):
         raise BadInput(f"{shown(address)} is not an address; write model:step.equation")
-    check_model(address.partition(":")[0])
-
-
-def check_model(name: str) -> None:
-    """Refuse the name of a model that no derivation file has."""
-    if name not in _words():
-        raise BadInput(f"no derivation {shown(name)}; `satsym models` lists the models")
-
-
-@cache
-def _words() -> frozenset[str]:
-    """Every word in the derivation files, which any declared name is."""
-    names = {*_FIXED, *_PARTS}
-    for entry in files("satsym.derivations").iterdir():
-        if entry.name.endswith(".py"):
-            names.update(_WORD.findall(entry.read_text(encoding="utf-8")))
-    return frozenset(names | {part for name in names for part in name.split("_")})
+    record.resolve(shelf.find(address.partition(":")[0]), address)

@@ -11,6 +11,7 @@ from satsym.auditing.propositions.values import Record, is_exact
 from satsym.auditing.quantities import Quantity
 from satsym.formula import reading
 from satsym.formula.tree import Equality, symbols
+from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.wording import shown
 
@@ -54,17 +55,15 @@ def blocks(rows: Any) -> Any:
 
 def rates(model: str) -> list[Any]:
     """The rates of the states of a model, exact."""
-    from satsym.symbolic.lookup.library import derivation
+    from satsym.symbolic.lookup import library
 
-    return [e.rhs for e in derivation(model).step("first_order").equations]
+    return library.rates(model)
 
 
 def variables(model: str) -> list[str]:
     """Names of the states and controls of a model."""
-    from satsym.symbolic.lookup.library import derivation
-
-    model_ = derivation(model).model
-    return [v.symbol for v in (*model_.states, *model_.controls)]
+    found = shelf.find(model)
+    return [*record.variables(found, "state"), *record.variables(found, "control")]
 
 
 def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float], until: float) -> Record:

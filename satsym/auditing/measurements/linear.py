@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from satsym.arrays import Array, kept
 from satsym.auditing.propositions.relations import equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact, numbers
+from satsym.records import shelf
 from satsym.status import BadInput
 from satsym.wording import refuse_unknown
 
@@ -28,19 +30,17 @@ def system(of: Any) -> Record:
     A member of a family is one as it stands, a matrix one without inputs.
     """
     if isinstance(of, str):
-        return _of_model(of)
+        return _of_model(of, shelf.path_of(of))
     return of if isinstance(of, Record) else Record("the system", {"A": of})
 
 
 @cache
-def _of_model(name: str) -> Record:
-    from satsym.symbolic import DerivationError
-    from satsym.symbolic.linear.matrices import system_of
-    from satsym.symbolic.lookup.library import derivation
+def _of_model(name: str, _: Path | None) -> Record:
+    from satsym.symbolic.lookup import library
 
     try:
-        found = system_of(derivation(name))
-    except DerivationError as error:
+        found = library.linear_system(name)
+    except BadInput as error:
         raise Undecided(str(error)) from None
     parts = {"A": found.a, "B": found.b, "C": found.c}
     names = {"states": list(found.states), "inputs": list(found.inputs), "outputs": list(found.outputs)}

@@ -70,11 +70,12 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
 
 def gentle(instance: str, duration: float) -> Record:
     """The motion of least heat from rest to rest in some time, by the derived law."""
-    from satsym.symbolic.lookup.library import derivation
+    from satsym.symbolic.lookup import library
 
     n = _numbers(instance)
     unit = n["I_y"] / duration**2  # the torque that is 1 where that time is
-    law = derivation("pitch_scaled_energy").equation("least_effort.from_rest").rhs
+    shared = library.names(("pitch_scaled_energy",), {})
+    law = library.at("pitch_scaled_energy:least_effort.from_rest", shared, lambda names: tuple(range(len(names)))).rhs
     first, last = (unit * valued(law, instance, X1_0=-n["P_c"], t_f=1.0, t=end) for end in (0.0, 1.0))
     return _pushed(instance, [(duration, first, last)])
 

@@ -48,10 +48,11 @@ SIGNATURE = "Written by satsym from "
 def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, max_seconds: float) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.
 
-    Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py and NAME.tex for each
-    problem. Every step is checked by machine, and so is every generated function, before anything is written. What
-    neither changed itself nor was derived by code that changed is left alone; --check derives all of it. NAME.tex is
-    English whatever --lang says; `satsym latex NAME --lang id` writes the Indonesian one.
+    Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py, NAME.tex and
+    NAME.derivation.json for each problem; the last has every equation, and audits read it. Every step is checked by
+    machine, and so is every generated function, before anything is written. What neither changed itself nor was
+    derived by code that changed is left alone; --check derives all of it. NAME.tex is English whatever --lang says;
+    `satsym latex NAME --lang id` writes the Indonesian one.
     """
     from satsym import source_files
     from satsym.report import artefacts
@@ -116,7 +117,7 @@ def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
 
     lines = []
     for path in sorted(folder.iterdir()):
-        if path.suffix in SUFFIXES and path.name not in (*rendered, KEPT):
+        if path.name.endswith(SUFFIXES) and path.name not in (*rendered, KEPT):
             ours = SIGNATURE in path.read_text("utf-8", "replace")
             if ours:
                 path.unlink()

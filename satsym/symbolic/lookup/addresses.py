@@ -12,6 +12,7 @@ from satsym.spec import names
 from satsym.status import BadInput
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.model import symbols_of, variables_of
 from satsym.symbolic.principle.path import interior
 from satsym.wording import shown, suggestion
 
@@ -106,7 +107,9 @@ def _by_numbers(family: Mapping[str, sp.Expr], prefix: str) -> Family | None:
 
 def _declared(derivation: Derivation, name: str, address: str) -> Found:
     model, problem = derivation.model, derivation.problem
-    found: dict[str, Found] = {symbol.name: value for symbol, value in definitions_of(model).items()}
+    variables = variables_of(model)
+    found: dict[str, Found] = {s.name: s for s in symbols_of(variables)}
+    found |= {symbol.name: value for symbol, value in definitions_of(model).items()}
     if problem:
         found |= {"L": problem.running_cost, "S": sp.sympify(problem.terminal_cost)}
         found |= {f"psi_{k}": value for k, value in enumerate(problem.end_conditions, start=1)}

@@ -91,6 +91,8 @@ def to_tree(expression: Any) -> Node:
     e = sp.sympify(expression)
     if e.is_Rational:
         return number(Fraction(int(e.p), int(e.q)))
+    if e.is_Float:  # a decimal, as it was stated
+        return number(Fraction(str(e)))
     if e is sp.I or e is sp.pi:
         return Sym("I" if e is sp.I else "pi")
     if e is sp.E:

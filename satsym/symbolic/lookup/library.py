@@ -17,15 +17,14 @@ import sympy as sp
 from satsym.formula.budget import exempt
 from satsym.formula.tree import Node
 from satsym.formula.values import Matrix, Relation, Value
+from satsym.records import record, shelf
+from satsym.records.record import Equated, Family
 from satsym.status import BadInput
 from satsym.symbolic import dimensions, loader
-from satsym.symbolic.algebra import definitions_of
-from satsym.symbolic.declared import begin
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation
+from satsym.symbolic.analysis.system import LinearSystem
+from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.dimensions import Known
-from satsym.symbolic.lookup import addresses
-from satsym.symbolic.lookup.formulas import NotAFormula, from_tree, in_symbols, plain, to_tree
-from satsym.symbolic.model import variables_of
+from satsym.symbolic.lookup.formulas import NotAFormula, from_tree, is_zero, to_tree
 from satsym.symbolic.pipeline import derive
 from satsym.wording import shown, suggestion
 
@@ -50,17 +49,6 @@ def derivation(name: str) -> Derivation:
             return derive(found[name])
         except DerivationError as error:
             raise BadInput(" ".join(str(error).split())) from error
-
-
-@cache
-def known_dimensions(name: str) -> Known:
-    """Dimensions of all names of a derivation."""
-    found = derivation(name)
-    with exempt():
-        known = dimensions.declared(begin(found.model, found.problem))
-        for step in found.steps:
-            known = dimensions.extended(known, step)
-    return known
 
 
 @dataclass(frozen=True)
@@ -91,20 +79,17 @@ class Names:
 def names(models: Iterable[str], own: Mapping[str, bool]) -> Names:
     """The names of some derivations and those of a ledger's own, each with whether it is positive."""
     positive: dict[str, bool] = {}
-    definitions: dict[str, sp.Expr] = {}
+    definitions: dict[str, Node] = {}
     for model in models:
-        found = derivation(model)
-        equations = [e for step in found.steps for e in step.equations]
-        for symbol in set().union(*(e.lhs.free_symbols | e.rhs.free_symbols for e in equations)):
-            positive[symbol.name] = positive.get(symbol.name, True) and bool(symbol.is_positive)
-        for variable in variables_of(found.model):
-            positive[variable.symbol] = positive.get(variable.symbol, True) and variable.positive
-        for name in found.notation:
-            positive.setdefault(name, False)
-        definitions |= {symbol.name: value for symbol, value in definitions_of(found.model).items()}
+        found = shelf.find(model)
+        for name, entry in found.names.items():
+            positive[name] = positive.get(name, True) and entry.positive
+        definitions |= {name: record.formula(text) for name, text in found.definitions.items() if text}
     positive = {**own, **positive}
     symbols = {name: sp.Symbol(name, real=True, positive=True if flag else None) for name, flag in positive.items()}
-    shared = {name: in_symbols(sp.sympify(value), symbols) for name, value in definitions.items()}
+    shared: dict[str, sp.Expr] = {}
+    for name, tree in definitions.items():
+        shared[name] = from_tree(tree, lambda inside: Names(symbols, shared).expression(inside))
     return Names(symbols, shared)
 
 
@@ -133,15 +118,28 @@ def at(address: str, shared: Names, order: Order) -> Value:
     BadInput
         If there is none.
     """
-    found = addresses.resolve(derivation(address.partition(":")[0]), address)
-    if isinstance(found, Equation) and isinstance(found.rhs, sp.MatrixBase):
-        return Matrix(tuple(tuple(_shared(entry, shared) for entry in row) for row in found.rhs.tolist()))
-    if isinstance(found, Equation):
-        return Relation(_shared(found.lhs, shared), _shared(found.rhs, shared))
-    if isinstance(found, addresses.Family):
+    found = record.resolve(shelf.find(address.partition(":")[0]), address)
+
+    def exact(tree: Node) -> sp.Expr:
+        try:
+            return from_tree(tree, lambda name: _expression(name, shared))
+        except NotAFormula as error:
+            raise BadInput(f"{shown(address)}: {error}") from None
+
+    if isinstance(found, Equated) and isinstance(found.rhs, Matrix):
+        return Matrix(tuple(tuple(map(exact, row)) for row in found.rhs.rows))
+    if isinstance(found, Equated):
+        assert not isinstance(found.rhs, Matrix)
+        return Relation(exact(found.lhs), exact(found.rhs))
+    if isinstance(found, Family):
         rows, columns = order(found.rows), order(found.columns)
-        return Matrix(tuple(tuple(_shared(found.entries[i][j], shared) for j in columns) for i in rows))
-    return _shared(found, shared)
+        return Matrix(tuple(tuple(exact(found.entries[i][j]) for j in columns) for i in rows))
+    return exact(found)
+
+
+def _expression(name: str, shared: Names) -> sp.Expr:
+    known = name in ("I", "pi") or name in shared.symbols or name in shared.definitions
+    return shared.expression(name) if known else sp.Symbol(name, real=True)
 
 
 def in_trees(value: Value) -> Value:
@@ -162,17 +160,58 @@ def in_trees(value: Value) -> Value:
         raise BadInput(str(error)) from None
 
 
-def _shared(expression: sp.Expr, shared: Names) -> sp.Expr:
-    values = {**shared.symbols, **shared.definitions}
-    return plain(in_symbols(sp.sympify(expression), values))
+def rates(model: str) -> list[sp.Expr]:
+    """The rates of the states of a model, in which definitions keep their names."""
+    found, shared = shelf.find(model), names((model,), {})
+    step = next((step for step in found.steps if step.name == "first_order"), None)
+    if step is None:
+        raise BadInput(f"{model} has no equations of its states")
+    equated = [record.resolve(found, f"{model}:first_order.{e.name}") for e in step.equations]
+    trees = [e.rhs for e in equated if isinstance(e, Equated) and not isinstance(e.rhs, Matrix)]
+    return [from_tree(tree, lambda name: named(name, shared)) for tree in trees]
+
+
+def linear_system(model: str) -> LinearSystem:
+    """The matrices of a linear model with constant coefficients, named constants filled in.
+
+    Raises
+    ------
+    BadInput
+        If the model is not linear, or its coefficients are not constant.
+    """
+    found, shared = shelf.find(model), names((model,), {})
+    states, inputs, outputs = (record.variables(found, kind) for kind in record.VARIABLES)
+
+    def matrix(address: str, rows: tuple[str, ...], columns: tuple[str, ...]) -> sp.ImmutableMatrix:
+        if not rows or not columns:
+            return sp.ImmutableMatrix(len(rows), len(columns), [])
+        entries = at(f"{model}:{address}", shared, lambda entries: tuple(range(len(entries)))).entries
+        return sp.ImmutableMatrix(len(rows), len(columns), entries)
+
+    refusal = (
+        f"{model}: not linear with constant coefficients; linearise it about a motion, "
+        "as derivations/clohessy_wiltshire.py does"
+    )
+    if all(step.name != "linearisation" for step in found.steps):
+        raise BadInput(refusal)
+    a, b = matrix("linearisation.A", states, states), matrix("linearisation.B", states, inputs)
+    c, d = matrix("output_matrix.C", outputs, states), matrix("output_matrix.D", outputs, inputs)
+    moving = {shared.symbols[name] for name in (*states, *inputs)} | {sp.Symbol("t", real=True)}
+    moving |= {symbol for name, symbol in shared.symbols.items() if name == "t"}
+    rest = [rate.subs(dict.fromkeys(moving, 0)).subs(shared.definitions) for rate in rates(model)]
+    if any(e.free_symbols & moving for part in (a, b, c, d) for e in part) or not all(map(is_zero, rest)):
+        raise BadInput(refusal)
+    return LinearSystem(a, b, c, d, states, inputs, outputs)
 
 
 def dimensions_of(models: Iterable[str], own: Mapping[str, str]) -> Known:
     """Dimensions of the names of some derivations, and of those that a ledger gives a unit."""
     known: dict[str, dimensions.Dimension | None] = {}
     for model in models:
-        for name, dimension in known_dimensions(model).items():
-            known.setdefault(name, dimension)
+        for name, powers in record.dimensions(shelf.find(model)).items():
+            known.setdefault(
+                name, {base: sp.Rational(power.numerator, power.denominator) for base, power in powers.items()}
+            )
     for name, unit in own.items():
         if unit:
             known[name] = dimensions.of_unit(unit)
@@ -229,8 +268,9 @@ __all__ = [
     "from_tree",
     "in_trees",
     "inhomogeneity",
-    "known_dimensions",
+    "linear_system",
     "named",
     "names",
+    "rates",
     "written_dimension",
 ]
