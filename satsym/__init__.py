@@ -24,6 +24,7 @@ __all__ = [
     "Variable",
     "analyse",
     "audit",
+    "check",
     "derive",
     "export",
     "load",
@@ -38,6 +39,7 @@ TYPE_CHECKING = False  # as of typing, which would be loaded for it
 if TYPE_CHECKING:
     from satsym.front.analysing import analyse, lqr
     from satsym.front.auditing import audit
+    from satsym.front.checking import check
     from satsym.front.derivation import derive
     from satsym.front.exporting import export
     from satsym.front.instance import Instance, load
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "front.analysing": ("analyse", "lqr"),
     "front.auditing": ("audit",),
+    "front.checking": ("check",),
     "front.derivation": ("derive",),
     "front.exporting": ("export",),
     "front.instance": ("Instance", "load"),

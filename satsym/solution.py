@@ -241,13 +241,13 @@ class Simulation:
     instance
         What was simulated.
     feedback
-        Name of the control law, ``"none"`` for the motion without control.
+        Name of the control law, ``"none"`` for the uncontrolled motion.
     status, message
         Outcome, and one sentence for people.
     times, x, u
         As in :class:`Solution`.
     invariants
-        By name: of the motion without control, and balances that hold under every control.
+        By name: of the uncontrolled motion, and balances that hold under every control.
     metrics
         Numbers that describe the motion, by name.
     """

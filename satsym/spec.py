@@ -199,7 +199,7 @@ class ProblemSpec:
     linear
         Names of the functions that only linear models have; empty where the model is not linear.
     keplerian
-        Whether the motion without control was proved to be Kepler's: acceleration -mu r/|r|^3 with a constant mu.
+        Whether the uncontrolled motion was proved to be Kepler's: acceleration -mu r/|r|^3 with a constant mu.
     switching
         Whether every control enters the Hamiltonian affinely (apart from its magnitude), within a box.
     coordinates, velocities
@@ -327,7 +327,7 @@ class ProblemSpec:
 
     @property
     def separable(self) -> bool:
-        """Whether the motion without control is q' = v, v' = a(q), with a potential; it then has a symplectic loop."""
+        """Whether the uncontrolled motion is q' = v, v' = a(q), with a potential; it then has a symplectic loop."""
         return bool(self.coordinates)
 
     @property

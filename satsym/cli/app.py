@@ -59,6 +59,8 @@ COMMANDS = (
     "latex",
     "report",
     "export",
+    "check",
+    "read",
     "audit",
     "completion",
     "doctor",

@@ -107,7 +107,7 @@ def functions(derivation: Derivation) -> list[Function]:
     if derivation.model.reference:
         found.append(_vector("reference", "The reference curve c(t).", "t p", derivation.rhs("reference")))
     if "conserved" in derivation:
-        summary = "What the motion without control keeps constant."
+        summary = "What the uncontrolled motion keeps constant."
         found.append(_vector("invariants", summary, "t x p", derivation.rhs("conserved")))
     particle, strength = derivation.model.particle(), strength_of(derivation)
     if particle:

@@ -129,8 +129,8 @@ def load(path: Path) -> Record:
     found = _decoded(path, status.st_mtime_ns, status.st_size)
     for place, digest in found.sources.items():
         if digest_of(path.parent / place) not in ("", digest):
-            derived = f"{printable(place, 200)} has changed since; run satsym derive on it again"
-            raise BadInput(f"{printable(str(path), 200)}: is older than its derivation: {derived}")
+            older = f"is older than {printable(place, 200)}; run satsym derive on it again"
+            raise BadInput(f"{printable(str(path), 200)}: {older}")
     return found
 
 

@@ -111,7 +111,7 @@ def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
-    """The turns that the motion without control comes closest to; with a free final time, in a typical one."""
+    """The turns that the uncontrolled motion comes closest to; with a free final time, in a typical one."""
     none = tuple([0] * len(angles))
     if not angles:
         return none

@@ -23,7 +23,7 @@ from satsym.report.results.files import to_json
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = [
     *("models", "instances", "new", "solve", "prove", "simulate", "study", "plot", "compare", "analyse", "lqr"),
-    *("derive", "latex", "report", "export", "audit", "completion", "doctor", "bench"),
+    *("derive", "latex", "report", "export", "check", "read", "audit", "completion", "doctor", "bench"),
 ]
 HEAD = "satsym schema command model instance status units instance_file".split()
 SOLUTION_KEYS = (
@@ -428,7 +428,8 @@ def derived(run: Run, derivation: Path, tmp_path: Path) -> Iterator[Path]:
 
 
 def test_own_derivation_becomes_a_model_that_solves(run: Run, derived: Path, case: Path) -> None:
-    assert {path.name for path in derived.iterdir()} == {"short_walk.py", "short_walk.tex"}
+    kinds = ("py", "tex", "derivation.json")
+    assert {path.name for path in derived.iterdir()} == {f"short_walk.{kind}" for kind in kinds}
     case.write_text('model = "made/short_walk"\n[initial]\nplace = 1.0\n[time]\ntf = 1.0\n', encoding="utf-8")
     code, out, _ = run("solve", case, "--json")
     # J = u^2 tf + (x0 + u tf)^2 is least at u = -x0 / (1 + tf)
@@ -440,7 +441,7 @@ def test_own_derivation_becomes_a_model_that_solves(run: Run, derived: Path, cas
 def test_derived_anew_nothing_changes(run: Run, derivation: Path, derived: Path) -> None:
     code, out, _ = run("derive", derivation, "--out", derived)
     assert code == 0
-    assert out.count("unchanged") == 2
+    assert out.count("unchanged") == 3
     assert run("derive", derivation, "--out", derived, "--check")[0] == 0
 
 
@@ -489,6 +490,7 @@ def test_checkout_is_derived_whole_and_leftovers_go(
     assert {path.name for path in generated.iterdir()} == {
         "__init__.py",
         "notes.tex",
+        "short_walk.derivation.json",
         "short_walk.py",
         "short_walk.tex",
     }

@@ -22,7 +22,7 @@ class Survey:
 
 
 def survey(case: Instance) -> Survey:
-    """Analyse the motion without control from the initial state.
+    """Analyse the uncontrolled motion from the initial state.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from satsym.auditing.diagnosis.rewriting import over_symbol, times_symbol
 from satsym.auditing.sentences import Said, joined, say, sentence, tables
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
-from satsym.formula.tree import Add, Neg, Node, Sym, replaced
+from satsym.formula.tree import Add, Neg, Node, Sym, replaced, size
 from satsym.formula.writing import written
 from satsym.symbolic.lookup.formulas import NotAFormula
 
@@ -97,7 +97,7 @@ def _first(plan: Plan, edits: Iterable[tuple[int, Edit]]) -> Remedy | None:
 
 def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
     edits = [(i, edit) for i in indices for edit in _edits(plan, i)]
-    return _first(plan, sorted(edits, key=lambda entry: entry[1].change))
+    return _first(plan, sorted(edits, key=lambda entry: (entry[1].change, size(entry[1].result))))
 
 
 def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:

@@ -57,7 +57,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
     it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
     ``why`` is a sentence for people, with measured terms in braces, that explains why it is not confirmed;
-    ``why_id`` is the same in Indonesian.
+    ``why_id`` is the same in Indonesian. ``draft`` says that no person has confirmed the row yet.
     """
 
     item: Text
@@ -78,6 +78,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     columns: Texts = ()
     inputs: Formulas = {}
     legible: Flag = True
+    draft: Flag = False
 
 
 class ContentsTable(Table, frozen=True):

@@ -51,7 +51,7 @@ def reference(model: Kernels, times: Array, p: Sequence[float]) -> Array:
 
 
 def uncontrolled(model: Kernels, times: Array, x0: Sequence[float], p: Sequence[float]) -> Array:
-    """States of the motion without control at the nodes, shape (n, N+1), by at least a thousand steps."""
+    """States of the uncontrolled motion at the nodes, shape (n, N+1), by at least a thousand steps."""
     m, parts = len(model.spec.controls), -(-1000 // (len(times) - 1))
     fine = np.interp(np.arange((len(times) - 1) * parts + 1) / parts, np.arange(len(times)), times)
     rest = np.zeros((m, len(fine)))

@@ -25,7 +25,7 @@ Entry = tuple[Any, str]
 
 
 def motion(scene: Scene, colour: str) -> list[Entry]:
-    """The path itself, the reference and the motion without control."""
+    """The path itself, the reference and the uncontrolled motion."""
     found = [(line(color=colour, **style.MAIN), scene.name)]
     if scene.reference is not None:
         found.append((line(**style.REFERENCE), say("reference")))

@@ -76,7 +76,7 @@ def phase(scene: Scene) -> Figure | None:
 
 
 def states(scene: Scene) -> Figure | None:
-    """Every state, with the reference and the motion without control."""
+    """Every state, with the reference and the uncontrolled motion."""
     return _multiples(scene, series.states(scene), style.STATE)
 
 
@@ -96,7 +96,7 @@ def costates(scene: Scene) -> Figure | None:
 
 
 def invariants(scene: Scene) -> Figure | None:
-    """What the motion without control keeps constant, and the control changes."""
+    """What the uncontrolled motion keeps constant, and the control changes."""
     return _multiples(scene, series.invariants(scene), style.INVARIANT, columns=1)
 
 

@@ -39,7 +39,7 @@ class Scene:
     """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a simulation."""
     reference: Array | None
     free: Array | None
-    """States of the reference curve and of the motion without control at the nodes; ``None`` where there is none or,
+    """States of the reference curve and of the uncontrolled motion at the nodes; ``None`` where there is none or,
     for the latter, where it is the motion itself or on the reference."""
 
     @classmethod
@@ -122,7 +122,7 @@ def _name(result: Solution | Simulation) -> str:
 
 
 def _free(result: Solution | Simulation, nodes: Array, x: Array, reference: Array | None) -> Array | None:
-    """States of the motion without control, where there is one that is not drawn already."""
+    """States of the uncontrolled motion, where there is one that is not drawn already."""
     model, p = result.instance.model, result.instance.parameters
     if _coasts(result) or not curves.rests(model, nodes, x, p):
         return None

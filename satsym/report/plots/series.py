@@ -52,7 +52,7 @@ class Series:
     """At the nodes, NaN where there is nothing to draw."""
     reference: Array | None = None
     free: Array | None = None
-    """The same quantity on the reference curve, and in the motion without control."""
+    """The same quantity on the reference curve, and in the uncontrolled motion."""
     target: float | None = None
     """The value that is required at the end."""
     angle: bool = False
@@ -224,7 +224,7 @@ def costates(scene: Scene) -> list[Series]:
 
 
 def invariants(scene: Scene) -> list[Series]:
-    """What the motion without control keeps constant, with its value there."""
+    """What the uncontrolled motion keeps constant, with its value there."""
     model, p = scene.instance.model, scene.instance.parameters
     if not scene.spec.invariants:
         return []

@@ -35,7 +35,7 @@ PARTS = (2, 4, 8)
 """Into which segments are taken until errors of the flow are small enough."""
 
 UNDRIVEN, VARIATIONS = 4, 5
-"""Columns of the extrapolation table, for the motion without control and for derivatives."""
+"""Columns of the extrapolation table, for the uncontrolled motion and for derivatives."""
 
 PLACES = 9
 """At which it is looked whether kernels contradict each other."""

@@ -33,7 +33,7 @@ FINER = (1, 2, 4)
 """Into how many parts leaps are taken until their errors are small enough."""
 
 COLUMNS, UNDRIVEN = 6, 4
-"""Of the extrapolation table; for the motion without control only its size matters."""
+"""Of the extrapolation table; for the uncontrolled motion only its size matters."""
 
 SEGMENTS = (16, 20, 25, 40, 50, 64, 80, 100, 125)
 """Numbers of segments of the variational equations that are tried, one after the other."""

@@ -84,7 +84,7 @@ class Comparison:
 
 
 def going_round(instance: Instance) -> list[Kind]:
-    """Revolutions, where the motion without control looks the same when it is turned: then other numbers may do."""
+    """Revolutions, where the uncontrolled motion looks the same when it is turned: then other numbers may do."""
     from satsym.solvers.symmetry import rotation
 
     return [Kind.REVOLUTIONS] if rotation(instance) else []

@@ -1,8 +1,8 @@
 """From a cold start to an extremal: a straight line where that goes straight, else a path of easier problems.
 
-Where the motion without control looks the same after a rotation, spirals of the likeliest numbers of turns come
+Where the uncontrolled motion looks the same after a rotation, spirals of the likeliest numbers of turns come
 first. Else first Newton's method from what is guessed, or from the straight line in the state space (or, where nothing
-is asked of the end, from the motion without control), then the minimisation from there. Where neither walks straight
+is asked of the end, from the uncontrolled motion), then the minimisation from there. Where neither walks straight
 through, the second way decides as well: from a motion that needs no control at all and ends where it should, the
 initial state is moved to the given one, each problem starting from the last. The cheaper minimum stands. Where neither
 way arrives, the duration is halved until the straight line leads to a minimum, and lengthened from there; at last the

@@ -23,7 +23,7 @@ def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | 
     model
         Where the position and the forces are stated.
     coast
-        Control -> its value in the motion without control.
+        Control -> its value in the uncontrolled motion.
 
     Returns
     -------

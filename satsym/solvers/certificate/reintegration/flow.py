@@ -27,7 +27,7 @@ ROUGHLY = 1e-9
 """Error of a step where only the size of what is found matters."""
 
 IDLE_STEPS, IDLE_ERROR = (100, 200), 1e-4
-"""RK4 steps of the motion without control, and what the fewer may change of its distance from the end of the solution,
+"""RK4 steps of the uncontrolled motion, and what the fewer may change of its distance from the end of the solution,
 relative to that: it tells a size."""
 
 NEGLIGIBLE = 1e-3

@@ -1,0 +1,350 @@
+"""Checking one printed formula: read, understood, held against every equation of a model, explained."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from satsym.auditing.check import remedies
+from satsym.auditing.check.derived import Derived, Target, is_plain, says_nothing, solved, vanishes
+from satsym.auditing.check.matrices import matrix_answer
+from satsym.auditing.check.meanings import Guess, Meanings, given_letters
+from satsym.auditing.check.nearest import likeness
+from satsym.auditing.check.told import Answer, Fit, Verdict
+from satsym.auditing.latex.grammar import CONSTANT, Reading, read
+from satsym.auditing.latex.letters import Letter, of_word
+from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
+from satsym.auditing.latex.words import FUNCTIONS
+from satsym.auditing.latex.writing import Writer, in_latex, in_plain
+from satsym.formula.calculus import difference
+from satsym.formula.tree import ZERO, Equality, Grid, Node, Sym, substituted, symbols, walk
+from satsym.records import shelf
+from satsym.status import BadInput
+
+_SIMILAR = 0.75
+"""Likeness from which on an equation is meant even where no edit leads to it."""
+_NEAR = 0.34
+"""Likeness below which an equation is not taken for the one that is meant."""
+_SAME = 1.0
+"""Likeness from which on an equation that holds somewhere is that equation, not something that follows from it."""
+_SOMEWHERE = 0.25
+"""Likeness that an equation is thought less likely by that holds somewhere alone."""
+_TRIED = 5
+"""Equations for which an edit is sought."""
+_LOOKED_AT = 12
+"""Guesses for which equations that come near are looked for."""
+_ODD = 0.03
+"""Likeness that one step of oddity of a guess counts for."""
+
+
+def check(
+    text: str, model: str, let: Sequence[str] = (), free: bool = False, macros: Macros | None = None
+) -> list[Answer]:
+    """Check the equations of a formula; see :func:`satsym.check`."""
+    derived = Derived(shelf.find(model))
+    meanings = Meanings(derived)
+    given = given_letters(let, derived)
+    latex = "\\" in text or "{" in text or "$" in text
+    reading = _read(text, latex, macros, meanings, given)
+    subject = Subject(derived, meanings, reading, given, free, latex)
+    return [subject.answer(statement) for statement in reading.statements]
+
+
+def check_in(text: str, model: str, folder: Path, let: Sequence[str] = (), free: bool = False) -> list[Answer]:
+    """Check a formula against a model that is shipped, or lies in a folder as seen from another."""
+    place, name = shelf.place_of(model, folder)
+    with shelf.opened(place):
+        return check(text, name, let, free)
+
+
+def _read(text: str, latex: bool, macros: Macros | None, meanings: Meanings, given: Mapping[Letter, str]) -> Reading:
+    if latex:
+        inner = text.strip().strip("$")
+        return read(tokens(inner, macros), inner)
+    found = [part for token in plain_tokens(text) for part in _words(token, meanings, given)]
+    return read(found, text, plain=True)
+
+
+def _words(token: Token, meanings: Meanings, given: Mapping[Letter, str]) -> list[Token]:
+    """A word of plain notation; one that is no name as the letters that it is made of, if all of these are known."""
+    text = token.text
+    if token.kind != "word" or len(text) == 1 or text in FUNCTIONS or "_" in text:
+        return [token]
+    if text[0] == "d" and re.fullmatch(r"d2?[A-Za-z]\w*", text):
+        return [token]
+    letter = of_word(text)
+    if meanings.tree(letter, given) is not None or not text.isalpha():
+        return [token]
+    singles = [Letter(one) for one in text]
+    if any(meanings.tree(one, given) is None for one in singles):
+        return [token]
+    return [Token("word", one, token.at + k) for k, one in enumerate(text)]
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """Equations of one formula, with all that is needed to judge them."""
+
+    derived: Derived
+    meanings: Meanings
+    reading: Reading
+    given: Mapping[Letter, str]
+    free: bool
+    latex: bool
+    names: dict[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def letters(self) -> dict[str, Letter]:
+        """Name in the trees -> printed letter, those of the model's own notation besides."""
+        own = {letter.name: letter for letter in self.meanings.known}
+        return {**own, **self.reading.letters}
+
+    def writer(self, latex: bool, besides: Mapping[str, str] | None = None) -> Writer:
+        """Writes trees in the notation of the formula."""
+        if latex:
+            return in_latex({**{name: letter.latex for name, letter in self.letters.items()}, **(besides or {})})
+        return in_plain(besides or {})
+
+    def answer(self, statement: Node | Equality) -> Answer:
+        """Judge one statement."""
+        try:
+            if isinstance(statement, Grid) or (isinstance(statement, Equality) and _has_grid(statement)):
+                return self._of_matrix(statement)
+            return self._of_equation(statement)
+        except (BadInput, RecursionError) as error:
+            why = "it is nested too deep" if isinstance(error, RecursionError) else str(error)
+            return self.told(statement, "undecided", why)
+
+    def told(
+        self,
+        statement: Node | Equality,
+        verdict: Verdict,
+        diagnosis: str = "",
+        *,
+        fit: Fit | None = None,
+        address: str = "",
+        correct: Node | Equality | None = None,
+        besides: tuple[Mapping[str, str], Mapping[str, str]] = ({}, {}),
+    ) -> Answer:
+        """The answer, in the notation of the formula."""
+        latex, plain = besides
+        write, write_tex = self.writer(self.latex, latex if self.latex else plain), self.writer(True, latex)
+        shown = correct if correct is not None else statement
+        meaning = fit.guess.meaning if fit else self.given
+        named = {}
+        for letter in self.reading.letters.values():
+            ours = meaning.get(letter.still)
+            if ours and ours != self.meanings.named(letter.still):
+                named[letter.still.latex if self.latex else letter.still.name] = ours
+        return Answer(
+            write(statement),
+            self.derived.record.name,
+            named,
+            bool(fit and fit.free),
+            verdict,
+            address or (fit.target.address if fit and fit.target else ""),
+            diagnosis,
+            write(correct) if correct is not None else "",
+            write_tex(shown),
+            self.writer(False, plain)(shown),
+            fit,
+        )
+
+    def _of_matrix(self, statement: Node | Equality) -> Answer:
+        inside = self._inside(statement)
+        guess = next(self._guesses(inside), None)
+        if guess is None:
+            return self._unknown(statement, inside)
+        meanings = {name: tree for name in inside if (tree := self._meaning(name, guess)) is not None}
+        verdict, address, diagnosis, correct = matrix_answer(statement, meanings, self.derived, self)
+        fit = Fit(guess, None, False, 0.0)
+        return self.told(statement, verdict, diagnosis, fit=fit, address=address, correct=correct)
+
+    def _of_equation(self, statement: Node | Equality) -> Answer:
+        inside = self._inside(statement)
+        guesses = list(self._guesses(inside))
+        if not guesses:
+            return self._unknown(statement, inside)
+        named, derivatives = remedies.with_names(statement, self)
+        fits: list[Fit] = []
+        for place, guess in enumerate(guesses):
+            fit = self._right(named, derivatives, guess)
+            if fit is not None and not (guess.oddity and fits and fits[0].likeness > fit.likeness + 0.3):
+                return self.told(statement, "right", fit=fit)
+            if place < _LOOKED_AT:
+                fits += self._near(named, derivatives, guess)
+        fits.sort(key=lambda fit: fit.likeness - _ODD * fit.guess.oddity, reverse=True)
+        return self._wrong_answer(statement, named, derivatives, fits)
+
+    def _wrong_answer(
+        self, statement: Node | Equality, named: Node | Equality, derivatives: Mapping[str, Node], fits: list[Fit]
+    ) -> Answer:
+        near: list[Fit] = []
+        seen: set[tuple[Equality | None, bool]] = set()
+        for fit in fits:
+            key = fit.target.equation if fit.target else None
+            if fit.target and fit.likeness >= _NEAR and (key, fit.free) not in seen and len(near) < _TRIED:
+                seen.add((key, fit.free))
+                near.append(fit)
+        if not near:
+            why = f"no equation of {self.derived.record.name} comes near it"
+            return self.told(statement, "undecided", why, fit=fits[0] if fits else None)
+        best: tuple[float, Fit, remedies.Found] | None = None
+        for fit in near:
+            if best is not None and best[2].cost < 20 and fit.likeness < best[1].likeness - 0.15:
+                break
+            found = remedies.sought(named, derivatives, fit, self)
+            if found.right:
+                return self.told(statement, "right", fit=fit)
+            if found.cost >= remedies.NO_EDIT and fit.likeness < _SIMILAR:
+                continue
+            cost = found.cost - 30.0 * (fit.likeness - _ODD * fit.guess.oddity)
+            if best is None or cost < best[0]:
+                best = cost, fit, found
+        if best is None:
+            why = f"no equation of {self.derived.record.name} comes near it"
+            return self.told(statement, "undecided", why, fit=near[0])
+        _, fit, found = best
+        besides = self.derivatives(True, derivatives), self.derivatives(False, derivatives)
+        return self.told(statement, "wrong", found.diagnosis, fit=fit, correct=found.correct, besides=besides)
+
+    def derivatives(self, latex: bool, derivatives: Mapping[str, Node]) -> dict[str, str]:
+        """How derivatives that are one letter in the tree are written."""
+        write = self.writer(latex)
+        return {name: write(tree) for name, tree in derivatives.items()}
+
+    def _unknown(self, statement: Node | Equality, inside: Sequence[str]) -> Answer:
+        letters = [self.reading.letters[name] for name in inside if name in self.reading.letters]
+        odd = self.meanings.unknown(letters, self.given)
+        written = ", ".join(letter.latex if self.latex else letter.name for letter in odd)
+        why = f"{written} may mean nothing in {self.derived.record.name}; say what with --let LETTER=NAME"
+        return self.told(statement, "undecided", why)
+
+    def _inside(self, statement: Node | Equality) -> list[str]:
+        sides = (statement.lhs, statement.rhs) if isinstance(statement, Equality) else (statement,)
+        names = set().union(*map(symbols, sides))
+        return [name for name in self.reading.letters if name in names]
+
+    def _guesses(self, inside: Sequence[str]) -> Iterator[Guess]:
+        letters = [self.reading.letters[name] for name in inside]
+        labels = {"A", "B", "C", "D", "V", "E", "T", "U", "K", "P", "W"}
+        if any(letter.base in labels and not letter.dots for letter in letters):
+            letters = [
+                one for one in letters if one.base not in labels or self.meanings.named(one) or not self._is_label(one)
+            ]
+        if self.meanings.unknown(letters, self.given):
+            yield from self.meanings.guesses(letters, self.given)
+        else:
+            yield Guess(self.given, 0)
+            yield from self.meanings.alternatives(letters, self.given)
+
+    def _is_label(self, letter: Letter) -> bool:
+        """Whether a letter only names what is on the right."""
+        for statement in self.reading.statements:
+            if isinstance(statement, Equality) and statement.lhs == Sym(letter.name):
+                return letter.name not in symbols(statement.rhs)
+        return False
+
+    def _meaning(self, name: str, guess: Guess) -> Node | None:
+        letter = self.reading.letters.get(name)
+        return self.meanings.tree(letter, guess.meaning) if letter else None
+
+    def meant(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> dict[str, Node]:
+        """Name in the tree -> what it means."""
+        sides = (named.lhs, named.rhs) if isinstance(named, Equality) else (named,)
+        found: dict[str, Node] = {}
+        for name in set().union(*map(symbols, sides)):
+            if name in derivatives:
+                inner = derivatives[name]
+                terms = {n: t for n in symbols(inner) if (t := self._meaning(n, guess)) is not None}
+                found[name] = self.derived.differentiated(substituted(inner, terms))
+            elif (tree := self._meaning(name, guess)) is not None:
+                found[name] = tree
+        return found
+
+    def residuals(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> Iterator[Node]:
+        """The difference of the sides in our names; for a sole expression, from each thing that it may be."""
+        meant = self.meant(named, derivatives, guess)
+        if isinstance(named, Equality):
+            if named.rhs == Sym(CONSTANT):
+                yield self.derived.along(self.derived.opened(substituted(named.lhs, meant)))
+                return
+            yield difference(substituted(named.lhs, meant), substituted(named.rhs, meant))
+        else:
+            yield substituted(named, meant)
+
+    def _right(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> Fit | None:
+        """How an equation is right, understood in one way; ``None`` where it is not."""
+        residual = next(self.residuals(named, derivatives, guess))
+        if not is_plain(residual):
+            raise BadInput("vectors, and what transposes them, are not compared; check their components")
+        if not isinstance(named, Equality):
+            return self._right_expression(residual, guess)
+        if says_nothing(residual, self.derived):
+            return self._identity(named, guess)
+        for free in (False, True) if not self.free else (True,):
+            besides: dict[str, Node] = dict.fromkeys(self.derived.controls, ZERO) if free else {}
+            if free and symbols(residual) & {*self.derived.controls, *self.derived.costates}:
+                continue
+            if vanishes(residual, self.derived, besides):
+                return Fit(guess, self._likest(residual, besides), free, 1.0)
+        for target in self.derived.targets:
+            if not target.always and likeness(residual, target.residual) >= _SAME:
+                for extra in solved(target, self.derived):
+                    if vanishes(residual, self.derived, extra):
+                        return Fit(guess, target, False, 1.0)
+        return None
+
+    def _right_expression(self, tree: Node, guess: Guess) -> Fit | None:
+        found = [t for t in self.derived.targets if vanishes(difference(tree, t.equation.rhs), self.derived)]
+        found.sort(key=lambda target: likeness(tree, target.equation.rhs), reverse=True)
+        return Fit(guess, found[0], False, 1.0) if found else None
+
+    def _identity(self, named: Equality, guess: Guess) -> Fit | None:
+        """The equation that only says which state is the rate of which."""
+        dotted = [self.reading.letters[n] for n in symbols(named.lhs) | symbols(named.rhs) if n in self.reading.letters]
+        for letter in dotted:
+            name = guess.meaning.get(letter.still) or self.meanings.named(letter.still)
+            if letter.dots == 1 and name and name in self.derived.speeds:
+                return Fit(guess, self._kinematic(name), False, 1.0)
+        return Fit(guess, None, False, 1.0)
+
+    def _kinematic(self, state: str) -> Target | None:
+        address = next((a for a, x in self.derived.kinematic.items() if x == state), "")
+        return next((target for target in self.derived.targets if target.address == address), None)
+
+    def _likest(self, residual: Node, besides: Mapping[str, Node]) -> Target | None:
+        """The equation that is most like one that is right."""
+        best: tuple[float, Target | None] = 0.7, None
+        for target in self.derived.targets:
+            there = substituted(target.residual, besides) if besides else target.residual
+            alike = likeness(residual, there) if target.always else 0.0
+            if alike > best[0] + 1e-9:
+                best = alike, target
+        return best[1]
+
+    def _near(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> list[Fit]:
+        """Equations that one comes near, understood in one way."""
+        residual = next(self.residuals(named, derivatives, guess))
+        found = []
+        inside = symbols(residual)
+        without = not inside & {*self.derived.controls, *self.derived.costates}
+        for target in self.derived.targets:
+            there = target.residual if isinstance(named, Equality) else target.equation.rhs
+            if not symbols(there) & inside:
+                continue
+            controlled = bool(symbols(there) & set(self.derived.controls))
+            for free in (False, True) if without and controlled and not self.free else (self.free,):
+                besides = dict.fromkeys(self.derived.controls, ZERO) if free else {}
+                alike = likeness(residual, substituted(there, besides))
+                alike -= 0.0 if target.always or "stationarity" in target.address else _SOMEWHERE
+                if alike > 0.0:
+                    found.append(Fit(guess, target, free, alike))
+        return found
+
+
+def _has_grid(statement: Equality) -> bool:
+    return any(isinstance(part, Grid) for side in (statement.lhs, statement.rhs) for _, part in walk(side))

@@ -1,0 +1,275 @@
+"""What a derivation establishes, made ready for comparison: its equations with one name for each rate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+from satsym.formula.calculus import derivative, difference, product, total
+from satsym.formula.field import NoValue, Point, Undecided, points_for
+from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls, mapped, substituted, symbols
+from satsym.records import record
+from satsym.records.record import Record
+from satsym.status import BadInput
+
+_GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations", "stationarity", "parameter_demands")
+"""Steps that state what holds somewhere, not everywhere."""
+_FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
+"""Steps that are named first where several state the same."""
+_ANGLED = frozenset(("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"))
+_DEEPEST = 12
+
+
+@dataclass(frozen=True)
+class Target:
+    """An equation of the derivation, with one name for each rate."""
+
+    address: str
+    equation: Equality
+    always: bool
+    """Whether it holds all along the motion, whatever the controls are."""
+
+    @property
+    def residual(self) -> Node:
+        """The difference of its sides."""
+        return difference(self.equation.lhs, self.equation.rhs)
+
+
+@dataclass(frozen=True, eq=False)
+class Derived:
+    """A record, and what is known from it."""
+
+    record: Record
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return record.variables(self.record, "state")
+
+    @cached_property
+    def controls(self) -> tuple[str, ...]:
+        """Names of the controls."""
+        return record.variables(self.record, "control")
+
+    @cached_property
+    def costates(self) -> tuple[str, ...]:
+        """Names of the costates, in the order of the states; none where nothing is optimised."""
+        return tuple(name for name in (f"lambda_{state}" for state in self.states) if name in self.record.names)
+
+    @cached_property
+    def base(self) -> frozenset[str]:
+        """Names that stand for themselves."""
+        declared = (n for n, entry in self.record.names.items() if entry.kind in ("state", "control", "parameter"))
+        return frozenset((*declared, *self.costates))
+
+    @cached_property
+    def positive(self) -> frozenset[str]:
+        """Names of what is positive."""
+        return frozenset(name for name, entry in self.record.names.items() if entry.positive)
+
+    @cached_property
+    def speeds(self) -> Mapping[str, str]:
+        """State -> the state that is its rate."""
+        found = {}
+        for step in self.record.steps:
+            for equation in step.equations if step.name in ("first_order", "original_equations") else ():
+                tree = record.formula(equation.rhs) if isinstance(equation.rhs, str) else ZERO
+                if isinstance(tree, Sym) and (tree.name in self.states or tree.name in self.others):
+                    found[equation.name] = tree.name
+        return found
+
+    @cached_property
+    def others(self) -> frozenset[str]:
+        """States of the motion that this one was derived from."""
+        found = (n.removeprefix("d_") for n in self.record.names if n.startswith("d_"))
+        return frozenset(n for n in found if n not in self.states and n not in self.costates)
+
+    @cached_property
+    def _one_name(self) -> Mapping[str, Node]:
+        found: dict[str, Node] = {f"{x}_ddot": Sym(f"d_{v}") for x, v in self.speeds.items()}
+        return found | {f"d_{x}": Sym(v) for x, v in self.speeds.items()}
+
+    def rate(self, name: str, times: int = 1) -> Node | None:
+        """The name of a derivative by time, or what it is; ``None`` where it has none."""
+        tree: Node = Sym(name)
+        for _ in range(times):
+            if isinstance(tree, Sym) and (tree.name in (*self.states, *self.costates) or tree.name in self.others):
+                known = self.speeds.get(tree.name)
+                tree = Sym(known or f"d_{tree.name}")
+            else:
+                tree = self.along(self.opened(tree))
+        return tree
+
+    @cached_property
+    def kinematic(self) -> Mapping[str, str]:
+        """Address -> the state that it says the rate of by another state: what is an identity once rates are named."""
+        return {f"{self.record.name}:first_order.{x}": x for x in self.speeds}
+
+    @cached_property
+    def definitions(self) -> dict[str, Node]:
+        """Name -> what it is, all along the motion."""
+        found = {name: record.formula(text) for name, text in self.record.definitions.items() if text}
+        for step in self.record.steps:
+            for equation in step.equations if step.name not in _GIVEN else ():
+                if equation.lhs is None or not isinstance(equation.rhs, str):
+                    continue
+                name, tree = record.formula(equation.lhs), substituted(record.formula(equation.rhs), self._one_name)
+                if isinstance(name, Sym):
+                    name = substituted(name, self._one_name)
+                if isinstance(name, Sym) and name.name not in self.base and name.name not in symbols(tree):
+                    found.setdefault(name.name, tree)
+        for letter in ("L", "S"):
+            text = self.record.declared.get(letter)
+            if isinstance(text, str):
+                found.setdefault(letter, record.formula(text))
+        return found
+
+    @cached_property
+    def targets(self) -> list[Target]:
+        """All equations, those that are named first at the beginning."""
+        steps = sorted(
+            self.record.steps, key=lambda step: _FIRST.index(step.name) if step.name in _FIRST else len(_FIRST)
+        )
+        found = []
+        for step in steps:
+            for equation in step.equations:
+                if equation.lhs is None or not isinstance(equation.rhs, str):
+                    continue
+                sides = [substituted(record.formula(text), self._one_name) for text in (equation.lhs, equation.rhs)]
+                if equation.name == "characteristic_polynomial":
+                    sides = [sides[1], ZERO]
+                address = f"{self.record.name}:{step.name}.{equation.name}"
+                found.append(Target(address, Equality(sides[0], sides[1]), step.name not in _GIVEN))
+        for name in ("L", "S"):
+            if name in self.definitions and name not in self.record.names:
+                address = f"{self.record.name}:{record.DECLARED}.{name}"
+                found.append(Target(address, Equality(Sym(name), self.definitions[name]), True))
+        return found
+
+    def opened(self, tree: Node, depth: int = _DEEPEST) -> Node:
+        """The tree with definitions put in, rates excepted."""
+        inside = {n for n in symbols(tree) if n in self.definitions and not n.startswith("d_")}
+        if not inside or not depth:
+            return tree
+        return self.opened(substituted(tree, {n: self.definitions[n] for n in inside}), depth - 1)
+
+    def along(self, tree: Node) -> Node:
+        """The derivative of something by time, along the motion.
+
+        Raises
+        ------
+        BadInput
+            If it has a part that no rule differentiates.
+        """
+        terms = [derivative(tree, "t")]
+        for name in sorted(symbols(tree) - {"t"}):
+            slope = derivative(tree, name)
+            if slope == ZERO:
+                continue
+            if name in (*self.states, *self.costates):
+                rate = self.speeds.get(name) or f"d_{name}"
+            elif name in self.definitions and name.startswith("d_"):
+                terms.append(product([slope, self.along(self.opened(self.definitions[name]))]))
+                continue
+            elif name in self.controls:
+                rate = f"d_{name}"
+            else:
+                continue
+            terms.append(product([slope, Sym(rate)]))
+        return total(terms)
+
+    def differentiated(self, tree: Node) -> Node:
+        """The tree in which derivatives that are only named are worked out."""
+
+        def worked_out(part: Node) -> Node | None:
+            if not isinstance(part, Call) or part.function not in ("diff", "d"):
+                return None
+            inner = self.opened(self.differentiated(part.arguments[0]))
+            if part.function == "d":
+                return self.along(inner)
+            by = part.arguments[1]
+            if not isinstance(by, Sym):
+                raise BadInput("a derivative is taken by what is no letter of the model")
+            return derivative(inner, by.name)
+
+        return mapped(tree, worked_out)
+
+
+class MotionPoint(Point):
+    """A point at which defined names have the values of what they are."""
+
+    def __init__(self, seed: str, derived: Derived, besides: Mapping[str, Node], strict: bool) -> None:
+        super().__init__(seed, derived.positive, strict)
+        self._known = {**derived.definitions, **besides}
+        self._asked: set[str] = set()
+
+    def symbol(self, name: str) -> int:
+        """The value of a name."""
+        if name not in self._known or name in self._asked:
+            return super().symbol(name)
+        self._asked.add(name)
+        try:
+            return self.value(self._known[name])
+        finally:
+            self._asked.discard(name)
+
+    def value_of_call(self, node: Call) -> int:
+        """Angles and exponents are taken apart in names that stand for themselves."""
+        if node.function in _ANGLED:
+            tree: Node = node
+            for _ in range(_DEEPEST):
+                inside = {n: self._known[n] for n in symbols(tree) if n in self._known}
+                if not inside:
+                    break
+                tree = substituted(tree, inside)
+            return super().value_of_call(tree) if isinstance(tree, Call) else self.value(tree)
+        return super().value_of_call(node)
+
+
+def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = MappingProxyType({}), points: int = 3) -> bool:
+    """Whether something is zero along the motion; besides, some names may be what only holds somewhere."""
+    for strict in (True, False):
+        found = 0
+        for draw in range(40):
+            try:
+                if MotionPoint(f"check {draw}", derived, besides, strict).value(tree):
+                    return False
+            except NoValue:
+                continue
+            found += 1
+            if found == points:
+                return True
+    return False
+
+
+def says_nothing(tree: Node, derived: Derived) -> bool:
+    """Whether something is zero whatever its names are."""
+    try:
+        return all(point.value(tree) == 0 for point in points_for((tree,), "identity", derived.positive, 2))
+    except Undecided:
+        return True
+
+
+def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
+    """An equation as what one of its names is: of those that it is linear in, the likeliest first."""
+    sides = target.equation
+    if isinstance(sides.lhs, Sym) and sides.lhs.name not in symbols(sides.rhs):
+        yield {sides.lhs.name: sides.rhs}
+        return
+    inside = symbols(target.residual)
+    for name in (n for n in (*derived.controls, *derived.costates, *derived.states) if n in inside):
+        try:
+            slope = derivative(target.residual, name)
+        except BadInput:
+            continue
+        if name not in symbols(slope) and slope != ZERO:
+            rest = substituted(target.residual, {name: ZERO})
+            yield {name: Neg(Div(rest, slope))}
+            return
+
+
+def is_plain(tree: Node) -> bool:
+    """Whether a tree is made of arithmetic and elementary functions alone."""
+    return all(call.function not in ("transpose", "det", "norm", "sat", "diff", "d") for call in calls(tree))

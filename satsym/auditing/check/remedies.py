@@ -1,0 +1,188 @@
+"""What is wrong with an equation that is not right: the smallest edit, sought as an audit seeks it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from satsym.auditing.comparison.bench import Bench
+from satsym.auditing.comparison.compare import plans
+from satsym.auditing.diagnosis.smallest_edit import Remedy, remedy, wrong_formula
+from satsym.auditing.ledger.contents import Ledger, Row
+from satsym.auditing.ledger.schema import DocumentTable, RowTable
+from satsym.auditing.ledger.scopes import Scope
+from satsym.auditing.sentences import Said, in_indonesian
+from satsym.formula import budget
+from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, substituted, symbols
+from satsym.formula.weight import Scales
+from satsym.formula.writing import written
+from satsym.status import BadInput
+
+if TYPE_CHECKING:
+    from satsym.auditing.check.answer import Subject
+    from satsym.auditing.check.told import Fit
+    from satsym.auditing.comparison.plan import Plan
+
+NO_EDIT = 60.0
+"""The cost of an equation for which no edit was found; one edit costs up to some twenty."""
+
+
+_LIMIT = budget.Limit(3_000_000)
+"""Work for the search of one edit; some seconds."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was found: whether it is right after all, what is wrong, the right equation, and how large the edit is."""
+
+    right: bool
+    diagnosis: str
+    correct: Node | Equality | None
+    cost: float
+
+
+def with_names(statement: Node | Equality, subject: Subject) -> tuple[Node | Equality, dict[str, Node]]:
+    """The statement in which each derivative that is only named is one letter; and what these letters are."""
+    found: dict[str, Node] = {}
+    taken = set(subject.reading.letters)
+    names = (name for k in count(1) if (name := f"D{k}") not in taken)
+
+    def named(part: Node) -> Node | None:
+        if not isinstance(part, Call) or part.function not in ("diff", "d"):
+            return None
+        name = next((known for known, tree in found.items() if tree == part), None) or next(names)
+        found[name] = part
+        return Sym(name)
+
+    if isinstance(statement, Equality):
+        return Equality(mapped(statement.lhs, named), mapped(statement.rhs, named)), found
+    return mapped(statement, named), found
+
+
+def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> Found:
+    """The smallest edit that makes the statement the equation of the model that it comes near."""
+    assert fit.target is not None
+    bench, row = _bench(named, derivatives, fit, subject)
+    try:
+        return budget.within(_LIMIT, lambda: _sought(bench, row, derivatives, subject))
+    except budget.OverBudget:
+        return Found(False, "it is too long for a search of the edit", None, NO_EDIT)
+
+
+def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Subject) -> Found:
+    assert row.printed is not None
+    ways = plans(bench, row, row.printed, bench.target(row))
+    if any(way.is_right(way.printed) for way in ways):
+        return Found(True, "", None, 0.0)
+    compared, fix = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
+    write = subject.writer(subject.latex, subject.derivatives(subject.latex, derivatives))
+    correct = _correct(bench, row, compared, fix)
+    said = wrong_formula([""] * len(compared.labels), fix, "", "", write(correct) if correct else "", write)
+    diagnosis = Said(*(_clause(text) for text in (str(said), in_indonesian(said))))
+    return Found(False, diagnosis, correct, _cost(fix))
+
+
+def _clause(text: str) -> str:
+    """A sentence as a clause, formulas without their quotation marks."""
+    text = text.replace("`", "").rstrip(".")
+    return text[:1].lower() + text[1:] if text[:2].istitle() and text[1:2].islower() else text
+
+
+def _cost(fix: Remedy | None) -> float:
+    if fix is None:
+        return NO_EDIT
+    return sum(int(edit.change) for _, edit in fix.edits) + 12.0 * (len(fix.edits) - 1) if fix.edits else 3.0
+
+
+def _correct(bench: Bench, row: Row, compared: Plan, fix: Remedy | None) -> Node | Equality | None:
+    """The right equation in the symbols of what was given."""
+    if fix is not None:
+        cells: tuple[Node, ...] = fix.cells
+    else:
+        cells = tuple(bench.theirs(row, target) for target in compared.targets)
+    if not isinstance(row.printed, Equality):
+        return cells[0] if len(cells) == 1 else None
+    if len(cells) == 2:
+        return Equality(cells[0], cells[1])
+    if len(cells) != 1:
+        return None
+    sides = row.printed
+    return Equality(cells[0], sides.rhs) if sides.rhs not in compared.printed else Equality(sides.lhs, cells[0])
+
+
+def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> tuple[Bench, Row]:
+    """A ledger of this one row."""
+    derived = subject.derived
+    assert fit.target is not None
+    known = subject.meant(named, derivatives, fit.guess)
+    for name, tree in _others(fit, subject).items():
+        known.setdefault(name, tree)
+    sides = (named.lhs, named.rhs) if isinstance(named, Equality) else (named,)
+    lacking = sorted(set().union(*map(symbols, sides)) - {*known, "I", "pi"})
+    if lacking:
+        raise BadInput(f"{', '.join(lacking)} may mean nothing in {derived.record.name}")
+    besides = dict.fromkeys(derived.controls, ZERO) if fit.free else {}
+    equation = fit.target.equation
+    holds: Node | Equality = Equality(substituted(equation.lhs, besides), substituted(equation.rhs, besides))
+    if not isinstance(named, Equality):
+        holds = substituted(equation.rhs, besides)
+    scales = Scales()
+    table = RowTable(item="1", kind="equation", printed=written(named), holds="1")
+    row = Row(table, "1", "formula", printed=scales.checked(named), holds=scales.checked(holds))
+    ledger = Ledger(
+        Path("formula"),
+        "formula",
+        DocumentTable(key="formula", title="formula"),
+        {"main": Scope("main", known, {})},
+        {},
+        {},
+        (row,),
+        derived.record.name,
+        None,
+    )
+    return Bench(ledger), row
+
+
+def _others(fit: Fit, subject: Subject) -> dict[str, Node]:
+    """Letters that are not printed, but could have been: of the model's own notation, and of the guessed families."""
+    meanings = subject.meanings
+    found: dict[str, Node] = {}
+    taken = set(fit.guess.meaning.values())
+    guessed = dict(fit.guess.meaning)
+    families = {letter.base for letter in guessed if letter.index}
+    states, costates, controls = subject.derived.states, subject.derived.costates, subject.derived.controls
+    for letter, name in guessed.items():
+        group = next((g for g in (states, costates, controls) if name in g), ())
+        if (
+            letter.base in families
+            and letter.index.isdigit()
+            and name in group
+            and group.index(name) + 1 == int(letter.index)
+        ):
+            for k, other in enumerate(group, start=1):
+                guessed = {**guessed, replace(letter, index=str(k), foot=str(k)): other}
+    if not families:
+        for k, base in enumerate("xyz"):
+            places = [x for x in states if x in subject.derived.speeds]
+            if k < len(places) and any(letter.base in "xyz" for letter in fit.guess.meaning) and places[k] not in taken:
+                guessed = {**guessed, type(next(iter(guessed)))(base): places[k]}
+    for letter, name in guessed.items():
+        for dots in range(3):
+            dotted = replace(letter, dots=dots)
+            tree = meanings.tree(dotted, guessed)
+            if tree is not None and isinstance(tree, Sym) and (dots == 0 or name in (*states, *costates)):
+                subject.letters.setdefault(dotted.name, dotted)
+                found[dotted.name] = tree
+    used = {tree.name for tree in found.values() if isinstance(tree, Sym)}
+    for letter in meanings.known:
+        tree = meanings.tree(letter, {})
+        if isinstance(tree, Sym) and tree.name not in used and tree.name in subject.derived.base | _rates(subject):
+            found.setdefault(letter.name, tree)
+    return found
+
+
+def _rates(subject: Subject) -> set[str]:
+    return {f"d_{name}" for name in (*subject.derived.states, *subject.derived.costates)} | {"H"}

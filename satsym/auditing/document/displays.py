@@ -1,0 +1,251 @@
+"""The displayed formulas of a document, each with its number, section and place; the document's own macros."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from satsym.auditing.latex.tokens import Macro, Unread, tokens
+from satsym.status import BadInput
+from satsym.wording import printable
+
+MAX_BYTES = 5_000_000
+"""Of a document with all that it includes."""
+MOST_DISPLAYS = 3000
+_MOST_FILES = 200
+_MARKDOWN = (".md", ".markdown", ".qmd", ".rmd", ".txt")
+_COMMENT = re.compile(r"(?<!\\)%[^\n]*")
+_VERBATIM = re.compile(r"\\begin\{(verbatim\*?|lstlisting|comment|minted)\}.*?\\end\{\1\}", re.DOTALL)
+_CODE = re.compile(r"^(```|~~~)(?!\s*math).*?^\1[^\n]*$|(?<!`)`[^`\n]+`(?!`)", re.DOTALL | re.MULTILINE)
+_INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
+_NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
+_DISPLAY = re.compile(
+    rf"\\begin\{{(?P<env>(?:{_NUMBERED})\*?|displaymath|math)\}}(?P<body>.*?)\\end\{{(?P=env)\}}"
+    r"|\\\[(?P<brackets>.*?)\\\]|(?<!\\)\$\$(?P<dollars>.*?)(?<!\\)\$\$|^```math[^\n]*\n(?P<fence>.*?)^```",
+    re.DOTALL | re.MULTILINE,
+)
+_SECTION = re.compile(
+    r"\\(chapter|section|subsection)(\*?)\s*\{([^{}\n]{0,200})|^(#{1,3}) +([^\n]{1,200})$", re.MULTILINE
+)
+_MACRO = re.compile(
+    r"\\(?:(?:re)?newcommand|providecommand|DeclareRobustCommand)\*?\s*\{?\\(?P<name>[A-Za-z]+)\}?\s*(?:\[(?P<count>[0-9])\])?"
+    r"\s*(?P<default>\[)?|\\def\s*\\(?P<def>[A-Za-z]+)(?P<args>(?:#[0-9])*)\s*(?=\{)"
+    r"|\\DeclareMathOperator\*?\s*\{\\(?P<operator>[A-Za-z]+)\}"
+)
+_LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
+_REFERENCE = re.compile(r"\\(?:eq|c|C|auto)?ref\s*\{([^{}\n]{1,100})\}")
+_UNNUMBERED = re.compile(r"\\(?:nonumber|notag)\b")
+_CONTINUES = re.compile(r"[\s&{}]*(?:[-+=]|\\(?:quad|qquad|times|cdot|equiv)\b)")
+_NEAR = 400
+"""Characters before a display in which what it refers to is looked for."""
+
+
+@dataclass(frozen=True)
+class Display:
+    """A displayed formula: its LaTeX, where it begins, its number or label, its section, and what it refers to."""
+
+    text: str
+    start: int
+    place: str
+    item: str
+    label: str
+    section: str
+    refers: tuple[str, ...]
+
+
+@dataclass
+class Source:
+    """A document with all that it includes."""
+
+    path: Path
+    text: str = ""
+    macros: dict[str, Macro] = field(default_factory=dict)
+    unread: list[tuple[str, str]] = field(default_factory=list)
+    """What could not be read: its place, and why."""
+    _starts: list[tuple[int, Path, int]] = field(default_factory=list)
+    """Where a piece of a file begins in the text: the place, the file, and the line in it."""
+
+    def place(self, at: int) -> str:
+        """The file and line of a character."""
+        start, path, line = self._starts[bisect_right(self._starts, at, key=lambda entry: entry[0]) - 1]
+        return f"{printable(str(path), 200)}:{line + self.text.count(chr(10), start, at)}"
+
+
+def read(path: Path) -> Source:
+    """Read a document and what it includes from its own folder.
+
+    Raises
+    ------
+    BadInput
+        If it is not text, too large, or a PDF.
+    """
+    source = Source(path)
+    _include(source, path, path.parent.resolve(), ())
+    _blank_out(source)
+    _enter_macros(source)
+    return source
+
+
+def displays(source: Source) -> Iterator[Display]:
+    """All displays, each equation of several lines by itself, in order."""
+    text = source.text
+    sections = list(_sections(text))
+    within = r"\numberwithin{equation}{section}" in text.replace(" ", "")
+    chapters = bool(re.search(r"\\documentclass[^{]*\{(?:report|book)\}", text))
+    counted, heading = 0, ""
+    seen: set[str] = set()
+    for found, match in enumerate(_DISPLAY.finditer(text)):
+        if found >= MOST_DISPLAYS:
+            raise BadInput(f"{source.place(match.start())}: more than {MOST_DISPLAYS} displays; split the document")
+        kind = match.lastgroup if match["env"] is None else "body"
+        body, start = match[kind or 0], match.start(kind or 0)
+        k = bisect_right(sections, match.start(), key=lambda entry: entry[0]) - 1
+        number, title = sections[k][1:] if k >= 0 else ("", "")
+        head = number.partition(".")[0] if within or chapters else ""
+        if head != heading:
+            counted, heading = 0, head
+        numbered = match["env"] is not None and not match["env"].endswith("*") and "math" not in match["env"][1:]
+        refers = tuple(_REFERENCE.findall(text, max(0, match.start() - _NEAR), match.start()))
+        for row_start, row in _equations(body, match["env"] or ""):
+            label = _LABEL.search(row)
+            tag = _TAG.search(row)
+            item = ""
+            if tag:
+                item = tag[1].strip("() ")
+            elif numbered and not _UNNUMBERED.search(row):
+                counted += 1
+                item = f"{head}.{counted}" if head else str(counted)
+            line = source.place(start + row_start + len(row) - len(row.lstrip()))
+            item = item or f"line {line.rpartition(':')[2]}"
+            while item in seen:
+                item += "'"
+            seen.add(item)
+            section = f"section {number} {title}".replace("  ", " ").strip() if title or number else ""
+            yield Display(row, start + row_start, line, item, label[1] if label else "", section, refers)
+
+
+def _include(source: Source, path: Path, home: Path, asking: tuple[Path, ...]) -> None:
+    content = _content(path)
+    if len(source.text) + len(content) > MAX_BYTES or len(source._starts) > 2 * _MOST_FILES:
+        raise BadInput(f"{printable(str(path), 200)}: more than {MAX_BYTES:,} bytes, or {_MOST_FILES} files; split it")
+    clean = _COMMENT.sub(lambda m: " " * len(m[0]), content) if path.suffix.lower() not in _MARKDOWN else content
+    position, line = 0, 1
+    for match in _INPUT.finditer(clean):
+        source._starts.append((len(source.text), path, line))
+        source.text += content[position : match.end()]
+        line += content.count("\n", position, match.end())
+        position = match.end()
+        wanted = match[1].strip()
+        other = home / (wanted if Path(wanted).suffix else f"{wanted}.tex")
+        try:
+            inside = other.resolve().is_relative_to(home) and other.is_file()
+        except (OSError, ValueError, RuntimeError):
+            inside = False
+        if not inside or other in asking or other == path:
+            why = f"\\input{{{printable(wanted)}}} is not in the folder of the document, or goes round in a circle"
+            source.unread.append((source.place(len(source.text) - 1), why))
+        else:
+            _include(source, other, home, (*asking, path))
+    source._starts.append((len(source.text), path, line))
+    source.text += content[position:]
+
+
+def _content(path: Path) -> str:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise BadInput(f"{printable(str(path), 200)}: more than {MAX_BYTES:,} bytes; split it")
+        raw = path.read_bytes()
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{printable(str(path), 200)}: cannot be read ({printable(str(error))})") from None
+    if raw.startswith(b"%PDF") or path.suffix.lower() == ".pdf":
+        raise BadInput(
+            f"{printable(str(path), 200)}: a PDF is not read; give the LaTeX or Markdown that it was made of"
+        )
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise BadInput(f"{printable(str(path), 200)}:{line}: not UTF-8 text; save it as UTF-8") from None
+
+
+def _blank_out(source: Source) -> None:
+    """Put spaces in the place of comments, and of what is printed as it stands."""
+    patterns = (_CODE,) if source.path.suffix.lower() in _MARKDOWN else (_VERBATIM, _COMMENT)
+    for pattern in patterns:
+        source.text = pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
+
+
+def _enter_macros(source: Source) -> None:
+    """Macros with arguments by number; what has an optional one stays unknown."""
+    for match in _MACRO.finditer(source.text):
+        name = match["name"] or match["def"] or match["operator"]
+        opening = source.text.find("{", match.end())
+        if match["default"] or opening < 0 or source.text[match.end() : opening].strip():
+            continue
+        closing = _closing(source.text, opening)
+        body = source.text[opening + 1 : closing]
+        if match["operator"]:
+            body = rf"\operatorname{{{body}}}"
+        count = int(match["count"] or len(match["args"] or "") // 2)
+        try:
+            source.macros[name] = Macro(count, tuple(tokens(body, None, opening + 1)))
+        except Unread as error:
+            source.unread.append((source.place(match.start()), f"the macro \\{name}: {error.message}"))
+        source.text = source.text[:opening] + " " * (closing + 1 - opening) + source.text[closing + 1 :]
+
+
+def _closing(text: str, opening: int) -> int:
+    """The brace that closes one; the end where none does."""
+    depth = 0
+    for match in re.finditer(r"\\.|[{}]", text[opening : opening + 20_000], re.DOTALL):
+        depth += {"{": 1, "}": -1}.get(match[0], 0)
+        if depth == 0:
+            return opening + match.start()
+    return min(len(text) - 1, opening + 20_000)
+
+
+def _sections(text: str) -> Iterator[tuple[int, str, str]]:
+    """Where sections begin, with number and title."""
+    numbers = [0, 0, 0]
+    for match in _SECTION.finditer(text):
+        level = ("chapter", "section", "subsection").index(match[1]) if match[1] else len(match[4]) - 1
+        if not match[2]:
+            numbers[level] += 1
+            numbers[level + 1 :] = [0] * (2 - level)
+        shown = [str(n) for n in numbers[: level + 1]]
+        while shown and shown[0] == "0":
+            shown = shown[1:]
+        yield match.start(), ".".join(shown), (match[3] or match[5] or "").strip()
+
+
+def _equations(body: str, environment: str) -> Iterator[tuple[int, str]]:
+    """The equations of a display, with where they begin: lines that go on with the one before belong to it."""
+    if environment.startswith(("alignat", "IEEEeqnarray")):
+        skipped = re.match(r"\s*\{[^{}]*\}", body)
+        begin = skipped.end() if skipped else 0
+    else:
+        begin = 0
+    single = environment.startswith(("equation", "multline", "dmath", "displaymath", "math")) or not environment
+    if single:
+        yield begin, body[begin:]
+        return
+    depth, start = 0, begin
+    rows: list[tuple[int, int]] = []
+    for match in re.finditer(r"\\\\(?:\[[^\]\n]{0,20}\])?|\\begin\b|\\end\b|\\.|[{}]", body[begin:], re.DOTALL):
+        word = match[0]
+        depth += (word in ("\\begin", "{")) - (word in ("\\end", "}"))
+        if word.startswith("\\\\") and depth == 0:
+            rows.append((start, begin + match.start()))
+            start = begin + match.end()
+    rows.append((start, len(body)))
+    kept = [(a, b) for a, b in rows if body[a:b].strip()]
+    joined: list[tuple[int, int]] = []
+    for a, b in kept:
+        if joined and _CONTINUES.match(body[a:b]):
+            joined[-1] = joined[-1][0], b
+        else:
+            joined.append((a, b))
+    yield from ((a, body[a:b]) for a, b in joined)

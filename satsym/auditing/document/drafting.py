@@ -1,0 +1,382 @@
+"""A ledger drafted from a document, for a person to confirm: a row for each equation, and what it is held against.
+
+A drafted row says ``draft = true``; who has confirmed it takes that line out. Reading again redoes drafts alone.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from satsym.auditing.check import remedies
+from satsym.auditing.check.answer import Subject
+from satsym.auditing.check.derived import Derived, vanishes
+from satsym.auditing.check.meanings import Meanings, given_letters
+from satsym.auditing.check.told import Answer
+from satsym.auditing.document import displays
+from satsym.auditing.document.displays import Display, Source
+from satsym.auditing.latex.cursor import Reading
+from satsym.auditing.latex.grammar import CONSTANT, read
+from satsym.auditing.latex.letters import Letter, of_word
+from satsym.auditing.latex.tokens import Unread, tokens
+from satsym.formula import reading as safe
+from satsym.formula.calculus import derivative, difference
+from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Sym, Text, substituted, symbols
+from satsym.formula.writing import written
+from satsym.records import shelf
+from satsym.status import BadInput
+
+SUFFIX = ".ledger.toml"
+_BLOCK = re.compile(r"^\[\[row\]\]\s*$", re.MULTILINE)
+
+
+@dataclass
+class Draft:
+    """What reading a document found: the text of the ledger, its rows, and what could not be read."""
+
+    text: str
+    rows: list[dict[str, Any]]
+    kept: int
+    unread: list[tuple[str, str]]
+    undecided: list[tuple[str, str]]
+
+
+@dataclass
+class _Entry:
+    """An equation of a display, understood."""
+
+    display: Display
+    statement: Node | Equality
+    subject: Subject
+    part: str
+    answer: Answer
+    table: dict[str, Any] = field(default_factory=dict)
+    letters: dict[str, str] = field(default_factory=dict)
+
+
+def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> Draft:
+    """Draft a ledger.
+
+    Parameters
+    ----------
+    path
+        The document.
+    model
+        ``"NAME"``, or ``"DIR/NAME"`` as seen from the ledger; that of the ledger before where it is empty.
+    before
+        The text of the ledger as it is now, whose confirmed rows and notation are kept.
+    let
+        What letters mean.
+
+    Raises
+    ------
+    BadInput
+        If the document cannot be read, or there is no such model.
+    """
+    old = _parsed(before)
+    model = model or str(old.get("document", {}).get("model", ""))
+    if not model:
+        raise BadInput(f"{path}: which model is it about? give --model NAME, or DIR/NAME")
+    source = displays.read(path)
+    place, name = shelf.place_of(model, path.parent)
+    with shelf.opened(place):
+        derived = Derived(shelf.find(name))
+        meanings = Meanings(derived)
+        given = {**_scope_letters(old, derived), **given_letters(let, derived)}
+        readings = list(_readings(source))
+        given = {**_voted(readings, derived, meanings, given), **given}
+        entries = list(_entries(readings, derived, meanings, given, source))
+        _propose_origins(entries, derived)
+    return _written(path, model, before, old, entries, source)
+
+
+def text_before(ledger: Path) -> str:
+    """The text of a ledger, if it is there.
+
+    Raises
+    ------
+    BadInput
+        If it is no text.
+    """
+    if not ledger.is_file():
+        return ""
+    try:
+        return ledger.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        raise BadInput(f"{ledger}: is there, and no text; give another --out") from None
+
+
+def as_object(ledger: Path, found: Draft) -> dict[str, Any]:
+    """What JSON has of it."""
+    lists = {"unread": found.unread, "undecided": found.undecided}
+    told = {name: [{"place": place, "reason": why} for place, why in entries] for name, entries in lists.items()}
+    return {"ledger": str(ledger), "rows": found.rows, "kept": found.kept, **told}
+
+
+def _readings(source: Source) -> Iterator[tuple[Display, Reading]]:
+    for display in displays.displays(source):
+        try:
+            found = tokens(display.text, source.macros, display.start)
+            yield display, read(found, display.text, display.start)
+        except Unread as error:
+            source.unread.append((source.place(min(error.at, len(source.text) - 1)), error.message))
+
+
+def _voted(
+    readings: Sequence[tuple[Display, Reading]], derived: Derived, meanings: Meanings, given: Mapping[Letter, str]
+) -> dict[Letter, str]:
+    """What letters mean that the model does not have: as most of their equations have it, right ones before others."""
+    votes: dict[Letter, Counter[str]] = {}
+    for _, reading in readings:
+        if not meanings.unknown(list(reading.letters.values()), given):
+            continue
+        subject = Subject(derived, meanings, reading, given, False, True)
+        for statement in reading.statements:
+            answer = subject.answer(statement)
+            fit = answer.fit
+            weight = {"right": 5, "wrong": 1, "undecided": 0}[answer.verdict]
+            for letter, name in fit.guess.meaning.items() if fit else ():
+                votes.setdefault(letter, Counter())[name] += weight
+    return {letter: counted.most_common(1)[0][0] for letter, counted in votes.items() if counted.total()}
+
+
+def _entries(
+    readings: Sequence[tuple[Display, Reading]],
+    derived: Derived,
+    meanings: Meanings,
+    given: Mapping[Letter, str],
+    source: Source,
+) -> Iterator[_Entry]:
+    for display, reading in readings:
+        subject = Subject(derived, meanings, reading, given, False, True)
+        for k, statement in enumerate(reading.statements):
+            part = chr(ord("a") + k) if len(reading.statements) > 1 and k < 26 else ""
+            entry = _Entry(display, statement, subject, part, subject.answer(statement))
+            try:
+                _fill(entry)
+            except BadInput as error:
+                entry.answer, entry.table = subject.told(statement, "undecided", str(error)), {}
+            yield entry
+
+
+def _fill(entry: _Entry) -> None:
+    """The keys of the row, and the letters that it needs in the notation."""
+    display, subject, fit = entry.display, entry.subject, entry.answer.fit
+    entry.table = {"item": display.item, **({"part": entry.part} if entry.part else {})}
+    entry.table |= {"kind": "equation", "where": ", ".join(filter(None, (display.section, display.place)))}
+    if isinstance(entry.statement, Grid) or entry.answer.diagnosis.startswith("entry"):
+        _fill_matrix(entry)
+        return
+    named, derivatives = remedies.with_names(entry.statement, subject)
+    if fit is None or not entry.answer.address:
+        entry.table |= {"original": display.text.strip(), "printed": written(named)}
+        return
+    names = {name: _called(tree, k) for k, (name, tree) in enumerate(derivatives.items(), start=1)}
+    meant = subject.meant(named, derivatives, fit.guess)
+    if isinstance(named, Equality) and named.rhs == Sym(CONSTANT):
+        raise BadInput("what is said to be constant is a claim; state it as one")
+    rate_of = subject.derived.kinematic.get(entry.answer.address)
+    for name, tree in meant.items():
+        letter = subject.reading.letters.get(name)
+        if name in derivatives:
+            text = _derivative(derivatives[name], subject) or written(tree)
+        elif rate_of and letter and letter.dots == 1 and isinstance(tree, Sym):
+            text = f"d_{rate_of}"  # else the row would say nothing
+        else:
+            text = written(tree)
+        entry.letters[names.get(name, name)] = text
+    renamed: dict[str, Node] = {name: Sym(new) for name, new in names.items()}
+    shown = (
+        Equality(substituted(named.lhs, renamed), substituted(named.rhs, renamed))
+        if isinstance(named, Equality)
+        else substituted(named, renamed)
+    )
+    entry.table["printed"] = written(shown)
+    safe.statement(entry.table["printed"])  # what the ledger could not read is told now
+    controls = ", ".join(f"{name}=0" for name in subject.derived.controls)
+    address = entry.answer.address
+    entry.table["holds"] = f"subs('{address}', {controls})" if fit.free else address
+
+
+def _fill_matrix(entry: _Entry) -> None:
+    side = entry.statement.rhs if isinstance(entry.statement, Equality) else entry.statement
+    rows = side.entries if isinstance(side, Grid) else ()
+    if not rows or not entry.answer.address or entry.answer.fit is None:
+        raise BadInput(entry.answer.diagnosis or "no matrix of the model comes near it")
+    lines = [[written(cell) for cell in row.entries] if isinstance(row, Grid) else [written(row)] for row in rows]
+    entry.table |= {"kind": "matrix", "printed": lines, "holds": entry.answer.address}
+    for name, tree in entry.subject.meant(side, {}, entry.answer.fit.guess).items():
+        entry.letters[name] = written(tree)
+
+
+def _derivative(tree: Node, subject: Subject) -> str:
+    """A partial derivative of something that has an address, as a ledger has it; else empty."""
+    if not isinstance(tree, Call) or tree.function != "diff" or not all(isinstance(a, Sym) for a in tree.arguments):
+        return ""
+    readings, meaning = subject.reading.letters, subject.given
+    letters = [readings[part.name] for part in tree.arguments if isinstance(part, Sym) and part.name in readings]
+    of, by = [subject.meanings.tree(letter, meaning) for letter in letters] if len(letters) == 2 else (None, None)
+    target = next((t for t in subject.derived.targets if t.equation.lhs == of), None)
+    return f"diff(at('{target.address}'), {by.name})" if target and isinstance(by, Sym) else ""
+
+
+def _called(tree: Node, k: int) -> str:
+    """A name for a derivative that is one letter in the row, such as dH_dr."""
+    parts = [tree]
+    while isinstance(parts[-1], Call):
+        parts.append(parts[-1].arguments[0])
+    of = parts[-1].name if isinstance(parts[-1], Sym) else ""
+    by = tree.arguments[1] if isinstance(tree, Call) and tree.function == "diff" else None
+    name = f"d{of}_d{by.name}" if of and isinstance(by, Sym) else f"derivative{k}"
+    return name if safe.NAME.match(name) else f"derivative{k}"
+
+
+def _propose_origins(entries: Sequence[_Entry], derived: Derived) -> None:
+    """How a row follows from one that is referred to just before it, where a derivative, or the row itself, does it."""
+    by_label = {entry.display.label: entry for entry in entries if entry.display.label and entry.table.get("holds")}
+    for entry in entries:
+        if not entry.table.get("holds") or entry.table["kind"] != "equation":
+            continue
+        for label in entry.display.refers:
+            other = by_label.get(label)
+            if other is None or other is entry:
+                continue
+            found = _origin(entry, other, derived)
+            if found:
+                entry.table["from"] = found
+                break
+
+
+def _origin(entry: _Entry, other: _Entry, derived: Derived) -> str:
+    mine, theirs = _ours(entry), _ours(other)
+    if not isinstance(mine, Equality) or not isinstance(theirs, Equality):
+        return ""
+    row: Node = Call("row", tuple(map(Text, filter(None, (other.display.item, other.part)))))
+    meant = {name: safe.expression(text) for name, text in entry.letters.items()}
+    letters = {name: tree.name for name, tree in meant.items() if isinstance(tree, Sym)}
+    tries: list[tuple[Node, Node]] = [(row, theirs.rhs)]
+    for name, ours in letters.items():
+        if ours in symbols(theirs.rhs):
+            try:
+                slope = derivative(theirs.rhs, ours)
+            except BadInput:
+                continue
+            tries += [(Call("diff", (row, Sym(name))), slope), (Neg(Call("diff", (row, Sym(name)))), Neg(slope))]
+    for tree, value in tries:
+        if vanishes(difference(mine.rhs, value), derived):
+            return written(tree)
+    return ""
+
+
+def _ours(entry: _Entry) -> Node | Equality | None:
+    try:
+        tree = safe.statement(str(entry.table["printed"]))
+        values = {name: safe.expression(text) for name, text in entry.letters.items()}
+    except BadInput:
+        return None
+    if isinstance(tree, Equality):
+        return Equality(substituted(tree.lhs, values), substituted(tree.rhs, values))
+    return substituted(tree, values)
+
+
+def _parsed(before: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(before)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise BadInput(f"the ledger that is there cannot be read ({error}); mend it, or give another --out") from None
+
+
+def _scope_letters(old: Mapping[str, Any], derived: Derived) -> dict[Letter, str]:
+    """What the notation of the ledger before says letters mean."""
+    scope = old.get("scope", {}).get("main", {})
+    found = {}
+    for name, meaning in scope.items() if isinstance(scope, dict) else ():
+        if isinstance(meaning, str) and meaning in derived.record.names and not (letter := of_word(name)).dots:
+            found[letter] = meaning
+    return found
+
+
+def _written(
+    path: Path, model: str, before: str, old: Mapping[str, Any], entries: Sequence[_Entry], source: Source
+) -> Draft:
+    confirmed = {
+        (str(row.get("item")), str(row.get("part", ""))): block
+        for row, block in _blocks(before)
+        if not row.get("draft")
+    }
+    letters: dict[str, str] = {}
+    rates: dict[str, str] = {}
+    blocks, rows, undecided, used = [], [], [], set()
+    for entry in entries:
+        key = entry.display.item, entry.part
+        if key in confirmed:
+            blocks.append(confirmed[key])
+            used.add(key)
+            continue
+        for name, meaning in entry.letters.items():
+            if letters.setdefault(name, meaning) != meaning:
+                rates[name] = meaning
+                entry.table["scope"] = "rates"
+        blocks.append(_block(entry))
+        rows.append({**entry.table, "verdict": entry.answer.verdict})
+        if not entry.table.get("holds"):
+            undecided.append((entry.display.place, entry.answer.diagnosis or "it says nothing of the model"))
+    blocks += [block for key, block in confirmed.items() if key not in used]
+    head = _head(path, model, before, old, letters) + _other_scope(rates, old)
+    return Draft("\n".join([head, *blocks]), rows, len(confirmed), source.unread, undecided)
+
+
+def _blocks(before: str) -> Iterator[tuple[dict[str, Any], str]]:
+    starts = [match.start() for match in _BLOCK.finditer(before)]
+    for start, end in pairwise([*starts, len(before)]):
+        block = before[start:end].rstrip() + "\n"
+        kept = "\n".join(line for line in block.splitlines() if not line.startswith("#")).rstrip() + "\n"
+        yield tomllib.loads(block)["row"][0], kept
+
+
+def _head(path: Path, model: str, before: str, old: Mapping[str, Any], letters: Mapping[str, str]) -> str:
+    if before and (start := _BLOCK.search(before)):
+        head = before[: start.start()].rstrip("\n") + "\n"
+        known = old.get("scope", {}).get("main", {})
+        new = "".join(f"{name} = {_toml(meaning)}\n" for name, meaning in letters.items() if name not in known)
+        return re.sub(r"^\[scope\.main\].*\n", lambda m: f"{m[0]}{new}", head, count=1, flags=re.MULTILINE)
+    key = re.sub(r"[^A-Za-z0-9]+", "_", path.stem).strip("_") or "document"
+    key = key if key[0].isalpha() else f"document_{key}"
+    lines = [
+        f"# What {path.name} prints, drafted by satsym read; nothing here is a verdict.",
+        "# A row is confirmed by taking out its line `draft = true`; reading again keeps confirmed rows.",
+        "format = 1\n\n[document]",
+        f"key = {_toml(key[:40])}",
+        f"title = {_toml(path.stem)}",
+        f"model = {_toml(model)}\n\n[scope.main]",
+    ]
+    lines += [f"{name} = {_toml(meaning)}" for name, meaning in letters.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _other_scope(letters: Mapping[str, str], old: Mapping[str, Any]) -> str:
+    """The notation of rows in which a letter means something else than in most."""
+    known = old.get("scope", {}).get("rates", {})
+    lines = [f"{name} = {_toml(meaning)}" for name, meaning in letters.items() if name not in known]
+    return "\n".join(["\n[scope.rates]", 'extends = "main"', *lines]) + "\n" if lines and not known else ""
+
+
+def _block(entry: _Entry) -> str:
+    """A row; one that is not understood stands in a remark, to be completed by hand."""
+    shown = " ".join(entry.display.text.split())[:300]
+    lines = [f"{key} = {_toml(value)}" for key, value in entry.table.items() if key != "original"]
+    if entry.table.get("holds"):
+        return "\n".join(["[[row]]", "draft = true", *lines, f"original = {_toml(shown)}"]) + "\n"
+    why = entry.answer.diagnosis or "it says nothing of the model"
+    return "\n".join([f"# {shown}", f"# not understood: {why}; complete it", *(f"# {line}" for line in lines)]) + "\n"
+
+
+def _toml(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,141 @@
+"""Going through the tokens of one side of an equation."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+from satsym.auditing.latex.letters import Letter
+from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.words import ACCENTS, MARKS, REFUSED, RELATIONS, STYLES, UPRIGHT
+from satsym.formula.tree import Equality, Node
+from satsym.wording import printable
+
+
+@dataclass
+class Reading:
+    """What was read: equations and expressions, and how each name is printed."""
+
+    statements: list[Node | Equality]
+    letters: dict[str, Letter] = field(default_factory=dict)
+    """Name -> the letter that it stands for."""
+    constants: bool = False
+    """Whether something is said to be constant."""
+
+
+class Cursor(ABC):
+    """The tokens of one side of an equation, and the place up to which they are read.
+
+    Parameters
+    ----------
+    found
+        The tokens.
+    reading
+        Where the letters are entered.
+    start
+        The place of the first character of the formula.
+    plain
+        Whether names have several letters.
+    """
+
+    def __init__(self, found: Sequence[Token], reading: Reading, start: int, plain: bool, depth: int = 0) -> None:
+        self._found, self._reading, self._start, self._plain, self._depth = found, reading, start, plain, depth
+        self._i = 0
+
+    def _of(self, part: Sequence[Token]) -> Self:
+        """The same for a part."""
+        return type(self)(part, self._reading, self._start, self._plain, self._depth + 1)
+
+    @abstractmethod
+    def _inner(self, part: Sequence[Token], at: int) -> Node:
+        """What a part is, read as a whole."""
+
+    def _peek(self, ahead: int = 0) -> Token | None:
+        place = self._i + ahead
+        return self._found[place] if place < len(self._found) else None
+
+    def _is(self, text: str, ahead: int = 0, kind: str = "sign") -> bool:
+        token = self._peek(ahead)
+        return token is not None and token.kind == kind and token.text == text
+
+    def _take(self) -> Token:
+        token = self._peek()
+        if token is None:
+            last = self._found[-1] if self._found else None
+            raise Unread("the formula breaks off", (last.at + len(last.text)) if last else self._start)
+        self._i += 1
+        return token
+
+    def _refuse(self) -> None:
+        token = self._take()
+        if token.kind == "macro" and token.text in REFUSED:
+            raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not read", token.at)
+        if token.text in RELATIONS:
+            raise Unread("a relation other than an equality is not read", token.at)
+        sign = "\\" if token.kind == "macro" else ""
+        raise Unread(f'"{sign}{printable(token.text)}" is not read here', token.at)
+
+    def _script(self) -> list[Token]:
+        """What stands behind ``^`` or ``_``."""
+        if self._plain:
+            begin = self._i
+            if self._is("-") or self._is("+"):
+                self._i += 1
+            if self._is("("):
+                self._bracket_end()
+            else:
+                self._take()
+            return list(self._found[begin : self._i])
+        token = self._take()
+        if token.kind == "open":
+            end = group_end(self._found, self._i - 1)
+            inside = list(self._found[self._i : end - 1])
+            self._i = end
+            return inside
+        if token.kind == "number" and len(token.text) > 1 and not self._plain:
+            rest = Token("number", token.text[1:], token.at + 1)
+            self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
+            return [Token("number", token.text[0], token.at)]
+        if token.kind == "macro" and (token.text in STYLES or token.text in UPRIGHT or token.text in ACCENTS):
+            return [token, *self._group()]
+        if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
+            return [token, *self._group(True), *self._group(True)]
+        return [token]
+
+    def _group(self, braces: bool = False) -> list[Token]:
+        """The argument of a macro: a group, or a single token."""
+        token = self._take()
+        if token.kind != "open":
+            if token.kind == "number" and len(token.text) > 1 and "." not in token.text:
+                rest = Token("number", token.text[1:], token.at + 1)
+                self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
+                token = Token("number", token.text[0], token.at)
+            if token.kind == "macro" and (token.text in ACCENTS or token.text in STYLES or token.text in MARKS):
+                inner = [token, *self._group(True)]
+            else:
+                inner = [token]
+            return [Token("open", "{", token.at), *inner, Token("close", "}", token.at)] if braces else inner
+        begin, end = self._i - 1, group_end(self._found, self._i - 1)
+        self._i = end
+        return list(self._found[begin:end] if braces else self._found[begin + 1 : end - 1])
+
+    def _peek_group(self) -> list[Token]:
+        if self._peek(1) is None or self._found[self._i + 1].kind != "open":
+            return list(self._found[self._i + 1 : self._i + 2])
+        return list(self._found[self._i + 2 : group_end(self._found, self._i + 1) - 1])
+
+    def _bracket_end(self) -> int:
+        """Go behind the bracket that closes the one that is next; its place."""
+        opening, depth = self._take(), 1
+        groups = 0
+        while depth:
+            token = self._peek()
+            if token is None:
+                raise Unread("a bracket is not closed", opening.at)
+            groups += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
+            if groups == 0 and token.kind == "sign":
+                depth += (token.text in "([") - (token.text in ")]")
+            self._i += 1
+        return self._i - 1

@@ -1,0 +1,398 @@
+r"""The closed grammar of printed formulas: tokens -> trees. What is not in it is refused, with its place.
+
+A product may be written without a sign; what a function is taken of may stand without brackets (``\sin 2\theta``); a
+letter may be a function of time (``x(t)``); derivatives are printed as dots, quotients or partial quotients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+from satsym.auditing.latex import words
+from satsym.auditing.latex.cursor import Reading
+from satsym.auditing.latex.letters import GREEK, of_word
+from satsym.auditing.latex.quotients import QuotientCursor
+from satsym.auditing.latex.rows import lines, split, without_remarks
+from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.words import ACCENTS, ATOMS, FREQUENCIES, FUNCTIONS, KEPT_GROUPS, MARKS, MATRICES
+from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.wording import printable
+
+CONSTANT = "constant"
+"""What is equated with this does not change in time."""
+
+
+def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False) -> Reading:
+    """Read the equations and expressions of a formula.
+
+    Parameters
+    ----------
+    found
+        Its tokens.
+    text, start
+        What they were made of, and the place of its first character: how letters are printed is taken from there.
+    plain
+        Whether names have several letters.
+
+    Raises
+    ------
+    Unread
+        At the first thing that is not in the grammar.
+    """
+    reading = Reading([])
+    for line in lines(without_remarks(found)):
+        sides = [Parser(part, reading, start, plain).whole() for part in line]
+        if len(sides) == 1:
+            reading.statements.append(sides[0])
+        reading.statements += [Equality(one, other) for one, other in pairwise(sides)]
+    if not reading.statements:
+        raise Unread("no formula", start)
+    return reading
+
+
+class Parser(QuotientCursor):
+    """Reads one side of an equation."""
+
+    def whole(self) -> Node:
+        """The whole side."""
+        if not self._found:
+            raise Unread("one side of an equality is empty", self._start)
+        tree = self._sum()
+        if self._i < len(self._found):
+            self._refuse()
+        return tree
+
+    def _sum(self) -> Node:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise Unread(
+                f"brackets are nested more than {MAX_DEPTH} deep", self._found[min(self._i, len(self._found) - 1)].at
+            )
+        terms: list[Node] = []
+        while True:
+            negative = False
+            while self._is("+") or self._is("-"):
+                negative ^= self._take().text == "-"
+            term = self._product()
+            terms.append(Neg(term) if negative else term)
+            if not (self._is("+") or self._is("-")):
+                break
+        self._depth -= 1
+        return terms[0] if len(terms) == 1 else Add(tuple(terms))
+
+    def _product(self, argument: bool = False) -> Node:
+        """A term; of a function without brackets, what it is taken of."""
+        result = self._signed_factor()
+        chain: list[Node] = [result]
+        while True:
+            token = self._peek()
+            if token is None:
+                break
+            if (token.kind == "sign" and token.text == "*") or (token.kind == "macro" and token.text in words.TIMES):
+                if argument:
+                    break
+                self._i += 1
+                chain.append(self._signed_factor())
+            elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
+                if argument and not self._plain:
+                    break
+                self._i += 1
+                chain = [Div(_times(chain), self._signed_factor())]
+            elif argument and not self._continues_argument(token, chain[-1]):
+                break
+            elif self._begins_factor(token):
+                chain.append(self._factor())
+            else:
+                break
+        return _times(chain)
+
+    def _continues_argument(self, token: Token, last: Node) -> bool:
+        r"""Whether what a function is taken of goes on: ``2\theta``, ``\omega t``, ``kx``; not ``\theta v``."""
+        if token.kind not in ("letter", "word", "macro") or (token.kind == "macro" and token.text not in GREEK):
+            return isinstance(last, Num) and token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS)
+        if self._is_function(token) or (token.text == "e" and self._is("^", 1)):
+            return False
+        if isinstance(last, Num):
+            return True
+        stem = self._reading.letters[last.name].base if isinstance(last, Sym) and last.name != "pi" else ""
+        return (
+            token.text in words.TIMES_OF_ANGLES
+            or (stem in FREQUENCIES and token.text in words.PLACES)
+            or last == Sym("pi")
+        )
+
+    def _is_function(self, token: Token) -> bool:
+        return token.kind in ("macro", "word") and token.text in FUNCTIONS and token.text != "d"
+
+    def _signed_factor(self) -> Node:
+        if self._is("-") or self._is("+"):
+            negative = self._take().text == "-"
+            inner = self._factor()
+            return Neg(inner) if negative else inner
+        return self._factor()
+
+    def _begins_factor(self, token: Token) -> bool:
+        if token.kind in ("letter", "number", "word", "open", "begin"):
+            return True
+        if token.kind == "sign":
+            return token.text in "([" or (token.text == "|")
+        if token.kind != "macro":
+            return False
+        if token.text in ("lvert", "lVert") or (token.text in ("|", "Vert", "vert")):
+            return True
+        known = (GREEK, FUNCTIONS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS)
+        return any(token.text in names for names in known) or token.text in ATOMS
+
+    def _factor(self) -> Node:
+        """One factor with its powers."""
+        token = self._peek()
+        if token is None:
+            self._take()
+        assert token is not None
+        found = self._derivative(token)
+        base = found if found is not None else self._atom()
+        return self._powers(base)
+
+    def _powers(self, base: Node) -> Node:
+        while True:
+            if self._is("^"):
+                at = self._take().at
+                base = self._raised(base, self._script(), at)
+            elif self._is("'") and not isinstance(base, Num):
+                raise Unread("a prime has no meaning here", self._take().at)
+            elif self._is("!"):
+                raise Unread("a factorial is not read", self._take().at)
+            else:
+                return base
+
+    def _raised(self, base: Node, script: list[Token], at: int) -> Node:
+        if script and script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf"):
+            return Call("transpose", (base,))
+        exponent = self._inner(script, at)
+        value = constant(exponent)
+        if isinstance(base, Sym) and base.name == "e" and not self._plain:
+            return Call("exp", (exponent,))
+        if value is None:
+            raise Unread("an exponent that is no number is not read", at)
+        if abs(value) > MAX_EXPONENT:
+            raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
+        return Pow(base, exponent)
+
+    def _inner(self, part: Sequence[Token], at: int) -> Node:
+        if not part:
+            raise Unread("nothing stands here", at)
+        return self._of(part).whole()
+
+    def _atom(self) -> Node:
+        token = self._take()
+        if token.kind == "number":
+            return Num(Fraction(token.text))
+        if token.kind == "open":
+            self._i -= 1
+            at = token.at
+            inner = self._group()
+            if not inner:
+                return self._factor()
+            if letter := self._letter_in(inner):
+                return self._symbol(letter, at)
+            return self._inner(inner, at)
+        if token.kind == "sign" and token.text in "([":
+            self._i -= 1
+            return self._bracket()
+        if token.kind == "begin":
+            return self._environment(token)
+        if (token.kind == "sign" and token.text == "|") or (
+            token.kind == "macro" and token.text in ("lvert", "lVert", "|", "vert", "Vert")
+        ):
+            return self._size(token)
+        if token.kind == "word":
+            return self._word(token)
+        if token.kind == "macro":
+            return self._macro(token)
+        if token.kind == "letter":
+            self._i -= 1
+            letter = self._letter()
+            assert letter is not None
+            return self._symbol(letter, token.at)
+        self._i -= 1
+        self._refuse()
+        raise AssertionError
+
+    def _macro(self, token: Token) -> Node:
+        name = token.text
+        if name in words.ROOTS:
+            return self._root()
+        if name in ("frac", "tfrac", "dfrac", "cfrac"):
+            above, below = self._group(), self._group()
+            return Div(self._inner(above, token.at), self._inner(below, token.at))
+        if name in KEPT_GROUPS:
+            inner = self._inner(self._group(), token.at)
+            if self._is("_"):
+                self._i += 1
+                self._script()
+            return inner
+        if name in ("{", "}", "lbrace", "rbrace", "langle", "rangle", "lbrack", "rbrack"):
+            if name in ("{", "lbrace", "lbrack"):
+                return self._braces(token)
+            raise Unread(f'"\\{name}" is not read here', token.at)
+        if name in FUNCTIONS:
+            return self._function(FUNCTIONS[name], token)
+        if name in words.UPRIGHT:
+            self._i -= 1
+            group = self._peek_group()
+            word = "".join(t.text for t in group)
+            if word in FUNCTIONS and len(word) > 1:
+                self._i += 1
+                self._group()
+                return self._function(FUNCTIONS[word], token)
+            if word.strip(". ") in ("const", "constant", "konstan", "konst", "tetap"):
+                self._i += 1
+                self._group()
+                if self._is("."):
+                    self._i += 1
+                self._reading.constants = True
+                return Sym(CONSTANT)
+        else:
+            self._i -= 1
+        letter = self._letter()
+        if letter is None:
+            self._refuse()
+        assert letter is not None
+        return self._symbol(letter, token.at)
+
+    def _root(self) -> Node:
+        degree: Node | None = None
+        if self._is("["):
+            at = self._take().at
+            inside = []
+            while not self._is("]"):
+                inside.append(self._take())
+            self._i += 1
+            degree = self._inner(inside, at)
+        radicand = self._inner(self._group(), self._found[self._i - 1].at)
+        value = constant(degree) if degree is not None else None
+        if degree is None or value == 2:
+            return Call("sqrt", (radicand,))
+        if value is None or value.denominator != 1 or not 1 < value <= 12:
+            raise Unread("a root of this degree is not read", self._found[self._i - 1].at)
+        return Pow(radicand, Div(Num(Fraction(1)), Num(value)))
+
+    def _function(self, name: str, token: Token) -> Node:
+        power: Node | None = None
+        if self._is("^") and not self._plain:
+            at = self._take().at
+            script = self._script()
+            power = self._inner(script, at)
+            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh"):
+                if name in ("sinh", "cosh"):
+                    raise Unread("an inverse hyperbolic function is not read", at)
+                name, power = f"a{name}", None
+        if self._is("_") and name in ("log", "min", "max"):
+            raise Unread(f"an index of {name} is not read", self._take().at)
+        if self._is("(") or self._is("["):
+            arguments = self._arguments()
+        elif self._is("{", kind="open") or self._peek() is None:
+            arguments = [self._inner(self._group(), token.at)]
+        elif self._is("{", kind="macro"):
+            arguments = [self._factor()]
+        else:
+            arguments = [self._product(argument=True)]
+        if name == "d":
+            return self._along(arguments[0])
+        if name == "exp" and len(arguments) == 1 and power is None:
+            return Call("exp", (arguments[0],))
+        wanted = {"min": 2, "max": 2, "atan2": 2, "diff": 2}.get(name, 1)
+        if len(arguments) != wanted:
+            raise Unread(f"{name} of {len(arguments)} things is not read", token.at)
+        found = Call(name, tuple(arguments))
+        return found if power is None else Pow(found, power)
+
+    def _arguments(self) -> list[Node]:
+        begin = self._i + 1
+        end = self._bracket_end()
+        parts = split(self._found[begin:end], lambda token: token.kind == "sign" and token.text == ",")
+        return [self._inner(part, self._found[begin - 1].at) for part in parts]
+
+    def _bracket(self) -> Node:
+        at = self._found[self._i].at
+        arguments = self._arguments()
+        if len(arguments) > 1:
+            return Grid(tuple(arguments))
+        if not arguments:
+            raise Unread("an empty bracket", at)
+        return arguments[0]
+
+    def _braces(self, token: Token) -> Node:
+        """What stands in printed braces."""
+        begin, depth = self._i, 1
+        while depth:
+            inside = self._take()
+            depth += (inside.text in ("{", "lbrace", "lbrack") and inside.kind == "macro") - (
+                inside.text in ("}", "rbrace", "rbrack") and inside.kind == "macro"
+            )
+        return self._inner(self._found[begin : self._i - 1], token.at)
+
+    def _size(self, token: Token) -> Node:
+        """Between bars: the size of a number, or of a vector."""
+        closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
+        begin, groups = self._i, 0
+        while True:
+            inside = self._take()
+            groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
+            if groups == 0 and inside.text == closing and inside.kind == token.kind:
+                break
+        inner = self._inner(self._found[begin : self._i - 1], token.at)
+        if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
+            return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
+        return Call("abs" if token.text in ("|", "lvert", "vert") and token.kind != "macro" else "norm", (inner,))
+
+    def _environment(self, token: Token) -> Node:
+        if token.text not in MATRICES:
+            raise Unread(f"the environment {printable(token.text)} is not read here", token.at)
+        if token.text == "array" and self._is("{", kind="open"):
+            self._group()
+        begin, depth = self._i, 1
+        while depth:
+            inside = self._take()
+            depth += (inside.kind == "begin") - (inside.kind == "end")
+        body = self._found[begin : self._i - 1]
+        rows = [r for r in split(body, lambda t: t.kind == "macro" and t.text in ("\\", "cr")) if r]
+        entries = []
+        for row in rows:
+            cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
+            entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
+        if not entries or len({len(entry.entries) for entry in entries}) > 1:
+            raise Unread("the rows of a matrix differ in length", token.at)
+        if token.text == "vmatrix":
+            return Call("det", (Grid(tuple(entries)),))
+        return Grid(tuple(entries))
+
+    def _word(self, token: Token) -> Node:
+        """A name in plain notation, or a function."""
+        text = token.text
+        if text in FUNCTIONS and self._is("("):
+            return self._function(FUNCTIONS[text], token)
+        if text in words.NUMBERED_FUNCTIONS:
+            return self._function(FUNCTIONS[text], token)
+        letter = of_word(text)
+        while self._is("'"):
+            self._i += 1
+            dotted = letter.dotted()
+            if dotted is None:
+                raise Unread("too many primes", token.at)
+            letter = dotted
+        self._timed()
+        return self._symbol(letter, token.at)
+
+
+def _times(factors: Sequence[Node]) -> Node:
+    """A product, written as it is; a sign in front of the first factor is one of the product."""
+    if len(factors) == 1:
+        return factors[0]
+    if isinstance(factors[0], Neg):
+        return Neg(_times([factors[0].operand, *factors[1:]]))
+    return Mul(tuple(factors))

@@ -1,0 +1,124 @@
+"""Printed letters with what they wear: index, dots, hat, star. Each has a name of the safe language."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+
+from satsym.formula.reading import MAX_NAME, NAME
+
+_DOTS = ("", "dot", "ddot", "dddot", "ddddot")
+_ACCENTS = frozenset(("hat", "bar", "tilde", "check", "breve"))
+_RAISED = {"star": "*", "prime": r"{\prime}", "plus": "+", "minus": "-", "max": r"{\max}", "min": r"{\min}"}
+GREEK = frozenset(
+    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho varrho sigma "
+    "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell hbar "
+    "imath jmath".split()
+)
+"""Letters that are macros."""
+
+
+@dataclass(frozen=True)
+class Letter:
+    """A letter as it is printed.
+
+    ``base`` is the letter itself (``x``, ``omega``, ``varphi``); ``style`` says ``cal`` or ``vector`` where it is set
+    so; ``index`` is its foot, ``marks`` what it wears otherwise (``hat``, ``star``, ``max``), ``dots`` how often it is
+    differentiated by time, ``before`` a variation sign in front.
+    """
+
+    base: str
+    style: str = ""
+    index: str = ""
+    dots: int = 0
+    marks: tuple[str, ...] = ()
+    before: str = ""
+    foot: str = field(default="", compare=False)
+    """The index in LaTeX."""
+
+    @property
+    def name(self) -> str:
+        """A name of the safe language; the same for letters that look the same."""
+        stem = self.base
+        if self.index:
+            stem += self.index if self.index[0].isdigit() and "_" not in stem and len(stem) == 1 else f"_{self.index}"
+        name = "_".join(filter(None, [self.before, stem, self.style, *self.marks]))
+        if self.dots and "_" in name:  # lambda_r_dot would be a letter with the index r_dot
+            name = f"{'d' * self.dots}_{name}"
+        elif self.dots:
+            name = f"{name}_{_DOTS[self.dots]}"
+        return name[:MAX_NAME].rstrip("_")
+
+    @property
+    def latex(self) -> str:
+        """How it is typeset."""
+        found = _in_tex(self.base)
+        if self.style:
+            found = rf"\mathcal{{{found}}}" if self.style == "cal" else rf"\mathbf{{{found}}}"
+        for mark in self.marks:
+            if mark in _ACCENTS:
+                found = rf"\{mark}{{{found}}}"
+        if self.dots:
+            found = rf"\{_DOTS[self.dots]}{{{found}}}" if len(found) > 1 else rf"\{_DOTS[self.dots]} {found}"
+        foot = self.foot or ",".join(_in_tex(part) for part in self.index.split("_") if part)
+        if foot:
+            found += f"_{foot}" if len(foot) == 1 else f"_{{{foot}}}"
+        raised = [_RAISED.get(mark, rf"{{\mathrm{{{mark}}}}}") for mark in self.marks if mark not in _ACCENTS]
+        if raised:
+            found += f"^{''.join(raised)}" if len(raised) == 1 else f"^{{{' '.join(raised)}}}"
+        if "norm" in self.marks:
+            found = rf"|{replace(self, marks=tuple(m for m in self.marks if m != 'norm'), style='vector').latex}|"
+        return rf"\{self.before} {found}" if self.before else found
+
+    @property
+    def still(self) -> Letter:
+        """The same without dots."""
+        return replace(self, dots=0)
+
+    def dotted(self, times: int = 1) -> Letter | None:
+        """Its derivative by time; ``None`` beyond the fourth."""
+        return replace(self, dots=self.dots + times) if self.dots + times < len(_DOTS) else None
+
+    @property
+    def plain(self) -> Letter:
+        """The letter with its index and dots alone."""
+        return replace(self, style="", marks=())
+
+
+def of_word(word: str) -> Letter:
+    """The letter that a name in plain notation means: ``x_ddot``, ``lambda_x``, ``u1_star``, ``d_x``."""
+    dots, rest = 0, word
+    for count in (2, 1):
+        if rest.startswith(f"{'d' * count}_") and len(rest) > count + 1:
+            dots, rest = count, rest[count + 1 :]
+            break
+    for count in range(len(_DOTS) - 1, 0, -1):
+        for joint in ("_", ""):
+            ending = f"{joint}{_DOTS[count]}"
+            if rest.endswith(ending) and len(rest) > len(ending):
+                return replace(of_word(rest[: -len(ending)]), dots=dots + count)
+    marks: tuple[str, ...] = ()
+    while (match := re.search(r"_(star|hat|bar|tilde|prime)\Z", rest)) is not None:
+        marks, rest = (match[1], *marks), rest[: match.start()]
+    base, _, index = rest.partition("_")
+    digits = re.fullmatch(r"([A-Za-z]+?)([0-9]+)", base)
+    if digits:
+        base, index = digits[1], "_".join(filter(None, [digits[2], index]))
+    return Letter(base, index=index, dots=dots, marks=marks)
+
+
+def _in_tex(word: str) -> str:
+    """A letter or a word as part of a formula."""
+    if word in GREEK:
+        return rf"\{word}"
+    return word if len(word) == 1 or word.isdigit() else rf"\mathrm{{{word}}}"
+
+
+def is_name(text: str) -> bool:
+    """Whether a text may stand as a name."""
+    return len(text) <= MAX_NAME and NAME.match(text) is not None
+
+
+def cleaned(text: str) -> str:
+    """An index as part of a name: words and numbers between single underscores."""
+    return "_".join(re.findall(r"[A-Za-z0-9]+", text))

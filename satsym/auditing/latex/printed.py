@@ -1,0 +1,165 @@
+"""Letters as they are printed, with all that they wear."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from satsym.auditing.latex.cursor import Cursor
+from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
+from satsym.auditing.latex.rows import split
+from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, MARKS, STARS, STYLES, UPRIGHT
+from satsym.formula.tree import Node, Sym
+
+
+class LetterCursor(Cursor):
+    """Reads letters."""
+
+    def _letter(self) -> Letter | None:
+        """A letter with all it wears; ``None``, with nothing taken, where none is next."""
+        begin = self._i
+        token = self._peek()
+        letter: Letter | None = None
+        if token is None:
+            return None
+        if token.kind == "letter":
+            self._i += 1
+            letter = Letter(token.text)
+        elif token.kind == "macro" and token.text in GREEK:
+            self._i += 1
+            letter = Letter(token.text)
+            after = self._peek()
+            if token.text in ("delta", "Delta") and after is not None and self._may_vary(after):
+                varied = self._letter()
+                return replace(varied, before=token.text) if varied and not varied.before else letter
+        elif token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS or token.text in STYLES):
+            self._i += 1
+            inner = self._letter_in(self._group())
+            if inner is not None:
+                letter = self._dressed(inner, token.text)
+        elif token.kind == "macro" and token.text in UPRIGHT:
+            self._i += 1
+            group = self._group()
+            word = "".join(t.text for t in group if t.text not in "~ ")
+            if len(word) == 1 or is_name(cleaned(word)):
+                letter = Letter(cleaned(word)) if word else None
+        elif token.kind == "open":
+            letter = self._letter_in(self._group())
+        if letter is None:
+            self._i = begin
+            return None
+        return self._scripts(letter)
+
+    def _may_vary(self, token: Token) -> bool:
+        if token.kind == "letter":
+            return True
+        return token.kind == "macro" and (token.text in GREEK or token.text in ACCENTS or token.text in STYLES)
+
+    def _letter_in(self, part: Sequence[Token]) -> Letter | None:
+        """The letter that a group is, if it is nothing else."""
+        inner = self._of(part)
+        letter = inner._letter()
+        return letter if letter is not None and inner._i == len(part) else None
+
+    def _dressed(self, letter: Letter, accent: str) -> Letter | None:
+        if accent in ACCENTS:
+            return letter.dotted(ACCENTS[accent])
+        if accent in MARKS:
+            return replace(letter, marks=(*letter.marks, MARKS[accent]))
+        return replace(letter, style=STYLES[accent])
+
+    def _scripts(self, letter: Letter) -> Letter:
+        """The letter with its index, stars and primes; a power is left where it is."""
+        while True:
+            if self._is("_") and not self._plain:
+                at = self._take().at
+                script = self._script()
+                index = cleaned(self._said(script))
+                if not index:
+                    raise Unread("this index is not read", at)
+                foot = ",".join(filter(None, [letter.foot, _in_tex(script)]))
+                letter = replace(letter, index="_".join(filter(None, [letter.index, index])), foot=foot)
+            elif self._is("'"):
+                self._i += 1
+                letter = replace(letter, marks=(*letter.marks, "prime"))
+            elif self._is("^") and (mark := self._mark()):
+                letter = replace(letter, marks=(*letter.marks, mark))
+            else:
+                return letter
+
+    def _mark(self) -> str:
+        """The mark that a superscript is; empty, with nothing taken, where it is a power."""
+        begin, found = self._i, self._found
+        self._i += 1
+        script = self._script()
+        word = "".join(t.text for t in script if t.text not in UPRIGHT and t.kind not in ("open", "close"))
+        upright = (
+            bool(script) and script[0].kind == "macro" and script[0].text in UPRIGHT and script[0].text != "mathsf"
+        )
+        if len(script) == 1 and script[0].text in STARS:
+            return "star"
+        if word and set(word.replace("prime", "'")) == {"'"}:
+            return "prime"
+        if len(script) == 1 and script[0].kind == "sign" and script[0].text in "+-":
+            return "plus" if script[0].text == "+" else "minus"
+        if word in ("max", "min", "opt", "ref") or (upright and word not in ("T", "d") and cleaned(word)):
+            return cleaned(word)
+        if word.startswith("(") and word.endswith(")") and cleaned(word):
+            return cleaned(word)
+        self._i, self._found = begin, found
+        return ""
+
+    def _said(self, script: Sequence[Token]) -> str:
+        """An index as text."""
+        said: list[str] = []
+        i = 0
+        while i < len(script):
+            token = script[i]
+            i += 1
+            if token.kind == "macro" and token.text in ACCENTS:
+                end = group_end(script, i) if i < len(script) and script[i].kind == "open" else i + 1
+                said.append(f" {self._said(script[i:end])} {token.text} ")
+                i = end
+            elif token.kind == "macro" and (token.text in GREEK or token.text in ("max", "min")):
+                said.append(f" {token.text} ")
+            elif token.kind in ("letter", "number", "word"):
+                said.append(token.text)
+            elif token.kind == "sign" and token.text == ",":
+                said.append(" ")
+            elif token.kind == "sign" and token.text in "+-*":
+                said.append({"+": " plus ", "-": " minus ", "*": " star "}[token.text])
+        return "".join(said)
+
+    def _symbol(self, letter: Letter, at: int) -> Node:
+        if self._plain is False:
+            self._timed()
+        name = letter.name
+        if letter.base == "pi" and letter == Letter("pi"):
+            return Sym("pi")
+        if not is_name(name):
+            raise Unread("this letter is not read", at)
+        self._reading.letters.setdefault(name, letter)
+        return Sym(name)
+
+    def _timed(self) -> None:
+        """Go past ``(t)`` behind a letter, or a list of what it depends on."""
+        if not self._is("("):
+            return
+        begin = self._i
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
+        if words in AT_A_TIME or (len(split(inside, lambda t: t.text == ",")) > 1):
+            return
+        self._i = begin
+
+
+def _in_tex(part: Sequence[Token]) -> str:
+    """Tokens as LaTeX again."""
+    said, after_macro = "", False
+    for token in part:
+        text = f"\\{token.text}" if token.kind == "macro" else token.text
+        said += f" {text}" if after_macro and text[:1].isalpha() else text
+        after_macro = token.kind == "macro" and token.text[-1:].isalpha()
+    return said

@@ -1,0 +1,178 @@
+"""Derivatives that are printed as quotients of differentials, and derivative signs in front of something."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+
+from satsym.auditing.latex.letters import Letter, is_name, of_word
+from satsym.auditing.latex.printed import LetterCursor
+from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.formula.tree import Call, Node, Sym
+
+
+class QuotientCursor(LetterCursor):
+    """Reads derivatives."""
+
+    @abstractmethod
+    def _bracket(self) -> Node:
+        """What stands in the bracket that is next."""
+
+    @abstractmethod
+    def _product(self) -> Node:
+        """The term that is next."""
+
+    def _derivative(self, token: Token) -> Node | None:
+        """A derivative that is printed as a quotient; ``None``, with nothing taken, where none is next."""
+        begin, found = self._i, self._found
+        parts: tuple[list[Token], list[Token]] | None = None
+        if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
+            self._i += 1
+            parts = self._group(), self._group()
+        elif _is_differential(token) or (token.kind == "word" and token.text.startswith("d")):
+            parts = self._slashed()
+        if parts is not None and (tree := self._quotient(*parts)) is not None:
+            return tree
+        self._i, self._found = begin, found
+        return None
+
+    def _slashed(self) -> tuple[list[Token], list[Token]] | None:
+        """A quotient of differentials with a slash."""
+        slash = next((k for k in range(self._i, len(self._found)) if self._found[k].text == "/"), None)
+        if slash is None or any(self._found[k].text in "+-=" for k in range(self._i, slash)):
+            return None
+        below = self._found[slash + 1 : slash + 2]
+        if not below or not (_is_differential(below[0]) or (below[0].kind == "word" and below[0].text[0] == "d")):
+            return None
+        above = list(self._found[self._i : slash])
+        self._i = slash + 1
+        start = self._i
+        if self._found[start].kind == "word":
+            self._i += 1
+        else:
+            while _is_differential(self._peek()):
+                self._i += 1
+                if self._letter() is None:
+                    return None
+        if self._is("^"):
+            self._i += 1
+            self._script()
+        return above, list(self._found[start : self._i])
+
+    def _quotient(self, above: list[Token], below: list[Token]) -> Node | None:
+        """The derivative that a quotient of differentials is."""
+        by = self._differentials(below)
+        head = self._order(above)
+        if by is None or head is None or head[0] != len(by):
+            return None
+        order, rest, partial = head
+        what: Node | None
+        if rest:
+            letter = self._letter_in(rest)
+            what = self._symbol_of(letter, rest) if letter else self._inner(rest, above[0].at)
+        else:
+            what = self._operand()
+        if partial or any(letter != Letter("t") for letter in by):
+            for letter in by:
+                name = letter.name
+                self._reading.letters.setdefault(name, letter)
+                what = Call("diff", (what, Sym(name)))
+            return what
+        for _ in range(order):
+            what = self._along(what)
+        return what
+
+    def _operand(self) -> Node:
+        """What a derivative sign in front is about: a bracket, or the rest of the term."""
+        if self._is("(") or self._is("["):
+            return self._bracket()
+        return self._product()
+
+    def _along(self, what: Node) -> Node:
+        """The derivative by time: one more dot on a letter."""
+        if isinstance(what, Sym) and (letter := self._reading.letters.get(what.name)) and (dotted := letter.dotted()):
+            self._reading.letters.setdefault(dotted.name, dotted)
+            return Sym(dotted.name)
+        return Call("d", (what,))
+
+    def _symbol_of(self, letter: Letter, part: Sequence[Token]) -> Node:
+        self._reading.letters.setdefault(letter.name, letter)
+        if not is_name(letter.name):
+            raise Unread("this letter is not read", part[0].at)
+        return Sym(letter.name)
+
+    def _order(self, above: list[Token]) -> tuple[int, list[Token], bool] | None:
+        """The order of a derivative, of what (empty where that follows), and whether it is partial."""
+        if above and above[0].kind == "word":
+            word = above[0].text
+            if word == "d":
+                rest, order = above[1:], 1
+                if len(rest) > 1 and rest[0].text == "^":
+                    order, rest = int(rest[1].text) if rest[1].text.isdigit() else 1, rest[2:]
+                return order, rest, False
+            if not word.startswith("d"):
+                return None
+            return (
+                (2, [replace(above[0], text=word[2:])], False)
+                if word[1:2] == "2" and word[2:]
+                else (
+                    1,
+                    [replace(above[0], text=word[1:]), *above[1:]],
+                    False,
+                )
+            )
+        if not above or not _is_differential(above[0]):
+            return None
+        rest, order = _after_differential(above), 1
+        if len(rest) > 1 and rest[0].text == "^":
+            end = group_end(rest, 1) if rest[1].kind == "open" else 2
+            digits = "".join(t.text for t in rest[1:end] if t.kind == "number")
+            if not digits:
+                return None
+            order, rest = int(digits), rest[end:]
+        return order, rest, above[0].text == "partial"
+
+    def _differentials(self, below: list[Token]) -> list[Letter] | None:
+        """What is differentiated by, as often as it is."""
+        if below and below[0].kind == "word":
+            word = below[0].text
+            twice = word.endswith("2") or (len(below) > 2 and below[1].text == "^" and below[2].text == "2")
+            if not word.startswith("d") or len(word) < 2:
+                return None
+            return [of_word(word[1:].removesuffix("2") if word.endswith("2") and word[1:2] == "t" else word[1:])] * (
+                2 if twice else 1
+            )
+        found: list[Letter] = []
+        inner = self._of(below)
+        while inner._i < len(below):
+            if not _is_differential(inner._peek()):
+                return None
+            inner._i += len(below[inner._i :]) - len(_after_differential(below[inner._i :]))
+            letter = inner._letter()
+            if letter is None:
+                return None
+            times = 1
+            if inner._is("^"):
+                inner._i += 1
+                digits = "".join(t.text for t in inner._script() if t.kind == "number")
+                if not digits or int(digits) > 4:
+                    return None
+                times = int(digits)
+            found += [letter] * times
+        return found or None
+
+
+def _is_differential(token: Token | None) -> bool:
+    if token is None:
+        return False
+    return (token.kind == "letter" and token.text == "d") or (
+        token.kind == "macro" and token.text in ("partial", "mathrm", "dd", "diff", "text", "operatorname", "rm")
+    )
+
+
+def _after_differential(part: list[Token]) -> list[Token]:
+    """What follows a differential sign, which may be set upright."""
+    if part[0].text in ("mathrm", "text", "operatorname"):
+        return part[group_end(part, 1) :] if len(part) > 1 and part[1].kind == "open" else part[2:]
+    return part[1:]

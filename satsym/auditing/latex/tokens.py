@@ -1,0 +1,268 @@
+"""LaTeX as tokens, each with its place: pylatexenc takes a text apart, macros of the document's own are put in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from satsym.formula.reading import MAX_DEPTH
+from satsym.status import BadInput
+from satsym.wording import printable
+
+MAX_LENGTH = 20_000
+"""Characters of one formula."""
+MAX_TOKENS = 8000
+"""Tokens of one formula once macros are put in: no macro can make an endless one."""
+_MAX_NESTING = 30
+"""Macros within macros."""
+
+
+class Unread(BadInput):
+    """A formula cannot be read: what is wrong, and at which character."""
+
+    def __init__(self, message: str, at: int) -> None:
+        super().__init__(f"{message} (character {at + 1})")
+        self.message, self.at = message, at
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A piece of a formula.
+
+    ``kind`` is ``letter``, ``number``, ``macro``, ``word`` (a name of several letters), ``sign`` (any other character),
+    ``open``, ``close``, ``begin`` or ``end`` (of an environment); ``at`` is the character where it begins.
+    """
+
+    kind: str
+    text: str
+    at: int
+
+
+@dataclass(frozen=True)
+class Macro:
+    """A macro of the document's own: how many arguments it takes, and what stands for it."""
+
+    arguments: int
+    body: tuple[Token, ...]
+
+
+Macros = Mapping[str, Macro]
+_NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
+_DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
+_BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
+_SUBSTITUTES = {
+    "\u2212": "-",
+    "\u00b7": "*",
+    "\u22c5": "*",
+    "\u00d7": "*",
+    "\u2032": "'",
+    "\u00b2": "^2",
+    "\u00b3": "^3",
+    "\u00bd": "(1/2)",
+    "\u2202": r"\partial ",
+}
+_GREEK = dict(
+    zip(
+        "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ",
+        "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+        "omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split(),
+        strict=True,
+    )
+)
+
+
+def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Token]:
+    """The tokens of a formula.
+
+    Parameters
+    ----------
+    text
+        What stands between the signs of mathematics.
+    macros
+        The document's own.
+    start
+        The place of its first character.
+
+    Raises
+    ------
+    Unread
+        If it is too long, or macros make it so, or a character is none.
+    """
+    if len(text) > MAX_LENGTH:
+        raise Unread(f"longer than {MAX_LENGTH} characters; split it", start)
+    if broken := _BROKEN.search(text):
+        raise Unread("a character that is none; save the file as UTF-8", start + broken.start())
+    found = expanded(_pieces(text, start), macros or {})
+    depth = 0
+    for token in found:
+        depth += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
+        if depth > MAX_DEPTH or depth < 0:
+            why = f"groups are nested more than {MAX_DEPTH} deep" if depth > 0 else "this closes nothing"
+            raise Unread(why, token.at)
+    if depth:
+        raise Unread("a group is not closed", start + len(text.rstrip()))
+    return found
+
+
+def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Token]:
+    """Tokens with macros put in; each that comes of one has its place.
+
+    Raises
+    ------
+    Unread
+        If there is no end to it, or an argument is missing.
+    """
+    done: list[Token] = []
+    rest, i = list(found), 0
+    while i < len(rest):
+        token = rest[i]
+        macro = macros.get(token.text) if token.kind == "macro" else None
+        i += 1
+        if macro is None:
+            done.append(token)
+        else:
+            if depth >= _MAX_NESTING:
+                raise Unread(f"the macro \\{printable(token.text)} has no end", token.at)
+            arguments = []
+            for _ in range(macro.arguments):
+                argument, i = _argument(rest, i, token)
+                arguments.append(argument)
+            done += expanded(_filled(macro, arguments, token.at), macros, depth + 1)
+        if len(done) > MAX_TOKENS:
+            raise Unread(f"more than {MAX_TOKENS} symbols, macros included; split it", token.at)
+    return done
+
+
+def group_end(found: Sequence[Token], i: int) -> int:
+    """The place behind the closing brace of the group that opens at a place; the end where none closes it."""
+    depth = 0
+    for k in range(i, len(found)):
+        depth += (found[k].kind == "open") - (found[k].kind == "close")
+        if depth == 0:
+            return k + 1
+    return len(found)
+
+
+def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token], int]:
+    if i >= len(found):
+        raise Unread(f"\\{printable(macro.text)} lacks an argument", macro.at)
+    if found[i].kind != "open":
+        return [found[i]], i + 1
+    end = group_end(found, i)
+    return list(found[i + 1 : end - 1]), end
+
+
+def _filled(macro: Macro, arguments: Sequence[Sequence[Token]], at: int) -> list[Token]:
+    filled: list[Token] = []
+    body = macro.body
+    for k, token in enumerate(body):
+        before = body[k - 1] if k else None
+        if before is not None and before.kind == "sign" and before.text == "#" and token.kind == "number":
+            filled.pop()
+            place = int(token.text[0]) - 1
+            if place < len(arguments):
+                filled += arguments[place]
+            if token.text[1:]:
+                filled.append(Token("number", token.text[1:], at))
+        else:
+            filled.append(replace(token, at=at))
+    return filled
+
+
+def _pieces(text: str, start: int) -> list[Token]:
+    """What pylatexenc finds, digits joined to numbers, comments left out."""
+    from pylatexenc.latexwalker import LatexWalker, LatexWalkerEndOfStream, LatexWalkerParseError
+
+    walker = LatexWalker(text, tolerant_parsing=False)
+    found: list[Token] = []
+    position = 0
+    while position < len(text):
+        number = _NUMBER.match(text, position)
+        if number:
+            value, position = number[0], number.end()
+            while (comma := _DECIMAL_COMMA.match(text, position)) and "." not in value:
+                digits = _NUMBER.match(text, comma.end())
+                assert digits is not None
+                value, position = f"{value}.{digits[0]}", digits.end()
+            found.append(Token("number", value, start + number.start()))
+            continue
+        try:
+            token = walker.get_token(position, environments=True)
+        except LatexWalkerEndOfStream:
+            break
+        except (LatexWalkerParseError, RecursionError, IndexError):
+            raise Unread("a backslash, a brace or an environment is broken off here", start + position) from None
+        if token.pos > position and _NUMBER.match(text, token.pos):
+            position = token.pos
+            continue
+        if token.pos + token.len <= position:
+            break
+        position = token.pos + token.len
+        at = start + token.pos
+        kind, argument = token.tok, token.arg
+        if kind == "macro":
+            found.append(Token("macro", argument, at))
+        elif kind in ("brace_open", "brace_close"):
+            sort = ("open" if kind == "brace_open" else "close") if argument in "{}" else "sign"
+            found.append(Token(sort, argument, at))
+        elif kind in ("begin_environment", "end_environment"):
+            found.append(Token(kind.partition("_")[0], argument, at))
+        elif kind in ("mathmode_inline", "mathmode_display"):
+            found.append(Token("sign", "$", at))
+        elif kind == "specials":
+            found += _characters(argument.specials_chars, at)
+        elif kind == "char":
+            found += _characters(argument, at)
+    return found
+
+
+def _characters(text: str, at: int) -> list[Token]:
+    found = []
+    for character in text:
+        if character in _SUBSTITUTES:
+            found += [replace(token, at=at) for token in _pieces(_SUBSTITUTES[character], 0)]
+        elif character in _GREEK:
+            found.append(Token("macro", _GREEK[character], at))
+        elif character.isascii() and character.isalpha():
+            found.append(Token("letter", character, at))
+        elif not character.isspace():
+            found.append(Token("sign", character, at))
+    return found
+
+
+_PLAIN = re.compile(
+    r"\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2}(?![A-Za-z0-9_.]))?)"
+    r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)|(?P<power>\*\*)|(?P<sign>[^\sA-Za-z0-9]))"
+)
+
+
+def plain_tokens(text: str) -> list[Token]:
+    """The tokens of a formula in plain notation, ``2n*x_dot`` or ``2 n x_dot``, where names have several letters.
+
+    Raises
+    ------
+    Unread
+        As of :func:`tokens`.
+    """
+    if len(text) > MAX_LENGTH:
+        raise Unread(f"longer than {MAX_LENGTH} characters; split it", 0)
+    if broken := _BROKEN.search(text):
+        raise Unread("a character that is none; save the text as UTF-8", broken.start())
+    found: list[Token] = []
+    position, end = 0, len(text.rstrip())
+    while position < end:
+        match = _PLAIN.match(text, position)
+        assert match is not None
+        assert match.lastgroup is not None
+        kind, value, at = match.lastgroup, match[match.lastgroup], match.start(match.lastgroup)
+        if kind == "power":
+            found.append(Token("sign", "^", at))
+        elif kind == "sign":
+            found += [Token("word", t.text, at) if t.kind == "macro" else t for t in _characters(value, at)]
+        else:
+            found.append(Token(kind, value, at))
+        position = match.end()
+    if len(found) > MAX_TOKENS:
+        raise Unread(f"more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
+    return found

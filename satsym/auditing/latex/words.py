@@ -1,0 +1,70 @@
+"""The words of the grammar: macros, functions, relations, environments, and what is refused by name."""
+
+from __future__ import annotations
+
+FUNCTIONS = {
+    **{name: name for name in "sin cos tan exp log sinh cosh tanh min max".split()},
+    "ln": "log",
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "sgn": "sign",
+    "sign": "sign",
+    "sat": "sat",
+    "abs": "abs",
+    "asin": "asin",
+    "acos": "acos",
+    "atan": "atan",
+    "sqrt": "sqrt",
+    "atan2": "atan2",
+    "diff": "diff",
+    "d": "d",
+    "det": "det",
+}
+ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
+MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
+MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
+STYLES = dict.fromkeys("mathbf boldsymbol bm vec pmb overrightarrow bf".split(), "vector")
+STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb".split(), "cal")
+UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
+SPACES = frozenset(
+    ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
+    "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
+    "allowbreak nobreak negthinspace > space hline vphantom boldmath unboldmath noindent medspace thickspace".split()
+) | {" "}
+SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom color eqno cite".split())
+KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel ensuremath smash".split())
+EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
+TIMES = frozenset("cdot times ast odot bullet".split())
+RELATIONS = {"<", ">", "le", "ge", "leq", "geq", "ll", "gg", "neq", "ne", "approx", "sim", "simeq", "propto", "in"}
+RELATIONS |= {"to", "rightarrow", "Rightarrow", "implies", "iff", "leqslant", "geqslant", "mapsto", "cong", "prec"}
+REFUSED = {
+    "int": "an integral",
+    "iint": "an integral",
+    "oint": "an integral",
+    "sum": "a sum over an index",
+    "prod": "a product over an index",
+    "lim": "a limit",
+    "pm": "two signs at once",
+    "mp": "two signs at once",
+    "infty": "infinity",
+    "nabla": "a gradient",
+    "ldots": "an ellipsis",
+    "dots": "an ellipsis",
+    "cdots": "an ellipsis",
+    "vdots": "an ellipsis",
+    "ddots": "an ellipsis",
+    "otimes": "a tensor product",
+    "forall": "a quantifier",
+    "exists": "a quantifier",
+}
+MATRICES = frozenset("pmatrix bmatrix matrix Bmatrix vmatrix Vmatrix smallmatrix array".split())
+SYSTEMS = frozenset("aligned split gathered alignedat cases dcases align align* gather gather*".split())
+STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf", "dagger"))
+NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
+TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
+FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
+"""Letters behind which a place, or an angle, is still part of what a function is taken of."""
+AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
+ATOMS = frozenset(("frac", "tfrac", "dfrac", "cfrac", "sqrt", "lvert", "lVert", "partial", "{", "lbrace", "lbrack"))
+ROOTS = frozenset(("sqrt",))

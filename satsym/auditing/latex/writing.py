@@ -1,0 +1,111 @@
+"""Formulas written again in the notation that they were printed in: LaTeX, or plain text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, substituted
+from satsym.formula.writing import written
+
+Writer = Callable[["Node | Equality"], str]
+_SUM, _PRODUCT, _ATOM = range(3)
+_NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
+_KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
+
+
+def in_latex(letters: Mapping[str, str]) -> Writer:
+    """Writes in LaTeX, with these letters by name."""
+
+    def formula(tree: Node | Equality) -> str:
+        if isinstance(tree, Equality):
+            return f"{_tex(tree.lhs, letters)[0]} = {_tex(tree.rhs, letters)[0]}"
+        return _tex(tree, letters)[0]
+
+    return formula
+
+
+def in_plain(letters: Mapping[str, str]) -> Writer:
+    """Writes in plain notation, with ``^`` for powers."""
+
+    def formula(tree: Node | Equality) -> str:
+        return written(_renamed(tree, letters)).replace("**", "^")
+
+    return formula
+
+
+def _renamed(tree: Node | Equality, letters: Mapping[str, str]) -> Node | Equality:
+    names: dict[str, Node] = {name: Sym(text) for name, text in letters.items()}
+    if isinstance(tree, Equality):
+        return Equality(substituted(tree.lhs, names), substituted(tree.rhs, names))
+    return substituted(tree, names)
+
+
+def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
+    """The LaTeX of a node, and how tightly it binds."""
+
+    def bound(part: Node, least: int) -> str:
+        text, binding = _tex(part, letters)
+        return text if binding >= least else rf"\left({text}\right)"
+
+    def whole(part: Node) -> str:
+        return _tex(part, letters)[0]
+
+    if isinstance(node, Num):
+        text = written(node)
+        return (rf"\frac{{{node.value.numerator}}}{{{node.value.denominator}}}" if "/" in text else text), _ATOM
+    if isinstance(node, Sym):
+        return letters.get(node.name) or (r"\pi" if node.name == "pi" else node.name), _ATOM
+    if isinstance(node, Neg):
+        return f"-{bound(node.operand, _PRODUCT)}", _SUM
+    if isinstance(node, Add):
+        said = bound(node.terms[0], _SUM)
+        for term in node.terms[1:]:
+            inner = term.operand if isinstance(term, Neg) else term
+            said += f" {'-' if isinstance(term, Neg) else '+'} {bound(inner, _PRODUCT)}"
+        return said, _SUM
+    if isinstance(node, Mul):
+        said = bound(node.factors[0], _PRODUCT)
+        for factor in node.factors[1:]:
+            piece = bound(factor, _PRODUCT)
+            said += rf" \cdot {piece}" if piece[:1].isdigit() else f" {piece}"
+        return said, _PRODUCT
+    if isinstance(node, Div):
+        return rf"\frac{{{whole(node.numerator)}}}{{{whole(node.denominator)}}}", _ATOM
+    if isinstance(node, Pow):
+        return _power(node, letters), _PRODUCT
+    if isinstance(node, Grid):
+        return rf"\begin{{pmatrix}} {_rows(node, letters)} \end{{pmatrix}}", _ATOM
+    if not isinstance(node, Call):
+        return written(node), _ATOM
+    arguments = ", ".join(map(whole, node.arguments))
+    special = {
+        "sqrt": rf"\sqrt{{{arguments}}}",
+        "exp": f"e^{{{arguments}}}",
+        "abs": f"|{arguments}|",
+        "d": rf"\frac{{d}}{{dt}}\left({arguments}\right)",
+        "transpose": rf"{arguments}^{{\mathsf T}}",
+    }
+    if node.function == "diff" and len(node.arguments) == 2:
+        by = whole(node.arguments[1])
+        return rf"\frac{{\partial {whole(node.arguments[0])}}}{{\partial {by}}}", _ATOM
+    if node.function in special:
+        return special[node.function], _ATOM
+    name = _NAMES.get(node.function) or (rf"\{node.function}" if node.function in _KNOWN else "")
+    name = name or rf"\operatorname{{{node.function}}}"
+    simple = len(node.arguments) == 1 and isinstance(node.arguments[0], Sym)
+    return (f"{name} {arguments}" if simple else rf"{name}\left({arguments}\right)"), _PRODUCT if simple else _ATOM
+
+
+def _power(node: Pow, letters: Mapping[str, str]) -> str:
+    text, binding = _tex(node.base, letters)
+    exponent = _tex(node.exponent, letters)[0]
+    if constant(node.exponent) is not None and len(exponent) > 1:
+        exponent = f"{{{exponent}}}"
+    if binding < _ATOM or isinstance(node.base, Div) or "^" in text:
+        text = rf"\left({text}\right)"
+    return f"{text}^{exponent}"
+
+
+def _rows(node: Grid, letters: Mapping[str, str]) -> str:
+    rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in node.entries]
+    return r" \\ ".join(" & ".join(_tex(cell, letters)[0] for cell in row) for row in rows)

@@ -1,0 +1,55 @@
+"""``satsym check``: one printed formula, judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli import names
+from satsym.cli.help import command
+from satsym.cli.options import json_option
+from satsym.cli.output import answer
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym check '\\ddot x - 2n\\dot y - 3n^2x = 0' --model hill
+  satsym check 'r_ddot = r*theta_dot^2 - mu/r^2 + u1' --model polar_orbit
+  satsym check '\\dot\\lambda_1 = -\\frac{\\partial H}{\\partial x_1}' --model polar_orbit
+  satsym check "x'' + x = u" --model van_der_pol --let x=x1 --let u=u
+  satsym check 'v_dot = a - k v^2' --model DIR/sled      after satsym derive sled.py --out DIR
+
+In single quotes the shell leaves backslashes alone."""
+
+
+@command(epilog=EXAMPLES)
+@click.argument("formula", metavar="FORMULA")
+@click.option(
+    "--model",
+    "model",
+    metavar="NAME",
+    required=True,
+    help="The model whose derivation it is held against: a shipped one, or DIR/NAME.",
+    shell_complete=names.completed(names.models),
+)
+@click.option("--let", metavar="LETTER=NAME", multiple=True, help="What a printed letter means; may be repeated.")
+@click.option("--free", is_flag=True, help="The uncontrolled motion is meant.")
+@json_option
+def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
+    """Say whether a printed formula is right, and if not, what is wrong.
+
+    FORMULA is LaTeX or plain notation. It is held against every equation that satsym derives for the model, in any
+    rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects it.
+    Exit codes: 0 right, 5 wrong, 4 undecided.
+    """
+    from satsym.auditing.check.answer import check_in
+    from satsym.auditing.check.told import as_object, worst
+    from satsym.report.terminal.checked import checked_text
+
+    found = check_in(formula, model, Path(), let, free)
+    answer(as_json, as_object(formula, found), lambda: checked_text(found))
+    return _CODES[worst(found).verdict]
+
+
+_CODES = {"right": ExitCode.DONE, "wrong": ExitCode.CERTIFICATE_FAILED, "undecided": ExitCode.NO_ANSWER}

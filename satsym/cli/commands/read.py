@@ -1,0 +1,50 @@
+"""``satsym read``: a ledger drafted from a document."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli import names
+from satsym.cli.help import command
+from satsym.cli.options import json_option, place_option
+from satsym.cli.output import answer
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym read paper.tex --model hill        drafts paper.ledger.toml beside the paper
+  satsym read paper.tex                     again: what was confirmed is kept
+  satsym read notes.md --model DIR/sled --out notes.toml
+  satsym audit paper.ledger.toml            judges it"""
+
+
+@command(epilog=EXAMPLES)
+@click.argument("document", metavar="FILE", type=click.Path(path_type=Path))
+@click.option(
+    "--model",
+    metavar="NAME",
+    default="",
+    help="The model it is about: a shipped one, or DIR/NAME as seen from FILE.",
+    shell_complete=names.completed(names.models),
+)
+@click.option("--let", metavar="LETTER=NAME", multiple=True, help="What a printed letter means; may be repeated.")
+@place_option("--out", metavar="LEDGER", help="Write there instead of beside the document.")
+@json_option
+def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
+    """Draft a ledger of a document: its displayed formulas, and what each is to be held against.
+
+    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; a person
+    confirms a row by taking out its line `draft = true`. Reading again keeps what was confirmed. What cannot be read
+    is listed with its place.
+    """
+    from satsym.auditing.document import drafting
+    from satsym.report.results.files import write_text
+    from satsym.report.terminal.checked import drafted_text
+
+    ledger = out or document.with_suffix(drafting.SUFFIX)
+    found = drafting.draft(document, model, drafting.text_before(ledger), let)
+    write_text(ledger, found.text)
+    answer(as_json, drafting.as_object(ledger, found), lambda: drafted_text(ledger, found))
+    return ExitCode.DONE

@@ -1,0 +1,189 @@
+"""`satsym check`: one formula, right or wrong, in LaTeX or plain notation, and what is wrong in the same notation."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+
+import pytest
+
+import satsym
+from satsym.cli import main
+from satsym.status import BadInput
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def run_check(*arguments: str) -> tuple[int, str, str]:
+        code = main(["check", *arguments])
+        return code, *capsys.readouterr()
+
+    return run_check
+
+
+RIGHT = [
+    ("hill", r"\ddot x - 2n\dot y - 3n^2x = 0", "hill:first_order.xi_dot"),
+    ("hill", r"\ddot{x} = 3 n^2 x + 2 n \dot{y} + u_1", "hill:first_order.xi_dot"),
+    ("hill", r"\frac{d^2 z}{dt^2} = -n^2 z", "hill:first_order.zeta_dot"),
+    ("hill", r"2\ddot\eta + 4\omega\dot\xi = 2u_2", "hill:first_order.eta_dot"),
+    ("hill", "x_ddot - 2 n y_dot - 3n^2 x = u1", "hill:first_order.xi_dot"),
+    ("polar_orbit", r"\ddot r - r\dot\theta^2 = -\frac{\mu}{r^2}+u_1", "polar_orbit:first_order.r_dot"),
+    ("polar_orbit", r"r\ddot\theta + 2\dot r\dot\theta = u_2", "polar_orbit:first_order.theta_dot"),
+    ("polar_orbit", r"\frac{d}{dt}\left(r^2\dot\theta\right) = r u_2", "polar_orbit:first_order.theta_dot"),
+    ("polar_orbit", r"\dot\lambda_r = -\frac{\partial H}{\partial r}", "polar_orbit:costate_equations.r"),
+    ("polar_orbit", r"\dot x_1 = x_2", "polar_orbit:first_order.r"),
+    ("polar_orbit", r"\lambda_r = k_1 r - k_1\sigma", "polar_orbit:boundary_conditions.lambda_r"),
+    ("polar_orbit", r"u_2^* = -\frac{\lambda_{\dot\theta}}{c_2 r}", "polar_orbit:stationarity.u2_hat"),
+    ("van_der_pol", "x1' = x2", "van_der_pol:first_order.x1"),
+]
+
+
+@pytest.mark.parametrize(("model", "formula", "address"), RIGHT)
+def test_what_is_right_is_right_in_any_rearrangement(model: str, formula: str, address: str) -> None:
+    found = satsym.check(formula, model)
+    assert (found.verdict, found.address) == ("right", address)
+    assert found
+
+
+WRONG = [
+    (
+        "hill",
+        r"\ddot x - 2n\dot y + 3n^2x = 0",
+        "the sign of 3 n^2 x is reversed",
+        r"\ddot x - 2 n \dot y - 3 n^2 x = 0",
+    ),
+    ("hill", r"\ddot{y} + n \dot x = 0", "n \\dot x should be 2 n \\dot x", r"\ddot y + 2 n \dot x = 0"),
+    ("hill", "z_ddot = -n^3*z", "n^3 should be n^2", "z_ddot = -n^2*z"),
+    (
+        "polar_orbit",
+        r"\dot\lambda_4 = -2\lambda_2x_1x_4-\lambda_3+\frac{2\lambda_4x_2}{x_1^2}",
+        "x_1^2 should be x_1",
+        r"\dot{\lambda}_4 = -2 \lambda_2 x_1 x_4 - \lambda_3 + \frac{2 \lambda_4 x_2}{x_1}",
+    ),
+    (
+        "polar_orbit",
+        r"\dot\lambda_r = \frac{\partial H}{\partial r}",
+        "the sign of \\frac{\\partial H}{\\partial r} is reversed",
+        r"\dot{\lambda}_r = -\frac{\partial H}{\partial r}",
+    ),
+    ("goddard", r"\dot m = \frac{T}{c}", "the sign", r"\dot m = -\frac{T}{c}"),
+]
+
+
+@pytest.mark.parametrize(("model", "formula", "diagnosis", "correct"), WRONG)
+def test_what_is_wrong_is_named_in_the_notation_of_the_formula(
+    model: str, formula: str, diagnosis: str, correct: str
+) -> None:
+    found = satsym.check(formula, model)
+    assert found.verdict == "wrong"
+    assert diagnosis in found.diagnosis
+    assert found.correct == correct
+    assert satsym.check(found.correct, model, found.letters).verdict == "right"
+
+
+def test_letters_are_guessed_said_and_corrected(run: Run) -> None:
+    code, out, err = run(r"\ddot x - 2n\dot y - 3n^2x = 0", "--model", "hill")
+    assert (code, err) == (0, "")
+    assert out.splitlines() == [
+        "understood: x = xi, n = omega, y = eta, the uncontrolled motion (to correct it: --let LETTER=NAME)",
+        "right: hill:first_order.xi_dot",
+    ]
+    code, out, _ = run(r"\ddot x - 2n\dot y - 3n^2x = 0", "--model", "hill", "--let", "n=sigma")
+    assert code in (4, 5)
+    assert "n = sigma" in out
+
+
+def test_json_has_what_is_agreed(run: Run) -> None:
+    code, out, _ = run(r"\ddot x - 2n\dot y + 3n^2x = 0", "--model", "hill", "--json")
+    found = json.loads(out)
+    assert code == 5
+    keys = ["formula", "model", "letters", "free", "verdict", "address", "diagnosis", "correct"]
+    assert list(found) == keys
+    assert found["letters"] == {"x": "xi", "y": "eta", "n": "omega"}
+    assert found["correct"] == {
+        "latex": r"\ddot x - 2 n \dot y - 3 n^2 x = 0",
+        "plain": "x_ddot - 2*n*y_dot - 3*n^2*x = 0",
+    }
+
+
+def test_several_equations_are_judged_one_by_one(run: Run) -> None:
+    code, out, _ = run(
+        r"\begin{aligned}\dot x_1 &= x_2 \\ \dot x_2 &= x_1x_4^2 - \frac{\mu}{x_1^2} - u_1\end{aligned}",
+        "--model",
+        "polar_orbit",
+    )
+    assert code == 5
+    assert "right: polar_orbit:first_order.r\n" in out
+    assert "wrong: the sign of u_1 is reversed" in out
+
+
+@pytest.mark.parametrize(("entry", "verdict"), [("-n^2", "right"), ("n^2", "wrong")])
+def test_matrices_are_compared_entry_by_entry(entry: str, verdict: str) -> None:
+    rows = [
+        "0&0&0&1&0&0",
+        "0&0&0&0&1&0",
+        "0&0&0&0&0&1",
+        "3n^2&0&0&0&2n&0",
+        "0&0&0&-2n&0&0",
+        f"0&0&{entry}&0&0&0",
+    ]
+    inside = r" \\ ".join(rows)
+    found = satsym.check(r"A = \begin{pmatrix}" + inside + r"\end{pmatrix}", "hill")
+    assert (found.verdict, found.address) == (verdict, "hill:linearisation.A")
+
+
+@pytest.mark.parametrize(
+    ("formula", "model", "reason"),
+    [
+        (r"\ddot x = \int x dt", "hill", r"an integral (\int) is not read (character 11)"),
+        (r"\ddot x = 3 +", "hill", "the formula breaks off"),
+        ("(" * 3000, "hill", "not closed"),
+        ("{" * 3000, "hill", ""),
+        (r"\frac" * 5000, "hill", "longer than"),
+        ("x" * 100_000, "hill", "longer than 20000 characters"),
+        (r"x \le 3", "hill", "a relation other than an equality is not read (character 3)"),
+        ("x\x00 = 1", "hill", "a character that is none"),
+        (r"\frac{x", "hill", ""),
+        ("x_dot = v @ w", "hill", '"@" is not read here'),
+        ("x = 1", "nope", "no derivation"),
+        ("x = 1", "../../etc/passwd", ""),
+        ("", "hill", ""),
+        ("__import__('os')", "hill", ""),
+    ],
+)
+def test_what_cannot_be_read_is_told_in_one_line_with_the_place(
+    run: Run, formula: str, model: str, reason: str
+) -> None:
+    begun = time.perf_counter()
+    code, out, err = run(formula, "--model", model)
+    assert (code, out) in ((3, ""), (4, out))
+    assert reason in err + out
+    assert "Traceback" not in err
+    assert (err + out).count("\n") <= 2
+    assert time.perf_counter() - begun < 20.0
+
+
+def test_unknown_letters_are_undecided_and_named() -> None:
+    found = satsym.check(r"\dot q_7 = \kappa q_7", "hill")
+    assert found.verdict == "undecided"
+    assert found.letters.keys() == {"q_7", r"\kappa"}
+
+
+def test_a_letter_may_be_said_to_be_what_there_is_not() -> None:
+    with pytest.raises(BadInput, match='"nope" is no name of hill'):
+        satsym.check("x = 1", "hill", {"x": "nope"})
+
+
+def test_notebooks_show_mathematics() -> None:
+    shown = satsym.check(r"\ddot z = n^2 z", "hill")._repr_latex_()
+    assert shown.startswith("$$")
+    assert r"\ddot z = -n^2 z" in shown
+
+
+def test_indonesian_has_the_same(run: Run) -> None:
+    code, out, _ = run(r"\ddot z = n^2 z", "--model", "hill", "--lang", "id")
+    assert code == 5
+    assert "salah: tanda n^2 z terbalik; yang benar" in out

@@ -1,0 +1,143 @@
+"""`satsym read`: displays found with number, section and place; a ledger drafted, confirmed, read again and judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from satsym import auditing
+from satsym.auditing import audit
+from satsym.auditing.document import displays
+from satsym.cli import main
+
+PAPER = r"""
+\documentclass{article}
+\newcommand{\thd}{\dot\theta}
+\newcommand{\half}[1]{\frac{1}{2}#1}
+\begin{document}
+\section{Motion}
+\begin{equation}\label{eq:radial} % a comment with $$ in it
+\ddot r - r\thd^2 = -\frac{\mu}{r^2} + u_1,
+\end{equation}
+\begin{align}
+r\ddot\theta + 2\dot r\thd &= u_2, \label{eq:t}\\
+\dot x_1 &= x_2, \nonumber\\
+\dot x_4 &= -\frac{2x_2x_4 + u_2}{x_1}.
+\end{align}
+\subsection{Control}
+\begin{equation}\label{eq:H}
+H = \half{(c_1u_1^2 + c_2u_2^2)} + \lambda_1x_2 + \lambda_2\left(x_1x_4^2-\frac{\mu}{x_1^2}+u_1\right)
++\lambda_3x_4 + \lambda_4\frac{u_2-2x_2x_4}{x_1}
+\end{equation}
+From \eqref{eq:H},
+\[ \dot\lambda_2 = -\lambda_1 + \frac{2\lambda_4 x_4}{x_1} \]
+\begin{equation} J = \int_0^{T} L\,dt \end{equation}
+\input{more}
+\end{document}
+"""
+MORE = "\\begin{equation*} u_1^* = -\\frac{\\lambda_2}{c_1} \\end{equation*}\n"
+
+
+@pytest.fixture
+def paper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "more.tex").write_text(MORE)
+    path = tmp_path / "paper.tex"
+    path.write_text(PAPER)
+    return path
+
+
+def test_displays_have_number_label_section_and_place(paper: Path) -> None:
+    source = displays.read(paper)
+    found = [(d.item, d.label, d.section, d.place.rpartition("/")[2]) for d in displays.displays(source)]
+    motion, control = "section 1 Motion", "section 1.1 Control"
+    assert found == [
+        ("1", "eq:radial", motion, "paper.tex:7"),
+        ("2", "eq:t", motion, "paper.tex:11"),
+        ("line 12", "", motion, "paper.tex:12"),
+        ("3", "", motion, "paper.tex:13"),
+        ("4", "eq:H", control, "paper.tex:16"),
+        ("line 21", "", control, "paper.tex:21"),
+        ("5", "", control, "paper.tex:22"),
+        ("line 1", "", control, "more.tex:1"),
+    ]
+    assert set(source.macros) == {"thd", "half"}
+
+
+def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["read", "paper.tex", "--model", "polar_orbit"]) == 0
+    out = capsys.readouterr().out
+    assert "7 rows drafted, 0 confirmed ones kept" in out
+    assert "paper.tex:22: not read: an integral" in out
+    ledger = paper.with_suffix(".ledger.toml")
+    found = {row.key: row.verdict for row in audit(auditing.read(ledger))}
+    assert [key for key, verdict in found.items() if verdict != "confirmed"] == ["3"]
+    text = ledger.read_text()
+    head, first, *others = text.split("[[row]]\n")
+    confirmed = first.replace("draft = true\n", "").replace('kind = "equation"', 'kind = "equation"\nsays = "Newton"')
+    ledger.write_text("[[row]]\n".join([head, confirmed, *others]))
+    paper.write_text(PAPER.replace(r"\dot x_1 &= x_2, \nonumber\\", ""))
+    assert main(["read", "paper.tex"]) == 0
+    assert "5 rows drafted, 1 confirmed ones kept" in capsys.readouterr().out
+    again = ledger.read_text()
+    assert 'says = "Newton"' in again
+    assert again.count("draft = true\n") == 5
+
+
+def test_markdown_is_read_too(tmp_path: Path) -> None:
+    path = tmp_path / "notes.md"
+    path.write_text("# Hill\n\n$$\\ddot z = n^2 z$$\n\n```\n$$not = this$$\n```\n\nand `$$nor = that$$`\n")
+    assert main(["read", str(path), "--model", "hill"]) == 0
+    ledger = auditing.read(path.with_suffix(".ledger.toml"))
+    assert [row.derived for row in audit(ledger)] == ["z_ddot = -n**2*z"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("paper.pdf", b"%PDF-1.7", "a PDF is not read"),
+        ("paper.tex", b"%PDF-1.7", "a PDF is not read"),
+        ("paper.tex", b"line\n\xff\xfe$$x=1$$", "paper.tex:2: not UTF-8 text"),
+        ("paper.tex", b"$" * 6_000_000, "more than 5,000,000 bytes"),
+    ],
+)
+def test_what_is_no_document_is_told_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, content: bytes, reason: str
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    assert main(["read", str(path), "--model", "hill"]) == 3
+    err = capsys.readouterr().err
+    assert reason in err
+    assert err.count("\n") == 1
+
+
+HOSTILE = [
+    (r"\newcommand{\a}{\a\a}$$\a = 1$$", "has no end"),
+    (
+        r"\newcommand{\a}{xxxxxxxxxx}\newcommand{\b}{" + r"\a" * 200 + r"}\newcommand{\c}{" + r"\b" * 200 + "}$$\\c$$",
+        "more than",
+    ),
+    ("$$" + "{" * 5000 + "x" + "}" * 5000 + "$$", ""),
+    ("$$" + "(" * 200 + "x" + ")" * 200 + "$$", "nested more than"),
+    (r"$$x^{x^{x^x}} = 1$$", "an exponent that is no number"),
+    (r"$$\begin{pmatrix}1&2\\3\end{pmatrix} = A$$", "the rows of a matrix differ in length"),
+    (r"\input{../../etc/passwd}", "is not in the folder"),
+    (r"\input{paper}", "goes round in a circle"),
+    (r"$$\csname x\endcsname = 1$$", "is not read here"),
+]
+
+
+@pytest.mark.parametrize(("text", "reason"), HOSTILE)
+def test_hostile_latex_is_listed_with_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, reason: str
+) -> None:
+    path = tmp_path / "paper.tex"
+    path.write_text(text + "\n$$\\ddot\\zeta = -\\omega^2\\zeta$$\n")
+    assert main(["read", str(path), "--model", "hill"]) == 0
+    out = capsys.readouterr().out
+    assert "not read" in out
+    assert reason in out
+    assert "paper.tex:1: " in out
+    assert "holds = \"subs('hill:first_order.zeta_dot" in path.with_suffix(".ledger.toml").read_text()
