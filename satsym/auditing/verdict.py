@@ -116,7 +116,7 @@ class _Context:
         right_elsewhere = [o.row.key for o in same if o.right]
         slips = [o.row.key for o in same if o.right is False and o.remedy and _same(o, outcome)]
         carried, corrected = self._used_by(row)
-        verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
+        verdict: Verdict = "wrong" if carried else "misprint"
         source = self._spoiled_by(outcome)
         takes_over = self._takes_over(outcome)
         return verdict, [

@@ -189,14 +189,14 @@ def test_a_right_result_that_does_not_follow_is_unsound(tmp_path: Path) -> None:
     assert "does not follow from H" in found.diagnosis
 
 
-def test_a_slip_that_the_document_has_right_elsewhere_is_a_misprint(tmp_path: Path) -> None:
+def test_a_slip_that_is_carried_on_is_wrong_even_where_the_document_has_it_right_elsewhere(tmp_path: Path) -> None:
     rows = [
         row("first", "d_x4 = -(2*x2*x4 + u2)/x1", TANGENTIAL),
         row("second", "d_x4 = (u2 - 2*x2*x4)/x1", TANGENTIAL),
         row("third", "d_x4 = -(2*x2*x4 + u2)/x1", TANGENTIAL, **{"from": "row['first']"}),
     ]
     found = judged(tmp_path, rows)
-    assert [entry.verdict for entry in found.values()] == ["misprint", "confirmed", "misprint"]
+    assert [entry.verdict for entry in found.values()] == ["wrong", "confirmed", "misprint"]
     assert "right in second" in found["first"].diagnosis
     assert "carried on into third" in found["first"].diagnosis
     assert "The same slip is in third" in found["first"].diagnosis

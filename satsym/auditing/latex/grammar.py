@@ -174,7 +174,7 @@ class Parser(QuotientCursor):
             return Call("transpose", (base,))
         exponent = self._inner(script, at)
         value = constant(exponent)
-        if isinstance(base, Sym) and base.name == "e" and not self._plain:
+        if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:
             raise Unread("an exponent that is no number is not read", at)

@@ -30,7 +30,7 @@ class LetterCursor(Cursor):
             self._i += 1
             letter = Letter(token.text)
             after = self._peek()
-            if token.text in ("delta", "Delta") and after is not None and self._may_vary(after):
+            if after is not None and self._may_vary(token, after):
                 varied = self._letter()
                 return replace(varied, before=token.text) if varied and not varied.before else letter
         elif token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS or token.text in STYLES):
@@ -51,9 +51,13 @@ class LetterCursor(Cursor):
             return None
         return self._scripts(letter)
 
-    def _may_vary(self, token: Token) -> bool:
+    def _may_vary(self, sign: Token, token: Token) -> bool:
+        """Whether a delta in front of a letter is a sign of variation: of two letters behind it, it is a factor."""
+        if sign.text not in ("delta", "Delta"):
+            return False
         if token.kind == "letter":
-            return True
+            behind = self._peek(1)
+            return sign.text == "Delta" or behind is None or behind.kind != "letter"
         return token.kind == "macro" and (token.text in GREEK or token.text in ACCENTS or token.text in STYLES)
 
     def _letter_in(self, part: Sequence[Token]) -> Letter | None:

@@ -15,7 +15,11 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
     while i < len(found):
         token = found[i]
         i += 1
-        if token.kind == "macro" and token.text in SKIPPED_GROUPS:
+        if token.kind == "macro" and token.text == "boxed" and i < len(found) and found[i].kind == "open":
+            end = group_end(found, i)
+            found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
+            i -= 1
+        elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
             i += 1 if i < len(found) and found[i].text == "*" else 0
             i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
         elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):

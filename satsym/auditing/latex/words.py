@@ -68,3 +68,5 @@ FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
 ATOMS = frozenset(("frac", "tfrac", "dfrac", "cfrac", "sqrt", "lvert", "lVert", "partial", "{", "lbrace", "lbrack"))
 ROOTS = frozenset(("sqrt",))
+OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))
+"""Powers of e that are those of an eccentricity, not of the base of logarithms."""

@@ -10,6 +10,7 @@ from satsym.formula.writing import written
 Writer = Callable[["Node | Equality"], str]
 _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
+_WORDS = {"pi": r"\pi", "constant": r"\text{const}"}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 
 
@@ -54,7 +55,7 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
         text = written(node)
         return (rf"\frac{{{node.value.numerator}}}{{{node.value.denominator}}}" if "/" in text else text), _ATOM
     if isinstance(node, Sym):
-        return letters.get(node.name) or (r"\pi" if node.name == "pi" else node.name), _ATOM
+        return letters.get(node.name) or _WORDS.get(node.name, node.name), _ATOM
     if isinstance(node, Neg):
         return f"-{bound(node.operand, _PRODUCT)}", _SUM
     if isinstance(node, Add):
