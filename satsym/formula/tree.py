@@ -6,7 +6,7 @@ is a quotient. So an edit of the tree is an edit of the print.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -90,6 +90,12 @@ Node: TypeAlias = Num | Sym | Neg | Add | Mul | Div | Pow | Call | Text | Grid
 
 Path: TypeAlias = tuple[int, ...]
 """Where a part stands: the place of a child, of its child, and so on."""
+
+
+def grid(rows: Iterable[Iterable[Node]]) -> Grid:
+    """The rows of a matrix as a node."""
+    return Grid(tuple(Grid(tuple(row)) for row in rows))
+
 
 ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 

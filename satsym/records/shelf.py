@@ -60,6 +60,12 @@ def path_of(name: str) -> Path | None:
     return None
 
 
+def is_shipped(name: str) -> bool:
+    """Whether a name is that of a model that comes with satsym, and of none in the folder at work."""
+    path = path_of(name)
+    return path is None or path.parent in source_files.generated()
+
+
 def find(name: str) -> Record:
     """The record of a model.
 

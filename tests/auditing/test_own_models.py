@@ -80,6 +80,14 @@ def test_a_model_of_ones_own_is_audited_without_its_file(own: Path) -> None:
     assert found["3"] in ("misprint", "wrong")
 
 
+def test_a_page_and_a_remark_on_drafts_for_a_model_of_ones_own(own: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, page = own / "ledger.toml", own / "page.html"
+    path.write_text(text([*ROWS[:2], {**ROWS[2], "draft": True}], HEAD))
+    assert main(["audit", str(path), "--html", str(page)]) == 0
+    assert "1 row is a draft that nobody has confirmed" in capsys.readouterr().out
+    assert 'id="sled:first_order.v"' in page.read_text()
+
+
 def test_a_record_older_than_its_model_is_refused(own: Path) -> None:
     (own / "sled.py").write_text(OWN.replace("1 / OPEN", "2"))
     path = own / "ledger.toml"

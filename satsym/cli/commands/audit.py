@@ -10,7 +10,7 @@ from satsym.cli import names
 from satsym.cli.help import command
 from satsym.cli.options import json_option, place_option
 from satsym.cli.output import answer, live
-from satsym.report.said import language
+from satsym.report.said import counted, language
 from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
@@ -84,9 +84,15 @@ def audit(
         from satsym.report.results.files import write_text
 
         write_text(latex, render(read, judged, language()))
-    answer(
-        as_json,
-        objects.audit_object([row for found in judged.values() for row in found]),
-        lambda: reporting.audit_text(read, judged, rows=rows or bool(items), language=language()),
-    )
+    drafts = sum(row.table.draft for ledger in read for row in ledger.rows)
+    remark = [
+        "",
+        counted(drafts, "row is a draft that nobody has confirmed", "rows are drafts that nobody has confirmed"),
+    ]
+
+    def text_of_it() -> str:
+        whole = reporting.audit_text(read, judged, rows=rows or bool(items), language=language())
+        return "\n".join([whole.rstrip("\n"), *(remark if drafts else ())])
+
+    answer(as_json, objects.audit_object([row for found in judged.values() for row in found]), text_of_it)
     return ExitCode.DONE

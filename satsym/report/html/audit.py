@@ -7,6 +7,7 @@ from importlib.resources import files
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Weight
+from satsym.records import shelf
 from satsym.report.findings.review import Review, title
 from satsym.report.html import derived
 from satsym.report.html.markup import Markup, joined, tag
@@ -42,8 +43,12 @@ def render(
     texts = load(language)
     reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     parts = [Section(review) for review in reviews]
-    wanted = {address for part in parts for row in part.rows for address in derived.addresses(row)}
-    equations = derived.typeset(wanted, announce)
+    equations: dict[str, derived.Derived] = {}
+    for ledger, part in zip(ledgers, parts, strict=True):
+        with shelf.opened(ledger.folder):
+            named = {address for row in part.rows for address in derived.addresses(row)}
+            equations |= derived.typeset(named - equations.keys(), announce)
+    equations = dict(sorted(equations.items()))
     body = [
         tag("a", texts.get("audit", "skip"), class_="skip", href="#all-findings"),
         tag(

@@ -9,8 +9,11 @@ import msgspec
 
 from satsym import user_cache
 from satsym.auditing import cache
+from satsym.auditing.latex.writing import in_latex
 from satsym.auditing.ledger.contents import Row, calls_in
-from satsym.formula.tree import Text
+from satsym.formula.tree import Equality, Text, grid
+from satsym.formula.values import Matrix
+from satsym.records import record, shelf
 from satsym.report.latex import formula_tex
 
 if TYPE_CHECKING:
@@ -39,7 +42,10 @@ def typeset(wanted: Iterable[str], announce: Callable[[str], None] = lambda _: N
         known = msgspec.json.decode(user_cache.read(path), type=dict[str, Derived])
     except (ValueError, msgspec.MsgspecError):
         known = {}
-    found = {address: known.get(address) or _typeset(address, announce) for address in sorted(set(wanted))}
+    own = {address for address in wanted if not shelf.is_shipped(address.partition(":")[0])}
+    found = {address: known.get(address) or _typeset(address, announce) for address in sorted({*wanted} - own)}
+    if own:
+        return dict(sorted((found | {address: _of_record(address) for address in own}).items()))
     if found.keys() - known.keys():
         user_cache.write(path, msgspec.json.encode(dict(sorted({**known, **found}.items()))))
     return found
@@ -53,6 +59,18 @@ def _typeset(address: str, announce: Callable[[str], None]) -> Derived:
     announce(f"typesetting {name} ...")
     derivation = library.derivation(name)
     return Derived(derivation.title, _tex(derivation, address, Typesetter(derivation)))
+
+
+def _of_record(address: str) -> Derived:
+    """An equation of a model whose file is not executed."""
+    record_ = shelf.find(address.partition(":")[0])
+    write = in_latex({name: entry.latex for name, entry in record_.names.items() if entry.latex})
+    found = record.resolve(record_, address)
+    if isinstance(found, record.Equated):
+        right = grid(found.rhs.rows) if isinstance(found.rhs, Matrix) else found.rhs
+        return Derived(record_.title, write(Equality(found.lhs, right)))
+    value = write(grid(found.entries) if isinstance(found, record.Family) else found)
+    return Derived(record_.title, f"{formula_tex.symbol(address.rpartition('.')[2])} = {value}")
 
 
 def _tex(derivation: Derivation, address: str, typesetter: Any) -> str:
