@@ -26,7 +26,7 @@ sigma, omega = symbols_of(PARAMETERS)
 
 clohessy_wiltshire = Linearised(
     name="clohessy_wiltshire",
-    title="Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised",
+    title="Clohessy-Wiltshire equations: linearised in-plane motion near a circular orbit",
     of=orbit,
     about=orbit.reference,
     states=STATES,
@@ -39,8 +39,8 @@ clohessy_wiltshire = Linearised(
 
 TRANSLATIONS = {
     "id": {
-        "Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised": (
-            "Persamaan Clohessy-Wiltshire: linearisasi gerak pada bidang orbit lingkaran"
+        "Clohessy-Wiltshire equations: linearised in-plane motion near a circular orbit": (
+            "Persamaan Clohessy-Wiltshire: linearisasi gerak sebidang di dekat orbit lingkaran"
         ),
         "deviation of the distance from the centre of force": "simpangan jarak dari pusat gaya",
         "deviation of the radial velocity": "simpangan kecepatan radial",

@@ -12,14 +12,14 @@ STATES = (
     Variable("q_dot", r"\dot q", "m/s", "velocity"),
 )
 CONTROLS = (Variable("u1", "u_1", "m/s**2", "thrust per unit mass"),)
-TIME_WEIGHT = Variable("weight_time", "c_0", "m/s**2", "weight of time against fuel", 0.0)
+TIME_WEIGHT = Variable("weight_time", "c_0", "m/s**2", "weight of time relative to fuel", 0.0)
 q, q_dot = symbols_of(STATES)
 (u1,) = symbols_of(CONTROLS)
 (weight_time,) = symbols_of((TIME_WEIGHT,))
 
 motion = FirstOrder(
     name="double_integrator",
-    title="A body on a line, accelerated at will",
+    title="Double integrator: a body moving on a line",
     states=STATES,
     controls=CONTROLS,
     parameters=(),
@@ -28,7 +28,7 @@ motion = FirstOrder(
 
 double_integrator_time = Problem(
     name="double_integrator_time",
-    title="Minimum time for a body on a line",
+    title="Double integrator, minimum time",
     model=motion,
     running_cost=1,
     control_set="box",
@@ -36,7 +36,7 @@ double_integrator_time = Problem(
 
 double_integrator_energy = Problem(
     name="double_integrator_energy",
-    title="Minimum energy for a body on a line",
+    title="Double integrator, minimum energy",
     model=motion,
     running_cost=u1**2 / 2,
     control_set="box",
@@ -44,7 +44,7 @@ double_integrator_energy = Problem(
 
 double_integrator_fuel = Problem(
     name="double_integrator_fuel",
-    title="Minimum fuel for a body on a line, weighing time against it",
+    title="Double integrator, minimum fuel with a weight on time",
     # Where the final time is free, fuel alone has no minimum: coasting longer is always cheaper.
     model=replace(motion, parameters=(TIME_WEIGHT,)),
     running_cost=weight_time + abs(u1),
@@ -53,16 +53,16 @@ double_integrator_fuel = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Minimum time for a body on a line": "Waktu minimum bagi benda pada garis lurus",
-        "Minimum energy for a body on a line": "Energi minimum bagi benda pada garis lurus",
-        "Minimum fuel for a body on a line, weighing time against it": (
-            "Bahan bakar minimum bagi benda pada garis lurus dengan bobot waktu"
+        "Double integrator, minimum time": "Integrator ganda, waktu minimum",
+        "Double integrator, minimum energy": "Integrator ganda, energi minimum",
+        "Double integrator, minimum fuel with a weight on time": (
+            "Integrator ganda, bahan bakar minimum dengan bobot waktu"
         ),
-        "A body on a line, accelerated at will": "Benda pada garis lurus yang dipercepat dengan bebas",
+        "Double integrator: a body moving on a line": "Integrator ganda: benda yang bergerak pada garis lurus",
         "position": "posisi",
         "velocity": "kecepatan",
         "thrust per unit mass": "gaya dorong per satuan massa",
-        "weight of time against fuel": "bobot waktu terhadap bahan bakar",
+        "weight of time relative to fuel": "bobot waktu terhadap bahan bakar",
     },
 }
 

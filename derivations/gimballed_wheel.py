@@ -39,7 +39,7 @@ GIMBAL_RATES = (
 )
 MODES = tuple(Variable(f"eta_{a}", rf"\eta_{a}", "rad", f"deflection of the mode about {a}") for a in "xyz")
 MODE_RATES = tuple(Variable(f"eta_{a}_dot", rf"\dot\eta_{a}", "rad/s", f"rate of deflection about {a}") for a in "xyz")
-SPEED = (Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel's speed from its nominal one"),)
+SPEED = (Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel speed from its nominal value"),)
 CONTROLS = (
     Variable("T_cx", "T_{cx}", "N*m", "torque of the actuator on the inner gimbal"),
     Variable("T_cz", "T_{cz}", "N*m", "torque of the actuator on the outer gimbal"),
@@ -53,7 +53,7 @@ BODY = (
     Variable("I_x", "I_x", "kg*m**2", "moment of inertia of the satellite in roll", 1356.0, positive=True),
     Variable("I_y", "I_y", "kg*m**2", "moment of inertia of the satellite in pitch", 678.0, positive=True),
     Variable("I_z", "I_z", "kg*m**2", "moment of inertia of the satellite in yaw", 1356.0, positive=True),
-    Variable("w0", r"\omega_0", "rad/s", "angular velocity in the orbit", 7.26e-5, positive=True),
+    Variable("w0", r"\omega_0", "rad/s", "orbital angular velocity", 7.26e-5, positive=True),
 )
 WHEEL = (
     Variable("I_wx", "I_{wx}", "kg*m**2", "transverse moment of inertia of the wheel", 0.05, positive=True),
@@ -68,9 +68,9 @@ PANELS = (
     Variable("J_x", "J_x", "kg*m**2", "elastic part of the moment of inertia in roll", 200.0, positive=True),
     Variable("J_y", "J_y", "kg*m**2", "elastic part of the moment of inertia in pitch", 200.0, positive=True),
     Variable("J_z", "J_z", "kg*m**2", "elastic part of the moment of inertia in yaw", 200.0, positive=True),
-    Variable("freq_x", r"\nu_x", "rad/s", "frequency of the mode about x, the body fixed", 0.6, positive=True),
-    Variable("freq_y", r"\nu_y", "rad/s", "frequency of the mode about y, the body fixed", 0.9, positive=True),
-    Variable("freq_z", r"\nu_z", "rad/s", "frequency of the mode about z, the body fixed", 0.7, positive=True),
+    Variable("freq_x", r"\nu_x", "rad/s", "frequency of the mode about x, with the body fixed", 0.6, positive=True),
+    Variable("freq_y", r"\nu_y", "rad/s", "frequency of the mode about y, with the body fixed", 0.9, positive=True),
+    Variable("freq_z", r"\nu_z", "rad/s", "frequency of the mode about z, with the body fixed", 0.7, positive=True),
     Variable("zeta_x", r"\zeta_x", "1", "damping ratio of the mode about x", 0.005),
     Variable("zeta_y", r"\zeta_y", "1", "damping ratio of the mode about y", 0.005),
     Variable("zeta_z", r"\zeta_z", "1", "damping ratio of the mode about z", 0.005),
@@ -228,7 +228,7 @@ def model(
 
 gimballed_wheel = model(
     "gimballed_wheel",
-    "Satellite with a momentum wheel in two gimbals and a flexible mode about each axis",
+    "Satellite with a double-gimballed momentum wheel and a flexible mode about each axis",
     (*GIMBALS, *MODES),
     (*GIMBAL_RATES, *MODE_RATES, *SPEED),
     CONTROLS,
@@ -240,7 +240,7 @@ gimballed_wheel = model(
 h = Variable("h", "h", "N*m*s", "angular momentum of the wheel relative to the body, along -y", 9.4247784)
 gyrostat = model(
     "gyrostat",
-    "Satellite with a constant momentum of its wheel along -y, in a circular orbit",
+    "Satellite in a circular orbit with constant wheel momentum along -y",
     (),
     (),
     TORQUES,
@@ -280,7 +280,7 @@ def about_rest(
 
 gyrostat_linear = about_rest(
     "gyrostat_linear",
-    "Gyrostat that points to the Earth, linearised about rest",
+    "Earth-pointing gyrostat, linearised about rest",
     gyrostat,
     ATTITUDE,
     ANGLE_RATES,
@@ -315,7 +315,7 @@ roll_yaw_locked = about_rest(
 )
 roll_yaw_manoeuvre = Problem(
     name="roll_yaw_manoeuvre",
-    title="Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques",
+    title="Roll and yaw manoeuvre of a gyrostat with minimum integral of squared torques",
     model=roll_yaw_locked,
     running_cost=sum(torque**2 for torque in symbols_of(TORQUES)) / 2,
     control_set="box",
@@ -323,8 +323,8 @@ roll_yaw_manoeuvre = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Satellite with a momentum wheel in two gimbals and a flexible mode about each axis": (
-            "Satelit dengan roda momentum dalam dua gimbal dan satu modus lentur pada setiap sumbu"
+        "Satellite with a double-gimballed momentum wheel and a flexible mode about each axis": (
+            "Satelit dengan roda momentum bergimbal ganda dan satu modus lentur pada setiap sumbu"
         ),
         "Satellite with a gimballed wheel and flexible modes, linearised about rest": (
             "Satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
@@ -332,16 +332,16 @@ TRANSLATIONS = {
         "Roll and yaw of a satellite with a gimballed wheel and flexible modes, linearised about rest": (
             "Guling dan geleng satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
         ),
-        "Satellite with a constant momentum of its wheel along -y, in a circular orbit": (
-            "Satelit dengan momentum roda yang konstan sepanjang sumbu -y, pada orbit lingkaran"
+        "Satellite in a circular orbit with constant wheel momentum along -y": (
+            "Satelit pada orbit lingkaran dengan momentum roda konstan sepanjang sumbu -y"
         ),
-        "Gyrostat that points to the Earth, linearised about rest": (
+        "Earth-pointing gyrostat, linearised about rest": (
             "Girostat yang mengarah ke Bumi, linearisasi di sekitar keadaan diam"
         ),
         "Roll and yaw of a gyrostat, linearised about rest": (
             "Guling dan geleng girostat, linearisasi di sekitar keadaan diam"
         ),
-        "Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques": (
+        "Roll and yaw manoeuvre of a gyrostat with minimum integral of squared torques": (
             "Manuver guling dan geleng girostat dengan integral kuadrat torsi yang minimum"
         ),
         "roll angle, about x, after yaw": "sudut guling, terhadap sumbu x, sesudah geleng",
@@ -363,7 +363,7 @@ TRANSLATIONS = {
         "rate of the roll angle": "laju perubahan sudut guling",
         "rate of the yaw angle": "laju perubahan sudut geleng",
         "rate of the pitch angle": "laju perubahan sudut angguk",
-        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan sudut roda dari nominalnya",
+        "deviation of the wheel speed from its nominal value": "simpangan kecepatan sudut roda dari nominalnya",
         "torque of the actuator on the inner gimbal": "torsi aktuator pada gimbal dalam",
         "torque of the actuator on the outer gimbal": "torsi aktuator pada gimbal luar",
         "torque of the motor between wheel and inner gimbal": "torsi motor antara roda dan gimbal dalam",
@@ -377,7 +377,7 @@ TRANSLATIONS = {
         "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
         "transverse moment of inertia of the wheel": "momen inersia melintang roda",
         "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
-        "angular velocity in the orbit": "kecepatan sudut orbit",
+        "orbital angular velocity": "kecepatan sudut orbit",
         "nominal speed of the wheel": "kecepatan sudut nominal roda",
         "stiffness of the spring on the inner gimbal": "kekakuan pegas pada gimbal dalam",
         "stiffness of the spring on the outer gimbal": "kekakuan pegas pada gimbal luar",
@@ -389,9 +389,15 @@ TRANSLATIONS = {
         "body": "benda",
         "wheel": "roda",
         "mode": "modus",
-        "frequency of the mode about x, the body fixed": "frekuensi modus terhadap sumbu x, dengan benda dijepit",
-        "frequency of the mode about y, the body fixed": "frekuensi modus terhadap sumbu y, dengan benda dijepit",
-        "frequency of the mode about z, the body fixed": "frekuensi modus terhadap sumbu z, dengan benda dijepit",
+        "frequency of the mode about x, with the body fixed": (
+            "frekuensi modus terhadap sumbu x, dengan benda dijepit"
+        ),
+        "frequency of the mode about y, with the body fixed": (
+            "frekuensi modus terhadap sumbu y, dengan benda dijepit"
+        ),
+        "frequency of the mode about z, with the body fixed": (
+            "frekuensi modus terhadap sumbu z, dengan benda dijepit"
+        ),
         "damping ratio of the mode about x": "rasio redaman modus terhadap sumbu x",
         "damping ratio of the mode about y": "rasio redaman modus terhadap sumbu y",
         "damping ratio of the mode about z": "rasio redaman modus terhadap sumbu z",

@@ -8,7 +8,7 @@ from sympy import Matrix, cos, sin, sqrt
 
 from satsym.symbolic import Definition, Linearised, Newton, Output, Variable, symbols_of, t
 
-WAYS = ("outwards", "along the track", "along the normal of the orbit")
+WAYS = ("in the radial direction", "along the track", "along the orbit normal")
 ORIGINAL = tuple(Variable(q, q, "km", f"position {way}") for q, way in zip("xyz", WAYS, strict=True))
 ORIGINAL += tuple(Variable(f"{q.symbol}_dot", rf"\dot {q.latex}", "km/s", f"rate of {q.symbol}") for q in ORIGINAL)
 STATES = tuple(
@@ -48,7 +48,7 @@ about = {x: sigma, y: 0, z: 0, x_dot: 0, y_dot: 0, z_dot: 0}
 
 hill = Linearised(
     name="hill",
-    title="Hill's equations: motion near a circular orbit, in and out of its plane",
+    title="Hill's equations: three-dimensional motion near a circular orbit",
     of=turning,
     about=about,
     states=STATES,
@@ -62,24 +62,24 @@ hill = Linearised(
 TRANSLATIONS = {
     "id": {
         "Two-body motion in rotating axes": "Gerak dua benda pada sumbu yang berputar",
-        "Hill's equations: motion near a circular orbit, in and out of its plane": (
-            "Persamaan Hill: gerak di dekat orbit lingkaran, di dalam dan di luar bidangnya"
+        "Hill's equations: three-dimensional motion near a circular orbit": (
+            "Persamaan Hill: gerak tiga dimensi di dekat orbit lingkaran"
         ),
-        "position outwards": "posisi ke arah luar",
+        "position in the radial direction": "posisi ke arah luar",
         "position along the track": "posisi ke arah depan",
-        "position along the normal of the orbit": "posisi sepanjang normal bidang orbit",
+        "position along the orbit normal": "posisi sepanjang normal bidang orbit",
         "rate of x": "laju perubahan x",
         "rate of y": "laju perubahan y",
         "rate of z": "laju perubahan z",
-        "deviation outwards": "simpangan ke arah luar",
+        "deviation in the radial direction": "simpangan ke arah luar",
         "deviation along the track": "simpangan ke arah depan",
-        "deviation along the normal of the orbit": "simpangan sepanjang normal bidang orbit",
+        "deviation along the orbit normal": "simpangan sepanjang normal bidang orbit",
         "rate of xi": "laju perubahan xi",
         "rate of eta": "laju perubahan eta",
         "rate of zeta": "laju perubahan zeta",
-        "thrust per unit mass outwards": "gaya dorong per satuan massa ke arah luar",
+        "thrust per unit mass in the radial direction": "gaya dorong per satuan massa ke arah luar",
         "thrust per unit mass along the track": "gaya dorong per satuan massa ke arah depan",
-        "thrust per unit mass along the normal of the orbit": (
+        "thrust per unit mass along the orbit normal": (
             "gaya dorong per satuan massa sepanjang normal bidang orbit"
         ),
         "distance from the plane of the reference orbit": "jarak dari bidang orbit acuan",

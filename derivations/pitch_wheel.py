@@ -28,19 +28,19 @@ from satsym.symbolic import (
 STATES = (
     Variable("theta", r"\theta", "rad", "pitch angle from the local vertical"),
     Variable("theta_dot", r"\dot\theta", "rad/s", "rate of the pitch angle"),
-    Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel's speed from its nominal one"),
+    Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel speed from its nominal value"),
 )
-CONTROLS = (Variable("wheel_torque", "T_w", "N*m", "inertia of the wheel times its acceleration relative to the body"),)
+CONTROLS = (Variable("wheel_torque", "T_w", "N*m", "wheel inertia times angular acceleration relative to the body"),)
 PARAMETERS = (
     Variable("I_x", "I_x", "kg*m**2", "moment of inertia of the satellite in roll", 1356.0, positive=True),
     Variable("I_y", "I_y", "kg*m**2", "moment of inertia of the satellite in pitch", 678.0, positive=True),
     Variable("I_z", "I_z", "kg*m**2", "moment of inertia of the satellite in yaw", 1356.0, positive=True),
     Variable("I_wy", "I_{wy}", "kg*m**2", "moment of inertia of the wheel about its axis", 0.09, positive=True),
-    Variable("w0", r"\omega_0", "rad/s", "angular velocity in the orbit", 7.26e-5, positive=True),
+    Variable("w0", r"\omega_0", "rad/s", "orbital angular velocity", 7.26e-5, positive=True),
     Variable("nominal_speed", r"\Omega_n", "rad/s", "nominal speed of the wheel", 104.71976, positive=True),
 )
 MOTOR = (
-    Variable("R_a", "R_a", "ohm", "resistance of the armature", 10.0, positive=True),
+    Variable("R_a", "R_a", "ohm", "armature resistance", 10.0, positive=True),
     Variable("K_t", "K_t", "N*m/A", "torque constant", 0.05, positive=True),
     Variable("K_m", "K_m", "rad/V/s", "speed constant", 20.0, positive=True),
 )
@@ -80,8 +80,8 @@ pitch_wheel = Gyrostat(
     ),
 )
 
-DAMPING = Variable("E", "E", "1/s", "damping: the double pole lies at -E", 0.01, positive=True)
-STEP = Variable("P_c", "P_c", "rad", "pitch angle that is commanded at time 0", 0.025, positive=True)
+DAMPING = Variable("E", "E", "1/s", "damping parameter; the double pole is at -E", 0.01, positive=True)
+STEP = Variable("P_c", "P_c", "rad", "pitch angle commanded at time 0", 0.025, positive=True)
 GAINS = (
     Variable("K1", "K_1", "N*m*s", "gain of the rate"),
     Variable("K2", "K_2", "N*m", "gain of the angle"),
@@ -90,7 +90,7 @@ K1, K2 = symbols_of(GAINS)
 
 pitch_classical = ClosedLoop(
     name="pitch_classical",
-    title="Pitch axis under a proportional-derivative law, critically damped",
+    title="Pitch axis under a critically damped proportional-derivative law",
     of=replace(pitch_wheel, parameters=PARAMETERS, motors=pitch_wheel.motors, quantities=()),
     states=STATES,
     controls=(),
@@ -104,8 +104,8 @@ pitch_classical = ClosedLoop(
 )
 
 LIMIT = Variable("torque_max", r"T_{\max}", "N*m", "maximum torque of the wheel", positive=True)
-SCALED_POWER = Variable("scaled_power", "p", "1", "power in units of what heats the motor at the maximum torque")
-C_P = Variable("C_p", "C_p", "1", "weight of the wheel's power against the heat", 0.1)
+SCALED_POWER = Variable("scaled_power", "p", "1", "power relative to the heat dissipated at maximum torque")
+C_P = Variable("C_p", "C_p", "1", "weight of the wheel power relative to the heat", 0.1)
 SCALED_STATES = (
     Variable("X1", "X_1", "1", "pitch angle"),
     Variable("X2", "X_2", "1", "rate of the pitch angle, in a unit of time set by the maximum torque"),
@@ -135,7 +135,7 @@ relative = 1 - I_wy / I_y
 pitch_scaled_power = replace(
     pitch_scaled,
     name="pitch_scaled_power",
-    title="Pitch axis of a symmetric satellite with the power of its motor, nondimensional",
+    title="Pitch axis of a symmetric satellite with motor power, nondimensional",
     parameters=(C_P,),
     groups={C_p: K_t * I_y / (K_m * R_a * I_wy * relative * torque_max * unit_of_time)},
     along={wheel_speed: I_y * theta_dot / I_wy},
@@ -150,7 +150,7 @@ pitch_scaled_power = replace(
 # From rest, the wheel's speed follows from the rate of the body, as all that turns the one turns the other back.
 pitch_symmetric = Reduced(
     name="pitch_symmetric",
-    title="Pitch axis of a symmetric satellite that starts at rest",
+    title="Pitch axis of a symmetric satellite starting from rest",
     of=pitch_wheel,
     states=STATES[:2],
     controls=CONTROLS,
@@ -160,28 +160,28 @@ pitch_symmetric = Reduced(
 )
 pitch_minimum_energy = Problem(
     name="pitch_minimum_energy",
-    title="Pitch manoeuvre of minimum electrical energy",
+    title="Pitch manoeuvre with minimum electrical energy",
     model=pitch_symmetric,
     running_cost=power,
     control_set="box",
 )
 pitch_minimum_time = Problem(
     name="pitch_minimum_time",
-    title="Pitch manoeuvre in minimum time",
+    title="Minimum-time pitch manoeuvre",
     model=pitch_symmetric,
     running_cost=1,
     control_set="box",
 )
 pitch_scaled_energy = Problem(
     name="pitch_scaled_energy",
-    title="Pitch manoeuvre of minimum energy, nondimensional",
+    title="Minimum-energy pitch manoeuvre, nondimensional",
     model=pitch_scaled_power,
     running_cost=scaled_power,
     control_set="box",
 )
 pitch_scaled_time = Problem(
     name="pitch_scaled_time",
-    title="Pitch manoeuvre in minimum time, nondimensional",
+    title="Minimum-time pitch manoeuvre, nondimensional",
     model=pitch_scaled,
     running_cost=1,
     control_set="box",
@@ -192,48 +192,48 @@ TRANSLATIONS = {
         "body": "benda",
         "wheel": "roda",
         "Pitch axis of a satellite with a reaction wheel": "Sumbu angguk satelit dengan roda reaksi",
-        "Pitch axis under a proportional-derivative law, critically damped": (
+        "Pitch axis under a critically damped proportional-derivative law": (
             "Sumbu angguk dengan hukum proporsional-derivatif, teredam kritis"
         ),
         "Pitch axis of a symmetric satellite, nondimensional": "Sumbu angguk satelit simetris, tak berdimensi",
-        "Pitch axis of a symmetric satellite with the power of its motor, nondimensional": (
+        "Pitch axis of a symmetric satellite with motor power, nondimensional": (
             "Sumbu angguk satelit simetris dengan daya motornya, tak berdimensi"
         ),
-        "Pitch axis of a symmetric satellite that starts at rest": (
+        "Pitch axis of a symmetric satellite starting from rest": (
             "Sumbu angguk satelit simetris yang mulai dari keadaan diam"
         ),
-        "Pitch manoeuvre of minimum electrical energy": "Manuver angguk dengan energi listrik minimum",
-        "Pitch manoeuvre in minimum time": "Manuver angguk dengan waktu minimum",
-        "Pitch manoeuvre of minimum energy, nondimensional": "Manuver angguk dengan energi minimum, tak berdimensi",
-        "Pitch manoeuvre in minimum time, nondimensional": "Manuver angguk dengan waktu minimum, tak berdimensi",
+        "Pitch manoeuvre with minimum electrical energy": "Manuver angguk dengan energi listrik minimum",
+        "Minimum-time pitch manoeuvre": "Manuver angguk dengan waktu minimum",
+        "Minimum-energy pitch manoeuvre, nondimensional": "Manuver angguk dengan energi minimum, tak berdimensi",
+        "Minimum-time pitch manoeuvre, nondimensional": "Manuver angguk dengan waktu minimum, tak berdimensi",
         "pitch angle from the local vertical": "sudut angguk dari vertikal setempat",
         "rate of the pitch angle": "laju perubahan sudut angguk",
-        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan sudut roda dari nominalnya",
-        "inertia of the wheel times its acceleration relative to the body": (
+        "deviation of the wheel speed from its nominal value": "simpangan kecepatan sudut roda dari nominalnya",
+        "wheel inertia times angular acceleration relative to the body": (
             "momen inersia roda kali percepatan sudutnya relatif terhadap benda"
         ),
         "moment of inertia of the satellite in roll": "momen inersia guling satelit",
         "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
         "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
         "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
-        "angular velocity in the orbit": "kecepatan sudut orbit",
+        "orbital angular velocity": "kecepatan sudut orbit",
         "nominal speed of the wheel": "kecepatan sudut nominal roda",
-        "resistance of the armature": "hambatan jangkar",
+        "armature resistance": "hambatan jangkar",
         "torque constant": "konstanta torsi",
         "speed constant": "konstanta kecepatan",
         "torque of the motor between wheel and body": "torsi motor antara roda dan benda",
         "current of the motor": "arus motor",
         "voltage across the motor": "tegangan motor",
         "electrical power of the motor": "daya listrik motor",
-        "damping: the double pole lies at -E": "redaman: kutub ganda terletak di -E",
-        "pitch angle that is commanded at time 0": "sudut angguk yang diperintahkan pada waktu 0",
+        "damping parameter; the double pole is at -E": "redaman: kutub ganda terletak di -E",
+        "pitch angle commanded at time 0": "sudut angguk yang diperintahkan pada waktu 0",
         "gain of the rate": "penguatan laju perubahan sudut",
         "gain of the angle": "penguatan sudut",
         "maximum torque of the wheel": "torsi maksimum roda",
-        "power in units of what heats the motor at the maximum torque": (
-            "daya dalam satuan daya panas motor pada torsi maksimum"
+        "power relative to the heat dissipated at maximum torque": (
+            "daya relatif terhadap daya panas pada torsi maksimum"
         ),
-        "weight of the wheel's power against the heat": "bobot daya roda terhadap panas",
+        "weight of the wheel power relative to the heat": "bobot daya roda terhadap panas",
         "pitch angle": "sudut angguk",
         "rate of the pitch angle, in a unit of time set by the maximum torque": (
             "laju perubahan sudut angguk, dengan satuan waktu yang ditentukan oleh torsi maksimum"

@@ -44,7 +44,7 @@ e_theta = Matrix([-sin(theta), cos(theta)])
 
 orbit = Newton(
     name="polar_motion",
-    title="Motion of a satellite in polar coordinates",
+    title="Satellite motion in polar coordinates",
     states=STATES,
     controls=CONTROLS,
     parameters=PARAMETERS,
@@ -61,7 +61,7 @@ MISS = (k1 * (r - sigma) ** 2 + k2 * r_dot**2 + k3 * (theta - omega * t) ** 2 + 
 
 polar_orbit = Problem(
     name="polar_orbit",
-    title="Minimum-effort transfer of a satellite in polar coordinates",
+    title="Minimum-effort satellite transfer in polar coordinates",
     model=orbit,
     running_cost=EFFORT,
     terminal_cost=MISS,
@@ -70,7 +70,7 @@ polar_orbit = Problem(
 
 polar_orbit_timed = Problem(
     name="polar_orbit_timed",
-    title="Transfer of a satellite in polar coordinates, weighing time against effort",
+    title="Satellite transfer in polar coordinates, trading time against effort",
     # Where the final time is free, effort alone has no minimum: longer is always cheaper.
     model=replace(orbit, parameters=(*PARAMETERS, TIME_WEIGHT)),
     running_cost=c0 + EFFORT,
@@ -80,7 +80,7 @@ polar_orbit_timed = Problem(
 
 polar_orbit_ball = Problem(
     name="polar_orbit_ball",
-    title="Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates",
+    title="Minimum-effort satellite transfer with one steerable engine, in polar coordinates",
     # One engine pointed anywhere in the plane: its thrust is limited in norm and has one weight.
     model=replace(orbit, parameters=tuple(ONE_WEIGHT.get(v.symbol, v) for v in PARAMETERS if v.symbol != "c2")),
     running_cost=c1 * (u1**2 + u2**2) / 2,
@@ -90,14 +90,14 @@ polar_orbit_ball = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Motion of a satellite in polar coordinates": "Gerak satelit dalam koordinat polar",
-        "Minimum-effort transfer of a satellite in polar coordinates": (
+        "Satellite motion in polar coordinates": "Gerak satelit dalam koordinat polar",
+        "Minimum-effort satellite transfer in polar coordinates": (
             "Transfer satelit dengan upaya minimum dalam koordinat polar"
         ),
-        "Transfer of a satellite in polar coordinates, weighing time against effort": (
+        "Satellite transfer in polar coordinates, trading time against effort": (
             "Transfer satelit dalam koordinat polar dengan bobot waktu dan upaya"
         ),
-        "Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates": (
+        "Minimum-effort satellite transfer with one steerable engine, in polar coordinates": (
             "Transfer satelit dengan upaya minimum dan satu mesin yang dapat diarahkan, dalam koordinat polar"
         ),
         "distance from the centre of force": "jarak dari pusat gaya",

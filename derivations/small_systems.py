@@ -38,7 +38,7 @@ stable_node = FirstOrder(
 
 three_modes = FirstOrder(
     name="three_modes",
-    title="Three real modes, two of them growing",
+    title="Three real modes, two of which grow",
     states=STATES,
     controls=(),
     parameters=(),
@@ -47,7 +47,7 @@ three_modes = FirstOrder(
 
 explicit_time = FirstOrder(
     name="explicit_time",
-    title="A motion with explicit time and a quadratic output",
+    title="Explicit time dependence and a quadratic output",
     states=STATES[:2],
     controls=(CONTROL,),
     parameters=(),
@@ -57,7 +57,7 @@ explicit_time = FirstOrder(
 
 time_varying = Linearised(
     name="time_varying",
-    title="Linearisation about a motion that varies with time",
+    title="Linearisation about a time-varying trajectory",
     of=explicit_time,
     about={x1: t * sin(t), x2: -cos(t), u1: sin(t)},
     states=DEVIATIONS,
@@ -69,10 +69,10 @@ time_varying = Linearised(
 
 singular_regulator = Problem(
     name="singular_regulator",
-    title="Minimum square deviation, at no cost of the control",
+    title="Singular regulator: minimum squared deviation, control at no cost",
     # Full control towards zero, where it stays on an arc of order one.
     model=FirstOrder(
-        name="integrator", title="A rate", states=STATES[:1], controls=(CONTROL,), parameters=(), rates={x1: u1}
+        name="integrator", title="Integrator", states=STATES[:1], controls=(CONTROL,), parameters=(), rates={x1: u1}
     ),
     running_cost=x1**2 / 2,
     control_set="box",
@@ -80,11 +80,11 @@ singular_regulator = Problem(
 
 van_der_pol = Problem(
     name="van_der_pol",
-    title="Damping of Van der Pol's oscillator, at no cost of the control",
+    title="Damping the Van der Pol oscillator, control at no cost",
     # The usual example of a bang-singular optimum: x(0) = (0, 1), |u1| <= 1, t_f = 4.
     model=FirstOrder(
         name="oscillator",
-        title="Van der Pol's oscillator",
+        title="Van der Pol oscillator",
         states=STATES[:2],
         controls=(CONTROL,),
         parameters=(),
@@ -98,17 +98,19 @@ TRANSLATIONS = {
     "id": {
         "A saddle: one state grows, the other decays": "Titik pelana: satu keadaan tumbuh, yang lain meluruh",
         "A stable node: both states decay": "Simpul stabil: kedua keadaan meluruh",
-        "Three real modes, two of them growing": "Tiga modus real, dua di antaranya tumbuh",
-        "A motion with explicit time and a quadratic output": "Gerak dengan waktu eksplisit dan keluaran kuadratik",
-        "Linearisation about a motion that varies with time": (
+        "Three real modes, two of which grow": "Tiga modus real, dua di antaranya tumbuh",
+        "Explicit time dependence and a quadratic output": "Gerak dengan waktu eksplisit dan keluaran kuadratik",
+        "Linearisation about a time-varying trajectory": (
             "Linearisasi di sekitar gerak yang berubah terhadap waktu"
         ),
-        "Minimum square deviation, at no cost of the control": "Kuadrat simpangan minimum tanpa biaya kontrol",
-        "A rate": "Suatu laju",
-        "Damping of Van der Pol's oscillator, at no cost of the control": (
+        "Singular regulator: minimum squared deviation, control at no cost": (
+            "Kuadrat simpangan minimum tanpa biaya kontrol"
+        ),
+        "Integrator": "Suatu laju",
+        "Damping the Van der Pol oscillator, control at no cost": (
             "Peredaman osilator Van der Pol tanpa biaya kontrol"
         ),
-        "Van der Pol's oscillator": "Osilator Van der Pol",
+        "Van der Pol oscillator": "Osilator Van der Pol",
         "state 1": "variabel keadaan 1",
         "state 2": "variabel keadaan 2",
         "state 3": "variabel keadaan 3",

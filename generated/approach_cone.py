@@ -1,11 +1,11 @@
-"""Rendezvous from behind within an approach cone.
+"""Rendezvous from behind inside an approach cone.
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
-Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: c6982f48064f5c8ff8926adee8b9e700cdf2a2d5cdecf9e2e72561c232f6db1e
+Source: ../derivations/examples/kept_orbit.py a219be342db377a0d34bc088b831769d
+Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: 450a21b90774313c873af8053d9eda027209bdcf78ce2536a9e0634772a6cd81
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'approach_cone',
-    'title': 'Rendezvous from behind within an approach cone',
+    'title': 'Rendezvous from behind inside an approach cone',
     'source': 'derivations/examples/kept_orbit.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of force'},
@@ -32,7 +32,7 @@ MODEL = {
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'slope', 'latex': 'k', 'meaning': 'slope of the approach cone', 'default': 0.5, 'positive': True},
-        {'symbol': 'mouth', 'latex': 'd', 'unit': 'km', 'meaning': 'half the width of the cone at its end', 'default': 0.001, 'positive': True},
+        {'symbol': 'mouth', 'latex': 'd', 'unit': 'km', 'meaning': 'half-width of the cone at the target', 'default': 0.001, 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

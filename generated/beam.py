@@ -1,9 +1,9 @@
-"""A clamped beam under a ceiling.
+"""Clamped beam with bounded deflection.
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py a9c3edbc54598754d0b528e1f2a1368f
-Digest: 9b3bfc2b5a530083d537eb0bc455e0c68e7bf00c8f47ad4c0f224466f5e735cf
+Source: ../derivations/examples/bryson_denham.py d33e108ac9b934fa469ba0a91f27916a
+Digest: 702b1a1f02da3b0c0aa7b312a798a3cb5007b7985bb842052e2d5bfa8c8b48b2
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'beam',
-    'title': 'A clamped beam under a ceiling',
+    'title': 'Clamped beam with bounded deflection',
     'source': 'derivations/examples/bryson_denham.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'deflection at the distance t along the beam'},

@@ -1,9 +1,9 @@
-"""A bead slides along a curve in minimum time.
+"""Brachistochrone: a bead sliding down a curve in minimum time.
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py 3fafb385d5a150e2447093a68c078fa6
-Digest: ccbaef3213ff00e0f9f465ce60b4b85fce8cdf41d7651ad17aed65906c505a5e
+Source: ../derivations/examples/brachistochrone.py 275a697eda192e53251d0df935bcab93
+Digest: 9c7d7f68e45ca1cef9b5566778142c1117422d4e76798d315f6d520ce88886a3
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'brachistochrone',
-    'title': 'A bead slides along a curve in minimum time',
+    'title': 'Brachistochrone: a bead sliding down a curve in minimum time',
     'source': 'derivations/examples/brachistochrone.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'unit': 'm', 'meaning': 'horizontal distance'},
@@ -22,7 +22,7 @@ MODEL = {
         {'symbol': 'v', 'latex': 'v', 'unit': 'm/s', 'meaning': 'speed'},
     ),
     'controls': (
-        {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'direction of the motion below the horizontal', 'kind': 'angle'},
+        {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'angle of the path below the horizontal', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'acceleration of gravity', 'default': 9.80665, 'positive': True},

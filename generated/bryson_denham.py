@@ -1,9 +1,9 @@
-"""Minimum effort before a wall.
+"""Bryson-Denham problem: minimum effort with a position limit.
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py a9c3edbc54598754d0b528e1f2a1368f
-Digest: 58d08b88cbc4a010f5e0efd70be9ca9d60517da5efe0ad13fc075ce71adc8ee8
+Source: ../derivations/examples/bryson_denham.py d33e108ac9b934fa469ba0a91f27916a
+Digest: 425d2bd600eb2a8e3daf55b6efcff4b003406f9db1a42e6ef9077f477918ee7a
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'bryson_denham',
-    'title': 'Minimum effort before a wall',
+    'title': 'Bryson-Denham problem: minimum effort with a position limit',
     'source': 'derivations/examples/bryson_denham.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'position'},

@@ -1,9 +1,9 @@
-"""A cart swings its pole up with minimum effort.
+"""Minimum-effort swing-up of a cart-pole.
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 6874fa0b9f89e5bbfbfcf65b07168b21
-Digest: 711b81b8e0eb55678ee01b52b2698d7e688d8f303e0f643868280c0e0c4c5703
+Source: ../derivations/examples/cart_pole.py 16eef76897b0f71c230d85cdbb1b1553
+Digest: 5a1ed27aefdd6e49a0c9f0e497a09ef53ba101c5669b5cb0a6bc3ce8080f7f81
 """
 
 import math
@@ -14,11 +14,11 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'cart_pole',
-    'title': 'A cart swings its pole up with minimum effort',
+    'title': 'Minimum-effort swing-up of a cart-pole',
     'source': 'derivations/examples/cart_pole.py',
     'states': (
         {'symbol': 'q1', 'latex': 'q_1', 'unit': 'm', 'meaning': 'position of the cart'},
-        {'symbol': 'q2', 'latex': 'q_2', 'unit': 'rad', 'meaning': 'angle of the pole, from hanging', 'kind': 'angle'},
+        {'symbol': 'q2', 'latex': 'q_2', 'unit': 'rad', 'meaning': 'angle of the pole from the hanging position', 'kind': 'angle'},
         {'symbol': 'v1', 'latex': 'v_1', 'unit': 'm/s', 'meaning': 'velocity of the cart'},
         {'symbol': 'v2', 'latex': 'v_2', 'unit': 'rad/s', 'meaning': 'angular velocity of the pole'},
     ),
@@ -27,7 +27,7 @@ MODEL = {
     ),
     'parameters': (
         {'symbol': 'm1', 'latex': 'm_1', 'unit': 'kg', 'meaning': 'mass of the cart', 'default': 1.0, 'positive': True},
-        {'symbol': 'm2', 'latex': 'm_2', 'unit': 'kg', 'meaning': "mass at the pole's end", 'default': 0.3, 'positive': True},
+        {'symbol': 'm2', 'latex': 'm_2', 'unit': 'kg', 'meaning': 'mass at the end of the pole', 'default': 0.3, 'positive': True},
         {'symbol': 'l', 'latex': '\\ell', 'unit': 'm', 'meaning': 'length of the pole', 'default': 0.5, 'positive': True},
         {'symbol': 'g', 'latex': 'g', 'unit': 'm/s^2', 'meaning': 'acceleration of gravity', 'default': 9.81, 'positive': True},
     ),

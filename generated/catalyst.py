@@ -1,9 +1,9 @@
-"""Mixing of two catalysts for the largest yield.
+"""Catalyst mixing for maximum yield.
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Source: ../derivations/examples/catalyst.py d67ddf7b1d4e1ce71e1cb1ea89772f8e
-Digest: 33667b7f9b1402491da5bc70a54d0d23d2c290fa51e70212d856ba1015f0acdb
+Source: ../derivations/examples/catalyst.py 979215c7c2d95f612f8cf29188a79611
+Digest: 3e044d0beea715e05cd23053d45febce6798b92ea793cfd568e598659b0f6953
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'catalyst',
-    'title': 'Mixing of two catalysts for the largest yield',
+    'title': 'Catalyst mixing for maximum yield',
     'source': 'derivations/examples/catalyst.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'fraction of substance 1'},

@@ -1,9 +1,9 @@
-"""A hanging chain.
+"""Hanging chain of given length.
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py 26edb034318c5de06f36975a5d6abdfa
-Digest: c3aa5127455a335ab89910f1107676dbbf331880329a049ee867b2f737b686c0
+Source: ../derivations/examples/chain.py dc9c99caf6d9d84a6d043ca86614cb68
+Digest: ca84f222bb5be9c2bf0527aaedcd5d7dc7f69d0ccbc4bb629f03b51195c5c844
 """
 
 import math
@@ -14,11 +14,11 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'chain',
-    'title': 'A hanging chain',
+    'title': 'Hanging chain of given length',
     'source': 'derivations/examples/chain.py',
     'states': (
         {'symbol': 'height', 'latex': 'y', 'meaning': 'height at the horizontal distance t'},
-        {'symbol': 'length', 'latex': 's', 'meaning': 'length so far'},
+        {'symbol': 'length', 'latex': 's', 'meaning': 'arc length up to this point'},
     ),
     'controls': (
         {'symbol': 'slope', 'latex': 'u', 'meaning': 'slope of the chain'},

@@ -1,10 +1,10 @@
-"""Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised.
+"""Clohessy-Wiltshire equations: linearised in-plane motion near a circular orbit.
 
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
-Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 3fd4ce2a34e253bf732f8a9979b2df5fd24d43d83dd9e5d861e101cedb7fee98
+Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: 47892e2104e77649baa2cff9aa6652390b266da55f86465cafbc89509a358858
 """
 
 import math
@@ -15,7 +15,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'clohessy_wiltshire',
-    'title': 'Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised',
+    'title': 'Clohessy-Wiltshire equations: linearised in-plane motion near a circular orbit',
     'source': 'derivations/clohessy_wiltshire.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of force'},

@@ -1,9 +1,9 @@
-"""Minimum energy for a body on a line.
+"""Double integrator, minimum energy.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: db3fb153ab0d30e6d5366aafba04a31eb58756638237a3719c056646ba9cf142
+Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
+Digest: 834801b7bc9f99b8712c05e420a8488f1241d45456769286a972fc28f0e51066
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_energy',
-    'title': 'Minimum energy for a body on a line',
+    'title': 'Double integrator, minimum energy',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},

@@ -1,9 +1,9 @@
-"""Minimum fuel for a body on a line, weighing time against it.
+"""Double integrator, minimum fuel with a weight on time.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: 5979573d820c8fb80d6222c8b1956b246bae6deb20196bb921b56fab044548d3
+Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
+Digest: 010b37c589eee5bc826cdec843bbbce0a33e5eede5b8bb049304838498758b65
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_fuel',
-    'title': 'Minimum fuel for a body on a line, weighing time against it',
+    'title': 'Double integrator, minimum fuel with a weight on time',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},
@@ -24,7 +24,7 @@ MODEL = {
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'm/s**2', 'meaning': 'thrust per unit mass'},
     ),
     'parameters': (
-        {'symbol': 'weight_time', 'latex': 'c_0', 'unit': 'm/s**2', 'meaning': 'weight of time against fuel', 'default': 0.0},
+        {'symbol': 'weight_time', 'latex': 'c_0', 'unit': 'm/s**2', 'meaning': 'weight of time relative to fuel', 'default': 0.0},
     ),
     'control_set': 'box',
     'has_cost': True,

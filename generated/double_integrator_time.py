@@ -1,9 +1,9 @@
-"""Minimum time for a body on a line.
+"""Double integrator, minimum time.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
-Digest: 4d2cd2f6673b91e02367705a2a3a741474c24a97680ee7d22a210fe82cad94fb
+Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
+Digest: fbaf16f51b5953d598fdd20f301f97492781085004507133fc94039bcfa4e877
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_time',
-    'title': 'Minimum time for a body on a line',
+    'title': 'Double integrator, minimum time',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},

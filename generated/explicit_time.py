@@ -1,9 +1,9 @@
-"""A motion with explicit time and a quadratic output.
+"""Explicit time dependence and a quadratic output.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 6d6dd3aae4ac840b634c597158401d3dbeef734f70b6388e733066bf34ddd050
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: ecf7e6f49a08cfda500b40bd30851475b2cffdb82800ba5dbcde1898b9f3678e
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'explicit_time',
-    'title': 'A motion with explicit time and a quadratic output',
+    'title': 'Explicit time dependence and a quadratic output',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

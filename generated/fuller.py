@@ -1,9 +1,9 @@
-"""Minimum squared distance of a body on a line that is brought to rest.
+"""Fuller's problem: bringing a body to rest with minimum squared distance.
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Source: ../derivations/examples/fuller.py 892f877c73c232e8bee850c5bbbaa5e3
-Digest: 586f846e229f2e5a6740c16a46c6328faa6117c96607654acf4eb495eb0f0716
+Source: ../derivations/examples/fuller.py 2cb3cb08b7b9d8865645466ac34fe795
+Digest: e0005308a18ec97f9c1e47011d6b76404a13a3a429036dc46ee2387582c95a1d
 """
 
 import math
@@ -14,14 +14,14 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'fuller',
-    'title': 'Minimum squared distance of a body on a line that is brought to rest',
+    'title': "Fuller's problem: bringing a body to rest with minimum squared distance",
     'source': 'derivations/examples/fuller.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'position'},
         {'symbol': 'x2', 'latex': 'x_2', 'meaning': 'velocity'},
     ),
     'controls': (
-        {'symbol': 'u', 'latex': 'u', 'meaning': 'force per mass'},
+        {'symbol': 'u', 'latex': 'u', 'meaning': 'force per unit mass'},
     ),
     'parameters': (),
     'control_set': 'box',

@@ -1,9 +1,9 @@
-"""Satellite with a momentum wheel in two gimbals and a flexible mode about each axis.
+"""Satellite with a double-gimballed momentum wheel and a flexible mode about each axis.
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: df476d54edc553233bb07fc4030e157c043c5dbe4a47d8f76ea669c1d5d37d6c
+Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
+Digest: 187edc90f1613505a803aa391b7cc70b2e7832cf8996d856865fdbe1af5346ca
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'gimballed_wheel',
-    'title': 'Satellite with a momentum wheel in two gimbals and a flexible mode about each axis',
+    'title': 'Satellite with a double-gimballed momentum wheel and a flexible mode about each axis',
     'source': 'derivations/gimballed_wheel.py',
     'states': (
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'roll angle, about x, after yaw', 'kind': 'angle'},
@@ -33,7 +33,7 @@ MODEL = {
         {'symbol': 'eta_x_dot', 'latex': '\\dot\\eta_x', 'unit': 'rad/s', 'meaning': 'rate of deflection about x'},
         {'symbol': 'eta_y_dot', 'latex': '\\dot\\eta_y', 'unit': 'rad/s', 'meaning': 'rate of deflection about y'},
         {'symbol': 'eta_z_dot', 'latex': '\\dot\\eta_z', 'unit': 'rad/s', 'meaning': 'rate of deflection about z'},
-        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
+        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': 'deviation of the wheel speed from its nominal value'},
     ),
     'controls': (
         {'symbol': 'T_cx', 'latex': 'T_{cx}', 'unit': 'N*m', 'meaning': 'torque of the actuator on the inner gimbal'},
@@ -44,7 +44,7 @@ MODEL = {
         {'symbol': 'I_x', 'latex': 'I_x', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in roll', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'transverse moment of inertia of the wheel', 'default': 0.05, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
@@ -55,9 +55,9 @@ MODEL = {
         {'symbol': 'J_x', 'latex': 'J_x', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in roll', 'default': 200.0, 'positive': True},
         {'symbol': 'J_y', 'latex': 'J_y', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in pitch', 'default': 200.0, 'positive': True},
         {'symbol': 'J_z', 'latex': 'J_z', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in yaw', 'default': 200.0, 'positive': True},
-        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, the body fixed', 'default': 0.6, 'positive': True},
-        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, the body fixed', 'default': 0.9, 'positive': True},
-        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, the body fixed', 'default': 0.7, 'positive': True},
+        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, with the body fixed', 'default': 0.6, 'positive': True},
+        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, with the body fixed', 'default': 0.9, 'positive': True},
+        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, with the body fixed', 'default': 0.7, 'positive': True},
         {'symbol': 'zeta_x', 'latex': '\\zeta_x', 'meaning': 'damping ratio of the mode about x', 'default': 0.005},
         {'symbol': 'zeta_y', 'latex': '\\zeta_y', 'meaning': 'damping ratio of the mode about y', 'default': 0.005},
         {'symbol': 'zeta_z', 'latex': '\\zeta_z', 'meaning': 'damping ratio of the mode about z', 'default': 0.005},

@@ -1,9 +1,9 @@
-"""Ascent of a rocket to the maximum height.
+"""Goddard rocket: ascent to maximum altitude.
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py f910bce215a6ccf293711b457bbce341
-Digest: d381af853080740b73aff7b2dbede8e3881528d049ba31d88be4cfa79f405577
+Source: ../derivations/examples/goddard.py 72da9274824e67514deea4f1c33cc7db
+Digest: 4e7b58484a5706fbe0aec6afc2d1a4bdf2dd4b81cb4e29172dc0147b83a40760
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'goddard',
-    'title': 'Ascent of a rocket to the maximum height',
+    'title': 'Goddard rocket: ascent to maximum altitude',
     'source': 'derivations/examples/goddard.py',
     'states': (
         {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre of force', 'positive': True, 'typical': (1.0, 1.02)},
@@ -25,7 +25,7 @@ MODEL = {
         {'symbol': 'T', 'latex': 'T', 'meaning': 'thrust', 'typical': (0.0, 3.5)},
     ),
     'parameters': (
-        {'symbol': 'D0', 'latex': 'D_0', 'meaning': 'drag at velocity one and the initial height', 'default': 310.0, 'positive': True},
+        {'symbol': 'D0', 'latex': 'D_0', 'meaning': 'drag at unit velocity and initial height', 'default': 310.0, 'positive': True},
         {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'rate of decrease of the drag with height', 'default': 500.0, 'positive': True},
         {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'acceleration of gravity at the initial height', 'default': 1.0, 'positive': True},
         {'symbol': 'c', 'latex': 'c', 'meaning': 'exhaust velocity', 'default': 0.5, 'positive': True},

@@ -1,9 +1,9 @@
-"""Ascent of a rocket to the maximum height with bounded dynamic pressure.
+"""Goddard rocket: ascent to maximum altitude under a dynamic-pressure limit.
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py bd529685d69fdd4bd230aa01eccbf41a
-Digest: be0e9c3f46b2581c854841289beb48f309a7cbe5706baebb155b84c222a08d9c
+Source: ../derivations/examples/goddard_pressure.py 665907bada7e8a66339422ae6ae75233
+Digest: e6746adf7fff8e3aa7ff659c9f7ca2bc1145013c89b95543b16398fd88dfac36
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'goddard_pressure',
-    'title': 'Ascent of a rocket to the maximum height with bounded dynamic pressure',
+    'title': 'Goddard rocket: ascent to maximum altitude under a dynamic-pressure limit',
     'source': 'derivations/examples/goddard_pressure.py',
     'states': (
         {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre of force', 'positive': True, 'typical': (1.0, 1.02)},
@@ -26,11 +26,11 @@ MODEL = {
     ),
     'parameters': (
         {'symbol': 'rho0', 'latex': '\\rho_0', 'meaning': 'density of the air at the initial height', 'default': 12400.0, 'positive': True},
-        {'symbol': 'area', 'latex': 'A_{\\mathrm{ref}}', 'meaning': 'area that drag acts on', 'default': 0.05, 'positive': True},
+        {'symbol': 'area', 'latex': 'A_{\\mathrm{ref}}', 'meaning': 'drag reference area', 'default': 0.05, 'positive': True},
         {'symbol': 'beta', 'latex': '\\beta', 'meaning': 'rate of decrease of the density with height', 'default': 500.0, 'positive': True},
         {'symbol': 'g0', 'latex': 'g_0', 'meaning': 'acceleration of gravity at the initial height', 'default': 1.0, 'positive': True},
         {'symbol': 'c', 'latex': 'c', 'meaning': 'exhaust velocity', 'default': 0.5, 'positive': True},
-        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'meaning': 'largest dynamic pressure', 'default': 10.0, 'positive': True},
+        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'meaning': 'maximum dynamic pressure', 'default': 10.0, 'positive': True},
     ),
     'control_set': 'box',
     'has_cost': True,

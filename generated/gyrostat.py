@@ -1,9 +1,9 @@
-"""Satellite with a constant momentum of its wheel along -y, in a circular orbit.
+"""Satellite in a circular orbit with constant wheel momentum along -y.
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: aedf8d0c18205749c4ca594520343bb32eb8683a1bc36cb2ce036002335f2423
+Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
+Digest: b63bee05b435104dffa43e1468cbf5878884f61a27942211efe9d362cdc0c2f6
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'gyrostat',
-    'title': 'Satellite with a constant momentum of its wheel along -y, in a circular orbit',
+    'title': 'Satellite in a circular orbit with constant wheel momentum along -y',
     'source': 'derivations/gimballed_wheel.py',
     'states': (
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'roll angle, about x, after yaw', 'kind': 'angle'},
@@ -32,7 +32,7 @@ MODEL = {
         {'symbol': 'I_x', 'latex': 'I_x', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in roll', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'h', 'latex': 'h', 'unit': 'N*m*s', 'meaning': 'angular momentum of the wheel relative to the body, along -y', 'default': 9.4247784},
     ),
     'control_set': None,

@@ -1,9 +1,9 @@
-"""Hill's equations: motion near a circular orbit, in and out of its plane.
+"""Hill's equations: three-dimensional motion near a circular orbit.
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py 66258a956b3e347b9dc50d88cd6e9d3c
-Digest: 78d0a90016f730ee84c4f94f34fa2e26724e71baa21075bbb208553cbb4ec05e
+Source: ../derivations/hill.py 259ef4f5596dc615c6f0be54bd7d5c51
+Digest: cfcd970f4a403a6ca9570b003b6542071613f41c344ab87db8555a26a5640526
 """
 
 import math
@@ -14,20 +14,20 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'hill',
-    'title': "Hill's equations: motion near a circular orbit, in and out of its plane",
+    'title': "Hill's equations: three-dimensional motion near a circular orbit",
     'source': 'derivations/hill.py',
     'states': (
-        {'symbol': 'xi', 'latex': '\\xi', 'unit': 'km', 'meaning': 'deviation outwards'},
+        {'symbol': 'xi', 'latex': '\\xi', 'unit': 'km', 'meaning': 'deviation in the radial direction'},
         {'symbol': 'eta', 'latex': '\\eta', 'unit': 'km', 'meaning': 'deviation along the track'},
-        {'symbol': 'zeta', 'latex': '\\zeta', 'unit': 'km', 'meaning': 'deviation along the normal of the orbit'},
+        {'symbol': 'zeta', 'latex': '\\zeta', 'unit': 'km', 'meaning': 'deviation along the orbit normal'},
         {'symbol': 'xi_dot', 'latex': '\\dot\\xi', 'unit': 'km/s', 'meaning': 'rate of xi'},
         {'symbol': 'eta_dot', 'latex': '\\dot\\eta', 'unit': 'km/s', 'meaning': 'rate of eta'},
         {'symbol': 'zeta_dot', 'latex': '\\dot\\zeta', 'unit': 'km/s', 'meaning': 'rate of zeta'},
     ),
     'controls': (
-        {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass outwards'},
+        {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass in the radial direction'},
         {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the track'},
-        {'symbol': 'u3', 'latex': 'u_3', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the normal of the orbit'},
+        {'symbol': 'u3', 'latex': 'u_3', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along the orbit normal'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},

@@ -1,9 +1,9 @@
-"""From one state to another in a long time, with minimum deviation and effort.
+"""Hypersensitive problem: minimum deviation and effort over a long time.
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Source: ../derivations/examples/hypersensitive.py edb7f9bd814aec08f1ecb6f9c3167e70
-Digest: a819333f92a346d5d6dab84e46dc93019d2a2812c327f684c45f7ccc3a78a3aa
+Source: ../derivations/examples/hypersensitive.py f2c15e6ed073733a72e940129bedbcfe
+Digest: 5685532c3a85d661999a9775cd6574293f27b20084636bd26131ef22433b21bc
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'hypersensitive',
-    'title': 'From one state to another in a long time, with minimum deviation and effort',
+    'title': 'Hypersensitive problem: minimum deviation and effort over a long time',
     'source': 'derivations/examples/hypersensitive.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'state'},

@@ -1,11 +1,11 @@
-"""Rendezvous through a point of inspection.
+"""Rendezvous via an inspection point.
 
 Written by satsym from derivations/examples/inspection.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/inspection.py
-Source: ../derivations/examples/inspection.py 6da5a587341891c6f4801fc2c03ae8fe
-Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 32139de970e89c39cf8309c13223514fff5c8c710568d6f81dcd96cdc6ba617d
+Source: ../derivations/examples/inspection.py 5abb94dec1a998bdcccb69c51124c48d
+Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: b5cc5d5d1a5d1fa98856da363949d227c00f1039af8ba6d3ce353f605f867b26
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'inspection',
-    'title': 'Rendezvous through a point of inspection',
+    'title': 'Rendezvous via an inspection point',
     'source': 'derivations/examples/inspection.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of force'},

@@ -1,9 +1,9 @@
-"""Steering in minimum time.
+"""Minimum-time steering in a plane: the linear tangent law.
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Source: ../derivations/examples/linear_tangent.py 21100ef60880ff810d69f603f7045b00
-Digest: 820255ab7691db2363e6ff325a1117a0658c87cbe500c9445db94248008c7d05
+Source: ../derivations/examples/linear_tangent.py ac8c4b3869d9937eab0f6dcc0f4027f6
+Digest: dec8e4a9a745390fdcac3d74505dc7349a0763a489d06f4ed5c035a7ab896dae
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'linear_tangent',
-    'title': 'Steering in minimum time',
+    'title': 'Minimum-time steering in a plane: the linear tangent law',
     'source': 'derivations/examples/linear_tangent.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'horizontal distance'},

@@ -1,9 +1,9 @@
-"""Minimum effort around two discs.
+"""Minimum-effort path around two circular obstacles.
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 0cd032b520fe23bf490ab4bdbd67e31b
-Digest: b8789407434e8d837d4d0c741057079be8f1395f13a8ae200fbef121d91daec2
+Source: ../derivations/examples/obstacle.py 5d13c27044b75f0651ad0839c535dd3c
+Digest: 8b919b5b555a31fe6cc665b8c87b37ba67f90230d6a4f100b7d2db92a3169b18
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'obstacle',
-    'title': 'Minimum effort around two discs',
+    'title': 'Minimum-effort path around two circular obstacles',
     'source': 'derivations/examples/obstacle.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'position in the direction of the end'},

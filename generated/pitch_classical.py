@@ -1,9 +1,9 @@
-"""Pitch axis under a proportional-derivative law, critically damped.
+"""Pitch axis under a critically damped proportional-derivative law.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 8c65cef30c0a62232f33c37e1906286b2a592a2fa9e1accba29e30d760d8d9f0
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: 9371f770888f857ef0e48ea0c2a4ab22971932e9c73a895c65d3afdfd31a475f
 """
 
 import math
@@ -14,12 +14,12 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_classical',
-    'title': 'Pitch axis under a proportional-derivative law, critically damped',
+    'title': 'Pitch axis under a critically damped proportional-derivative law',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'rate of the pitch angle'},
-        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
+        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': 'deviation of the wheel speed from its nominal value'},
     ),
     'controls': (),
     'parameters': (
@@ -27,10 +27,10 @@ MODEL = {
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
-        {'symbol': 'E', 'latex': 'E', 'unit': '1/s', 'meaning': 'damping: the double pole lies at -E', 'default': 0.01, 'positive': True},
-        {'symbol': 'P_c', 'latex': 'P_c', 'unit': 'rad', 'meaning': 'pitch angle that is commanded at time 0', 'default': 0.025, 'positive': True},
+        {'symbol': 'E', 'latex': 'E', 'unit': '1/s', 'meaning': 'damping parameter; the double pole is at -E', 'default': 0.01, 'positive': True},
+        {'symbol': 'P_c', 'latex': 'P_c', 'unit': 'rad', 'meaning': 'pitch angle commanded at time 0', 'default': 0.025, 'positive': True},
     ),
     'control_set': None,
     'has_cost': False,

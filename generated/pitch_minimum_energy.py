@@ -1,9 +1,9 @@
-"""Pitch manoeuvre of minimum electrical energy.
+"""Pitch manoeuvre with minimum electrical energy.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: b62b2fe23da3bee853d2f3b81189ad8ef4498be0179da2239030c2cebb18f773
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: f304c63072519cd8a3358fddc3e6b1bf976b72c5017d68003095cf0586f9818a
 """
 
 import math
@@ -14,20 +14,20 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_minimum_energy',
-    'title': 'Pitch manoeuvre of minimum electrical energy',
+    'title': 'Pitch manoeuvre with minimum electrical energy',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'rate of the pitch angle'},
     ),
     'controls': (
-        {'symbol': 'wheel_torque', 'latex': 'T_w', 'unit': 'N*m', 'meaning': 'inertia of the wheel times its acceleration relative to the body'},
+        {'symbol': 'wheel_torque', 'latex': 'T_w', 'unit': 'N*m', 'meaning': 'wheel inertia times angular acceleration relative to the body'},
     ),
     'parameters': (
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
-        {'symbol': 'R_a', 'latex': 'R_a', 'unit': 'ohm', 'meaning': 'resistance of the armature', 'default': 10.0, 'positive': True},
+        {'symbol': 'R_a', 'latex': 'R_a', 'unit': 'ohm', 'meaning': 'armature resistance', 'default': 10.0, 'positive': True},
         {'symbol': 'K_t', 'latex': 'K_t', 'unit': 'N*m/A', 'meaning': 'torque constant', 'default': 0.05, 'positive': True},
         {'symbol': 'K_m', 'latex': 'K_m', 'unit': 'rad/V/s', 'meaning': 'speed constant', 'default': 20.0, 'positive': True},
     ),
@@ -40,7 +40,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'quantities': (
-        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
+        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': 'deviation of the wheel speed from its nominal value'},
         {'symbol': 'motor_torque', 'latex': 'T_m', 'unit': 'N*m', 'meaning': 'torque of the motor between wheel and body'},
         {'symbol': 'current', 'latex': 'i', 'unit': 'A', 'meaning': 'current of the motor'},
         {'symbol': 'voltage', 'latex': 'V', 'unit': 'V', 'meaning': 'voltage across the motor'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: f99222f98d0b75f7737b36cc50e827d290a1a61ff036fc4052bf214506a5cc0c
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: 539da0e325b781be54364ee24548c62e0babf05669d962b1343ea07fe78a48fc
 """
 
 import math

@@ -1,9 +1,9 @@
-"""Pitch manoeuvre of minimum energy, nondimensional.
+"""Minimum-energy pitch manoeuvre, nondimensional.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: a3ffefd881361fb68a97e1a6eaab01203a71c94f8d0f968c9e89697b35aa412c
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: 57eeb8927621336e4f53cd49aaf851462a3f0c492da7c68ce741d0f0fcd71640
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_scaled_energy',
-    'title': 'Pitch manoeuvre of minimum energy, nondimensional',
+    'title': 'Minimum-energy pitch manoeuvre, nondimensional',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
@@ -24,7 +24,7 @@ MODEL = {
         {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},
     ),
     'parameters': (
-        {'symbol': 'C_p', 'latex': 'C_p', 'meaning': "weight of the wheel's power against the heat", 'default': 0.1},
+        {'symbol': 'C_p', 'latex': 'C_p', 'meaning': 'weight of the wheel power relative to the heat', 'default': 0.1},
     ),
     'control_set': 'box',
     'has_cost': True,
@@ -35,7 +35,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'quantities': (
-        {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power in units of what heats the motor at the maximum torque'},
+        {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power relative to the heat dissipated at maximum torque'},
     ),
     'objective_unit': '1',
 }

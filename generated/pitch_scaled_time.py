@@ -1,9 +1,9 @@
-"""Pitch manoeuvre in minimum time, nondimensional.
+"""Minimum-time pitch manoeuvre, nondimensional.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: 521f2291f8317ac82323ebb16adceba5ef6590a7d778e9a20d31573efe79421f
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: a6e935899ebce782df5521cf0365f65689f571c25e69e00255fd2ecdd6cc2ce5
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_scaled_time',
-    'title': 'Pitch manoeuvre in minimum time, nondimensional',
+    'title': 'Minimum-time pitch manoeuvre, nondimensional',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 29c099c1e6792b20a8943f49e87ddd98
-Digest: f67aa3aff3ea9b1e6fd385dc4aeeffa577dce1ffcdaa9ff2a5387681af206203
+Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
+Digest: 7a93dc1c86bddf751877eb0cb10bfbe940fc44240150506cce867753a12bc810
 """
 
 import math
@@ -19,19 +19,19 @@ MODEL = {
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'rate of the pitch angle'},
-        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': "deviation of the wheel's speed from its nominal one"},
+        {'symbol': 'wheel_speed', 'latex': '\\Omega', 'unit': 'rad/s', 'meaning': 'deviation of the wheel speed from its nominal value'},
     ),
     'controls': (
-        {'symbol': 'wheel_torque', 'latex': 'T_w', 'unit': 'N*m', 'meaning': 'inertia of the wheel times its acceleration relative to the body'},
+        {'symbol': 'wheel_torque', 'latex': 'T_w', 'unit': 'N*m', 'meaning': 'wheel inertia times angular acceleration relative to the body'},
     ),
     'parameters': (
         {'symbol': 'I_x', 'latex': 'I_x', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in roll', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
-        {'symbol': 'R_a', 'latex': 'R_a', 'unit': 'ohm', 'meaning': 'resistance of the armature', 'default': 10.0, 'positive': True},
+        {'symbol': 'R_a', 'latex': 'R_a', 'unit': 'ohm', 'meaning': 'armature resistance', 'default': 10.0, 'positive': True},
         {'symbol': 'K_t', 'latex': 'K_t', 'unit': 'N*m/A', 'meaning': 'torque constant', 'default': 0.05, 'positive': True},
         {'symbol': 'K_m', 'latex': 'K_m', 'unit': 'rad/V/s', 'meaning': 'speed constant', 'default': 20.0, 'positive': True},
     ),

@@ -1,9 +1,9 @@
-"""Minimum-effort transfer of a satellite in polar coordinates.
+"""Minimum-effort satellite transfer in polar coordinates.
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 6f87b7430ce31913de33bb6c20b395638075fd05aa849bea220f6972ab0c9fb1
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: 9bf6dcac5bb89ab91e7466f9832f235ff60a0d7463879d5cf6b8d7d986d1da4b
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'polar_orbit',
-    'title': 'Minimum-effort transfer of a satellite in polar coordinates',
+    'title': 'Minimum-effort satellite transfer in polar coordinates',
     'source': 'derivations/polar_orbit.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},

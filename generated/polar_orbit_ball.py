@@ -1,9 +1,9 @@
-"""Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates.
+"""Minimum-effort satellite transfer with one steerable engine, in polar coordinates.
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 7d3e1e5e8a27e4d53ea425768606c9c53da0e73c027ce40b8ebfd37bdd427369
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: 0c08f5687296e9ac5c6c006d8bdc46eb8f119fc269dbf3e75b922adb28c0144b
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'polar_orbit_ball',
-    'title': 'Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates',
+    'title': 'Minimum-effort satellite transfer with one steerable engine, in polar coordinates',
     'source': 'derivations/polar_orbit.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},

@@ -1,9 +1,9 @@
-"""Transfer of a satellite in polar coordinates, weighing time against effort.
+"""Satellite transfer in polar coordinates, trading time against effort.
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 4114c3b3efbb98f42d6ebf44619bd6bca3b8201a71045fd2326c89b2d7a0315a
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: df47438d7e04fd6da06157bc45c2c82979b9041f07dfdff4c8dfa4c92fa508db
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'polar_orbit_timed',
-    'title': 'Transfer of a satellite in polar coordinates, weighing time against effort',
+    'title': 'Satellite transfer in polar coordinates, trading time against effort',
     'source': 'derivations/polar_orbit.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},

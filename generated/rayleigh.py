@@ -1,9 +1,9 @@
-"""Damping of Rayleigh's oscillator.
+"""Damping the Rayleigh oscillator.
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
-Digest: 3133e7738f9ec52acfb2937a284be541673ccca655024131201b3680281e5ee1
+Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
+Digest: 1b5e264822bf001e11406835210fcfb9bbf8b5441ccfe578dd5b05dbb016285a
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'rayleigh',
-    'title': "Damping of Rayleigh's oscillator",
+    'title': 'Damping the Rayleigh oscillator',
     'source': 'derivations/examples/oscillators.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

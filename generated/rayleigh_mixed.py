@@ -1,9 +1,9 @@
-"""Damping of Rayleigh's oscillator with a control bounded by the state.
+"""Damping the Rayleigh oscillator with a state-dependent control bound.
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
-Digest: 51586845f8e1f3bb0dc80a8f8abf2d1ee1f2458c565240187590ce5ce81ae4c1
+Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
+Digest: 198b54e661455e7b5ff3f339aee3b1458818b57e165ff063aa89c11f075f8acb
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'rayleigh_mixed',
-    'title': "Damping of Rayleigh's oscillator with a control bounded by the state",
+    'title': 'Damping the Rayleigh oscillator with a state-dependent control bound',
     'source': 'derivations/examples/oscillators.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

@@ -1,9 +1,9 @@
-"""Rest-to-rest reorientation of a rigid body in minimum time.
+"""Minimum-time rest-to-rest reorientation of a rigid body.
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py b99e01db2d5a8d7c6d97282fd1532c59
-Digest: fac32aee972c3db080f18eab7bb373dfd6b7de46ade87e77bbfa87236344e485
+Source: ../derivations/examples/reorientation.py 308f0c47c7d0f0b28b0c78d3508bc1b5
+Digest: 00aa9ffab9eeb5b9d98c60817e8375a54395c5ba0915b500e80f84727ce9a7c8
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'reorientation',
-    'title': 'Rest-to-rest reorientation of a rigid body in minimum time',
+    'title': 'Minimum-time rest-to-rest reorientation of a rigid body',
     'source': 'derivations/examples/reorientation.py',
     'states': (
         {'symbol': 'q1', 'latex': 'q_1', 'meaning': 'component 1 of the quaternion'},

@@ -1,11 +1,11 @@
-"""Return to the orbit above a smallest radius.
+"""Return to the orbit with a minimum radius.
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
-Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 82daa054f31226489972013f86c68836e00e8d99012a0fa45d440dba49b29250
+Source: ../derivations/examples/kept_orbit.py a219be342db377a0d34bc088b831769d
+Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: 23234ee6ef1fbc185429a71d1f851e467fd31542e7d7fb76a309c7b640af331b
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'return_above',
-    'title': 'Return to the orbit above a smallest radius',
+    'title': 'Return to the orbit with a minimum radius',
     'source': 'derivations/examples/kept_orbit.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},
@@ -33,7 +33,7 @@ MODEL = {
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the tangential thrust', 'default': 1.0, 'positive': True},
-        {'symbol': 'r_min', 'latex': 'r_{\\min}', 'unit': 'km', 'meaning': 'smallest distance allowed from the centre of force', 'positive': True},
+        {'symbol': 'r_min', 'latex': 'r_{\\min}', 'unit': 'km', 'meaning': 'minimum distance from the centre of force', 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

@@ -1,11 +1,11 @@
-"""Return to the orbit within a slot of angle about the reference.
+"""Return to the orbit within an angular slot about the reference.
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 80c2312435957872b320f09eaa205bae
-Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
-Source: ../derivations/polar_orbit.py dfa37e1cbb2bb4bb459718bbb183b24f
-Digest: 0a4b5986963b6fa028ad55e5db21a6dbed53599fc3790f36c58158993e67da37
+Source: ../derivations/examples/kept_orbit.py a219be342db377a0d34bc088b831769d
+Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
+Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
+Digest: e8e9988313da0ca3f9815ea51c882efce427375f95bf293f2391982b7470da7f
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'return_in_slot',
-    'title': 'Return to the orbit within a slot of angle about the reference',
+    'title': 'Return to the orbit within an angular slot about the reference',
     'source': 'derivations/examples/kept_orbit.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},
@@ -33,7 +33,7 @@ MODEL = {
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the tangential thrust', 'default': 1.0, 'positive': True},
-        {'symbol': 'slot', 'latex': '\\Delta', 'unit': 'rad', 'meaning': 'half the width of the slot, as an angle', 'positive': True},
+        {'symbol': 'slot', 'latex': '\\Delta', 'unit': 'rad', 'meaning': 'angular half-width of the slot', 'positive': True},
     ),
     'control_set': 'free',
     'has_cost': True,

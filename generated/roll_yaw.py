@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: c5101bfddbeb82304e7b235a6345394c15f531398772bb6699e89df6fd59f733
+Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
+Digest: 0176d1860bfd6219554dd8c965e2a18e4e08bea93c725aecc2ed35a9b95ecf4c
 """
 
 import math
@@ -38,7 +38,7 @@ MODEL = {
         {'symbol': 'I_x', 'latex': 'I_x', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in roll', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'I_wx', 'latex': 'I_{wx}', 'unit': 'kg*m**2', 'meaning': 'transverse moment of inertia of the wheel', 'default': 0.05, 'positive': True},
         {'symbol': 'I_wy', 'latex': 'I_{wy}', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the wheel about its axis', 'default': 0.09, 'positive': True},
         {'symbol': 'nominal_speed', 'latex': '\\Omega_n', 'unit': 'rad/s', 'meaning': 'nominal speed of the wheel', 'default': 104.71976, 'positive': True},
@@ -49,9 +49,9 @@ MODEL = {
         {'symbol': 'J_x', 'latex': 'J_x', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in roll', 'default': 200.0, 'positive': True},
         {'symbol': 'J_y', 'latex': 'J_y', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in pitch', 'default': 200.0, 'positive': True},
         {'symbol': 'J_z', 'latex': 'J_z', 'unit': 'kg*m**2', 'meaning': 'elastic part of the moment of inertia in yaw', 'default': 200.0, 'positive': True},
-        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, the body fixed', 'default': 0.6, 'positive': True},
-        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, the body fixed', 'default': 0.9, 'positive': True},
-        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, the body fixed', 'default': 0.7, 'positive': True},
+        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, with the body fixed', 'default': 0.6, 'positive': True},
+        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, with the body fixed', 'default': 0.9, 'positive': True},
+        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, with the body fixed', 'default': 0.7, 'positive': True},
         {'symbol': 'zeta_x', 'latex': '\\zeta_x', 'meaning': 'damping ratio of the mode about x', 'default': 0.005},
         {'symbol': 'zeta_y', 'latex': '\\zeta_y', 'meaning': 'damping ratio of the mode about y', 'default': 0.005},
         {'symbol': 'zeta_z', 'latex': '\\zeta_z', 'meaning': 'damping ratio of the mode about z', 'default': 0.005},

@@ -1,9 +1,9 @@
-"""Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques.
+"""Roll and yaw manoeuvre of a gyrostat with minimum integral of squared torques.
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 6698b33b8593f51c6d2bc53d7f889401
-Digest: 4aafbce8f9ef6a836d6cca1e32cff378106cee672ea947175d0cb7b1ba0247da
+Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
+Digest: a401acd8cb53e8ad721f30a4b61591798b7fa1c427171d1eb03fa5357768087f
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'roll_yaw_manoeuvre',
-    'title': 'Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques',
+    'title': 'Roll and yaw manoeuvre of a gyrostat with minimum integral of squared torques',
     'source': 'derivations/gimballed_wheel.py',
     'states': (
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'roll angle, about x, after yaw', 'kind': 'angle'},
@@ -30,7 +30,7 @@ MODEL = {
         {'symbol': 'I_x', 'latex': 'I_x', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in roll', 'default': 1356.0, 'positive': True},
         {'symbol': 'I_y', 'latex': 'I_y', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in pitch', 'default': 678.0, 'positive': True},
         {'symbol': 'I_z', 'latex': 'I_z', 'unit': 'kg*m**2', 'meaning': 'moment of inertia of the satellite in yaw', 'default': 1356.0, 'positive': True},
-        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'angular velocity in the orbit', 'default': 7.26e-05, 'positive': True},
+        {'symbol': 'w0', 'latex': '\\omega_0', 'unit': 'rad/s', 'meaning': 'orbital angular velocity', 'default': 7.26e-05, 'positive': True},
         {'symbol': 'h', 'latex': 'h', 'unit': 'N*m*s', 'meaning': 'angular momentum of the wheel relative to the body, along -y', 'default': 9.4247784},
     ),
     'control_set': 'box',

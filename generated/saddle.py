@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: a66be63e1cc21bfc16ae65d202da8aea8d4cc16459443b052473e39f6d416628
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: 9d66e78bed8851721cc640b626765709169f2a3258e8bd502f367743604b83b2
 """
 
 import math

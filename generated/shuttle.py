@@ -1,9 +1,9 @@
-"""A shuttle glides to the largest latitude.
+"""Space shuttle entry with maximum cross-range.
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py bc2e05b62d9104c208bda8f0f26309bc
-Digest: 550c4d80f90af6e502a575bb28bbf1d9f4ad27933c4a791c88c9186876d875e6
+Source: ../derivations/examples/shuttle.py 91c1c2d356b6545ada3f1c75c9fa56a9
+Digest: 513c17d615aac0b52c02dcdc6214762170edbbcc8fa4d68ed4c52bd5c99f65c3
 """
 
 import math
@@ -14,19 +14,19 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'shuttle',
-    'title': 'A shuttle glides to the largest latitude',
+    'title': 'Space shuttle entry with maximum cross-range',
     'source': 'derivations/examples/shuttle.py',
     'states': (
         {'symbol': 'h', 'latex': 'h', 'unit': 'ft', 'meaning': 'altitude', 'typical': (80000.0, 260000.0)},
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'longitude', 'kind': 'angle', 'typical': (0.0, 1.0)},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'latitude', 'typical': (0.0, 1.0)},
         {'symbol': 'v', 'latex': 'v', 'unit': 'ft/s', 'meaning': 'speed', 'positive': True, 'typical': (2500.0, 26000.0)},
-        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'angle of the path above the horizontal', 'typical': (-0.1, 0.1)},
+        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'flight-path angle', 'typical': (-0.1, 0.1)},
         {'symbol': 'psi', 'latex': '\\psi', 'unit': 'rad', 'meaning': 'azimuth', 'typical': (0.0, 1.6)},
     ),
     'controls': (
         {'symbol': 'alpha', 'latex': '\\alpha', 'unit': 'deg', 'meaning': 'angle of attack', 'typical': (0.0, 30.0)},
-        {'symbol': 'beta', 'latex': '\\beta', 'unit': 'rad', 'meaning': 'bank', 'kind': 'angle'},
+        {'symbol': 'beta', 'latex': '\\beta', 'unit': 'rad', 'meaning': 'bank angle', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'mu', 'latex': '\\mu', 'unit': 'ft^3/s^2', 'meaning': 'gravitational parameter', 'default': 1.4076539e+16, 'positive': True},

@@ -1,9 +1,9 @@
-"""A shuttle glides to the largest latitude without being heated too much.
+"""Space shuttle entry with maximum cross-range under a heating limit.
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py bc2e05b62d9104c208bda8f0f26309bc
-Digest: b1bedbd83740e9011596e5fb9d211af17422c73ee58ad9cd62925a0fc72805e3
+Source: ../derivations/examples/shuttle.py 91c1c2d356b6545ada3f1c75c9fa56a9
+Digest: 525c107732bd65918823f178f6d6783d498ffa7b2f7d8193322b3eeb7ddbb4fb
 """
 
 import math
@@ -14,19 +14,19 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'shuttle_heating',
-    'title': 'A shuttle glides to the largest latitude without being heated too much',
+    'title': 'Space shuttle entry with maximum cross-range under a heating limit',
     'source': 'derivations/examples/shuttle.py',
     'states': (
         {'symbol': 'h', 'latex': 'h', 'unit': 'ft', 'meaning': 'altitude', 'typical': (80000.0, 260000.0)},
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'longitude', 'kind': 'angle', 'typical': (0.0, 1.0)},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'latitude', 'typical': (0.0, 1.0)},
         {'symbol': 'v', 'latex': 'v', 'unit': 'ft/s', 'meaning': 'speed', 'positive': True, 'typical': (2500.0, 26000.0)},
-        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'angle of the path above the horizontal', 'typical': (-0.1, 0.1)},
+        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'flight-path angle', 'typical': (-0.1, 0.1)},
         {'symbol': 'psi', 'latex': '\\psi', 'unit': 'rad', 'meaning': 'azimuth', 'typical': (0.0, 1.6)},
     ),
     'controls': (
         {'symbol': 'alpha', 'latex': '\\alpha', 'unit': 'deg', 'meaning': 'angle of attack', 'typical': (0.0, 30.0)},
-        {'symbol': 'beta', 'latex': '\\beta', 'unit': 'rad', 'meaning': 'bank', 'kind': 'angle'},
+        {'symbol': 'beta', 'latex': '\\beta', 'unit': 'rad', 'meaning': 'bank angle', 'kind': 'angle'},
     ),
     'parameters': (
         {'symbol': 'mu', 'latex': '\\mu', 'unit': 'ft^3/s^2', 'meaning': 'gravitational parameter', 'default': 1.4076539e+16, 'positive': True},
@@ -40,13 +40,13 @@ MODEL = {
         {'symbol': 'b_0', 'latex': 'b_0', 'meaning': 'drag coefficient at zero angle of attack', 'default': 0.07854, 'positive': True},
         {'symbol': 'b_1', 'latex': 'b_1', 'unit': '1/deg', 'meaning': 'slope of the drag coefficient at zero angle of attack', 'default': -0.0061592},
         {'symbol': 'b_2', 'latex': 'b_2', 'unit': '1/deg^2', 'meaning': 'quadratic coefficient of the drag', 'default': 0.000621408, 'positive': True},
-        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'unit': 'BTU/ft^2/s', 'meaning': 'heating rate that the leading edge stands', 'default': 70.0, 'positive': True},
-        {'symbol': 'q_r', 'latex': 'q_r', 'unit': 'BTU/ft^2/s', 'meaning': 'heating rate by ground air at the reference speed', 'default': 863.1359220887518, 'positive': True},
+        {'symbol': 'q_max', 'latex': 'q_{\\max}', 'unit': 'BTU/ft^2/s', 'meaning': 'maximum heating rate of the leading edge', 'default': 70.0, 'positive': True},
+        {'symbol': 'q_r', 'latex': 'q_r', 'unit': 'BTU/ft^2/s', 'meaning': 'heating rate at ground density and reference speed', 'default': 863.1359220887518, 'positive': True},
         {'symbol': 'v_r', 'latex': 'v_r', 'unit': 'ft/s', 'meaning': 'reference speed', 'default': 10000.0, 'positive': True},
         {'symbol': 'c_0', 'latex': 'c_0', 'meaning': 'heating coefficient at zero angle of attack', 'default': 1.0672181},
-        {'symbol': 'c_1', 'latex': 'c_1', 'unit': '1/deg', 'meaning': 'linear coefficient of the heating in that angle', 'default': -0.019213774},
-        {'symbol': 'c_2', 'latex': 'c_2', 'unit': '1/deg^2', 'meaning': 'quadratic coefficient of the heating in that angle', 'default': 0.00021286289},
-        {'symbol': 'c_3', 'latex': 'c_3', 'unit': '1/deg^3', 'meaning': 'cubic coefficient of the heating in that angle', 'default': -1.0117249e-06},
+        {'symbol': 'c_1', 'latex': 'c_1', 'unit': '1/deg', 'meaning': 'linear heating coefficient in the angle of attack', 'default': -0.019213774},
+        {'symbol': 'c_2', 'latex': 'c_2', 'unit': '1/deg^2', 'meaning': 'quadratic heating coefficient in the angle of attack', 'default': 0.00021286289},
+        {'symbol': 'c_3', 'latex': 'c_3', 'unit': '1/deg^3', 'meaning': 'cubic heating coefficient in the angle of attack', 'default': -1.0117249e-06},
     ),
     'control_set': 'product',
     'has_cost': True,

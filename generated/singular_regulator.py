@@ -1,9 +1,9 @@
-"""Minimum square deviation, at no cost of the control.
+"""Singular regulator: minimum squared deviation, control at no cost.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: ce06b273f0d7aca63ec1d82310405c6bdf8c29ac27a96516f56e8232fce07f36
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: 2f5133b3973830093fff0f47649fd30426e829982846e39283683174f7e7bf5c
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'singular_regulator',
-    'title': 'Minimum square deviation, at no cost of the control',
+    'title': 'Singular regulator: minimum squared deviation, control at no cost',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

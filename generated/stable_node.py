@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 49c2f010a96eca109cb7d877c3c91f3da0ce0231ae07fb35b95949c7141f0d52
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: ca92b7b161270c9c47e200b4af7ec63d6a26467f628be2374b5f3afbee79cf1e
 """
 
 import math

@@ -1,9 +1,9 @@
-"""Three real modes, two of them growing.
+"""Three real modes, two of which grow.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 0d520c03ad6bd24d1f127eccb124c0fc5440eb494601b2b055307db26c2065d6
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: 43e1ef3fcbb43d05ff2722316666a8e7cdd74ab87bcf8333d9e654e29330c923
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'three_modes',
-    'title': 'Three real modes, two of them growing',
+    'title': 'Three real modes, two of which grow',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

@@ -1,9 +1,9 @@
-"""Linearisation about a motion that varies with time.
+"""Linearisation about a time-varying trajectory.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 3ed82203a840260aec1df9406e93461a9f6de0c032384ade53aa94e029eca920
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: a6cb0896120c807956760cc08e90dcc6e7b77033b4dcefa545b25c4ac9ec52d8
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'time_varying',
-    'title': 'Linearisation about a motion that varies with time',
+    'title': 'Linearisation about a time-varying trajectory',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'z1', 'latex': 'z_1', 'meaning': 'deviation of state 1'},

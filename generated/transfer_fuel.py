@@ -1,9 +1,9 @@
-"""Transfer between circular orbits with minimum fuel.
+"""Minimum-fuel transfer between circular orbits.
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py a904c020c776e62343ad23874a7b6f37
-Digest: 04bee6dc7972982a7a4b164809f82ae4d645e5b62124b306a2ea05321314bc49
+Source: ../derivations/examples/transfer_fuel.py 73048f5972aaa24e39a2a29fc6654dac
+Digest: 364b362ceb51c9c91c74ad0bf0b069d9c5ef1034457b656f7ebd3a4f74868563
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'transfer_fuel',
-    'title': 'Transfer between circular orbits with minimum fuel',
+    'title': 'Minimum-fuel transfer between circular orbits',
     'source': 'derivations/examples/transfer_fuel.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre of force', 'positive': True},

@@ -1,9 +1,9 @@
-"""Transfer between circular orbits in minimum time.
+"""Minimum-time transfer between circular orbits.
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py 8dac91d34931c9427d3d84056043063d
-Digest: 51eb025bd0274510da729dcc175bec90d3a4465c522a509c2274f0a525dc980c
+Source: ../derivations/examples/transfer_time.py 3a047f8f9a2240910e911051f1ab1f5e
+Digest: 3d9604b4aa9f936831c20dd7667fed384ae84c2b216ae3af7770ef8f7024b6a7
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'transfer_time',
-    'title': 'Transfer between circular orbits in minimum time',
+    'title': 'Minimum-time transfer between circular orbits',
     'source': 'derivations/examples/transfer_time.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre of force', 'positive': True},
@@ -27,7 +27,7 @@ MODEL = {
     'parameters': (
         {'symbol': 'mu', 'latex': '\\mu', 'meaning': 'gravitational parameter', 'default': 1.0, 'positive': True},
         {'symbol': 'F', 'latex': 'F', 'meaning': 'thrust over the initial mass', 'default': 0.1405, 'positive': True},
-        {'symbol': 'w', 'latex': 'w', 'meaning': 'flow of mass over the initial mass', 'default': 0.07487, 'positive': True},
+        {'symbol': 'w', 'latex': 'w', 'meaning': 'mass flow rate over the initial mass', 'default': 0.07487, 'positive': True},
     ),
     'control_set': 'product',
     'has_cost': True,

@@ -1,9 +1,9 @@
-"""Damping of Van der Pol's oscillator, at no cost of the control.
+"""Damping the Van der Pol oscillator, control at no cost.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 8e067ab85a4823c54e3c7b4d4854d01f
-Digest: 02b81998f6bd567bd3bb98586e67a88c7c855281a67601eed32824036289640f
+Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
+Digest: bb23c9f8eb6579d13fa0724dc9a9652b79ef86caed69d4d52ce31fad606f502c
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'van_der_pol',
-    'title': "Damping of Van der Pol's oscillator, at no cost of the control",
+    'title': 'Damping the Van der Pol oscillator, control at no cost',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

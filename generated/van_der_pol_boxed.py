@@ -1,9 +1,9 @@
-"""Damping of Van der Pol's oscillator with a bounded control.
+"""Damping the Van der Pol oscillator with a bounded control.
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py aba4f240664631369a07798cf268aec9
-Digest: ddbb5b8e5f114489efdec504816ad19215db38c7e0af781c645c5be6c2958b74
+Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
+Digest: df1faed9e5d53acaedb345e31617f451cbf409928cf8eb0b45197f574c50d1df
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'van_der_pol_boxed',
-    'title': "Damping of Van der Pol's oscillator with a bounded control",
+    'title': 'Damping the Van der Pol oscillator with a bounded control',
     'source': 'derivations/examples/oscillators.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},

@@ -1,9 +1,9 @@
-"""A ship crosses a linear current in minimum time.
+"""Zermelo's problem: minimum-time crossing of a linear current.
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Source: ../derivations/examples/zermelo.py 3971a73f58bc2a2d63f8d2ea1665e8d7
-Digest: e2873b8fdafe45980f20ac664baa5aa29b9f8f716d601f8ba050c754e233ea9f
+Source: ../derivations/examples/zermelo.py ce3a3e523556ff7436403819fa2cf8b6
+Digest: 450625f492736dbc4078540121db4265d1aebefb53def5557becd06e3bc33633
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'zermelo',
-    'title': 'A ship crosses a linear current in minimum time',
+    'title': "Zermelo's problem: minimum-time crossing of a linear current",
     'source': 'derivations/examples/zermelo.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'distance along the current'},

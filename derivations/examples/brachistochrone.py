@@ -13,7 +13,7 @@ STATES = (
     Variable("y", "y", "m", meaning="height"),
     Variable("v", "v", "m/s", meaning="speed"),
 )
-CONTROLS = (Variable("theta", r"\theta", "rad", meaning="direction of the motion below the horizontal", kind="angle"),)
+CONTROLS = (Variable("theta", r"\theta", "rad", meaning="angle of the path below the horizontal", kind="angle"),)
 PARAMETERS = (Variable("g", "g", "m/s^2", meaning="acceleration of gravity", default=9.80665, positive=True),)
 x, y, v = symbols_of(STATES)
 (theta,) = symbols_of(CONTROLS)
@@ -21,10 +21,10 @@ x, y, v = symbols_of(STATES)
 
 brachistochrone = Problem(
     name="brachistochrone",
-    title="A bead slides along a curve in minimum time",
+    title="Brachistochrone: a bead sliding down a curve in minimum time",
     model=FirstOrder(
         name="bead",
-        title="A bead on a curve",
+        title="Bead on a curve",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -36,12 +36,14 @@ brachistochrone = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "A bead slides along a curve in minimum time": "Manik meluncur sepanjang kurva dengan waktu minimum",
-        "A bead on a curve": "Manik pada kurva",
+        "Brachistochrone: a bead sliding down a curve in minimum time": (
+            "Brakistokron: manik yang meluncur sepanjang kurva dalam waktu minimum"
+        ),
+        "Bead on a curve": "Manik pada kurva",
         "horizontal distance": "jarak horizontal",
         "height": "ketinggian",
         "speed": "laju",
-        "direction of the motion below the horizontal": "sudut arah gerak di bawah horizontal",
+        "angle of the path below the horizontal": "sudut arah gerak di bawah horizontal",
         "acceleration of gravity": "percepatan gravitasi",
     },
 }

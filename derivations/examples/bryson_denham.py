@@ -20,10 +20,10 @@ x, v = symbols_of(STATES)
 
 bryson_denham = Problem(
     name="bryson_denham",
-    title="Minimum effort before a wall",
+    title="Bryson-Denham problem: minimum effort with a position limit",
     model=FirstOrder(
         name="body_before_a_wall",
-        title="A body on a line",
+        title="Body moving on a line",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -36,10 +36,10 @@ bryson_denham = Problem(
 beam = replace(
     bryson_denham,
     name="beam",
-    title="A clamped beam under a ceiling",
+    title="Clamped beam with bounded deflection",
     model=FirstOrder(
         name="beam_under_a_ceiling",
-        title="A slender beam",
+        title="Slender beam",
         states=(
             Variable("x", "x", meaning="deflection at the distance t along the beam"),
             Variable("v", "v", meaning="slope of the beam"),
@@ -53,14 +53,16 @@ beam = replace(
 
 TRANSLATIONS = {
     "id": {
-        "Minimum effort before a wall": "Upaya minimum di depan dinding",
-        "A clamped beam under a ceiling": "Balok terjepit di bawah langit-langit",
-        "A body on a line": "Benda pada garis lurus",
+        "Bryson-Denham problem: minimum effort with a position limit": (
+            "Masalah Bryson-Denham: upaya minimum dengan batas posisi"
+        ),
+        "Clamped beam with bounded deflection": "Balok terjepit dengan lendutan terbatas",
+        "Body moving on a line": "Benda yang bergerak pada garis lurus",
         "position": "posisi",
         "velocity": "kecepatan",
         "acceleration": "percepatan",
         "position of the wall": "posisi dinding",
-        "A slender beam": "Balok langsing",
+        "Slender beam": "Balok langsing",
         "deflection at the distance t along the beam": "lendutan pada jarak t sepanjang balok",
         "slope of the beam": "kemiringan balok",
         "curvature of the beam": "kelengkungan balok",

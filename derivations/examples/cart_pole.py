@@ -10,14 +10,14 @@ from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
     Variable("q1", "q_1", "m", meaning="position of the cart"),
-    Variable("q2", "q_2", "rad", meaning="angle of the pole, from hanging", kind="angle"),
+    Variable("q2", "q_2", "rad", meaning="angle of the pole from the hanging position", kind="angle"),
     Variable("v1", "v_1", "m/s", meaning="velocity of the cart"),
     Variable("v2", "v_2", "rad/s", meaning="angular velocity of the pole"),
 )
 CONTROLS = (Variable("u", "u", "N", meaning="force on the cart"),)
 PARAMETERS = (
     Variable("m1", "m_1", "kg", meaning="mass of the cart", default=1.0, positive=True),
-    Variable("m2", "m_2", "kg", meaning="mass at the pole's end", default=0.3, positive=True),
+    Variable("m2", "m_2", "kg", meaning="mass at the end of the pole", default=0.3, positive=True),
     Variable("l", r"\ell", "m", meaning="length of the pole", default=0.5, positive=True),
     Variable("g", "g", "m/s^2", meaning="acceleration of gravity", default=9.81, positive=True),
 )
@@ -28,10 +28,10 @@ inertia = m1 + m2 * sin(q2) ** 2
 
 cart_pole = Problem(
     name="cart_pole",
-    title="A cart swings its pole up with minimum effort",
+    title="Minimum-effort swing-up of a cart-pole",
     model=FirstOrder(
         name="cart_and_pole",
-        title="A cart with a pole",
+        title="Cart with a pole",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -48,15 +48,15 @@ cart_pole = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "A cart swings its pole up with minimum effort": "Kereta mengayunkan tiangnya ke atas dengan upaya minimum",
-        "A cart with a pole": "Kereta dengan tiang",
+        "Minimum-effort swing-up of a cart-pole": "Ayunan ke atas kereta-tiang dengan upaya minimum",
+        "Cart with a pole": "Kereta dengan tiang",
         "position of the cart": "posisi kereta",
-        "angle of the pole, from hanging": "sudut tiang dari posisi menggantung",
+        "angle of the pole from the hanging position": "sudut tiang dari posisi menggantung",
         "velocity of the cart": "kecepatan kereta",
         "angular velocity of the pole": "kecepatan sudut tiang",
         "force on the cart": "gaya pada kereta",
         "mass of the cart": "massa kereta",
-        "mass at the pole's end": "massa di ujung tiang",
+        "mass at the end of the pole": "massa di ujung tiang",
         "length of the pole": "panjang tiang",
         "acceleration of gravity": "percepatan gravitasi",
     },

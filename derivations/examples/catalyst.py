@@ -16,10 +16,10 @@ x1, x2 = symbols_of(STATES)
 
 catalyst = Problem(
     name="catalyst",
-    title="Mixing of two catalysts for the largest yield",
+    title="Catalyst mixing for maximum yield",
     model=FirstOrder(
         name="tubular_reactor",
-        title="A tubular reactor with two catalysts",
+        title="Tubular reactor with two catalysts",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -33,8 +33,8 @@ catalyst = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Mixing of two catalysts for the largest yield": "Pencampuran dua katalis untuk hasil terbesar",
-        "A tubular reactor with two catalysts": "Reaktor pipa dengan dua katalis",
+        "Catalyst mixing for maximum yield": "Pencampuran katalis untuk hasil maksimum",
+        "Tubular reactor with two catalysts": "Reaktor pipa dengan dua katalis",
         "fraction of substance 1": "fraksi zat 1",
         "fraction of substance 2": "fraksi zat 2",
         "fraction of the first catalyst": "fraksi katalis pertama",

@@ -10,7 +10,7 @@ from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
     Variable("height", "y", meaning="height at the horizontal distance t"),
-    Variable("length", "s", meaning="length so far"),
+    Variable("length", "s", meaning="arc length up to this point"),
 )
 CONTROLS = (Variable("slope", "u", meaning="slope of the chain"),)
 height, length = symbols_of(STATES)
@@ -18,10 +18,10 @@ height, length = symbols_of(STATES)
 
 chain = Problem(
     name="chain",
-    title="A hanging chain",
+    title="Hanging chain of given length",
     model=FirstOrder(
         name="curve",
-        title="A curve over the horizontal, with its length",
+        title="Plane curve with its arc length",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -32,10 +32,10 @@ chain = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "A hanging chain": "Rantai yang menggantung",
-        "A curve over the horizontal, with its length": "Kurva di atas horizontal beserta panjangnya",
+        "Hanging chain of given length": "Rantai menggantung dengan panjang tertentu",
+        "Plane curve with its arc length": "Kurva bidang beserta panjang busurnya",
         "height at the horizontal distance t": "ketinggian pada jarak horizontal t",
-        "length so far": "panjang sampai titik ini",
+        "arc length up to this point": "panjang sampai titik ini",
         "slope of the chain": "kemiringan rantai",
     },
 }

@@ -8,16 +8,16 @@ infinitely often in finite time: its singular arc, at rest, is of second order, 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (Variable("x1", "x_1", meaning="position"), Variable("x2", "x_2", meaning="velocity"))
-CONTROLS = (Variable("u", "u", meaning="force per mass"),)
+CONTROLS = (Variable("u", "u", meaning="force per unit mass"),)
 x1, x2 = symbols_of(STATES)
 (u,) = symbols_of(CONTROLS)
 
 fuller = Problem(
     name="fuller",
-    title="Minimum squared distance of a body on a line that is brought to rest",
+    title="Fuller's problem: bringing a body to rest with minimum squared distance",
     model=FirstOrder(
         name="body_on_a_line",
-        title="A body on a line",
+        title="Body moving on a line",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -29,13 +29,13 @@ fuller = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Minimum squared distance of a body on a line that is brought to rest": (
-            "Kuadrat jarak minimum benda pada garis lurus yang dibawa ke keadaan diam"
+        "Fuller's problem: bringing a body to rest with minimum squared distance": (
+            "Masalah Fuller: membawa benda ke keadaan diam dengan kuadrat jarak minimum"
         ),
-        "A body on a line": "Benda pada garis lurus",
+        "Body moving on a line": "Benda yang bergerak pada garis lurus",
         "position": "posisi",
         "velocity": "kecepatan",
-        "force per mass": "gaya per satuan massa",
+        "force per unit mass": "gaya per satuan massa",
     },
 }
 

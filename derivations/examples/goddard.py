@@ -17,7 +17,7 @@ STATES = (
 )
 CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
 PARAMETERS = (
-    Variable("D0", "D_0", meaning="drag at velocity one and the initial height", default=310.0, positive=True),
+    Variable("D0", "D_0", meaning="drag at unit velocity and initial height", default=310.0, positive=True),
     Variable("beta", r"\beta", meaning="rate of decrease of the drag with height", default=500.0, positive=True),
     Variable("g0", "g_0", meaning="acceleration of gravity at the initial height", default=1.0, positive=True),
     Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
@@ -28,10 +28,10 @@ D0, beta, g0, c = symbols_of(PARAMETERS)
 
 goddard = Problem(
     name="goddard",
-    title="Ascent of a rocket to the maximum height",
+    title="Goddard rocket: ascent to maximum altitude",
     model=FirstOrder(
         name="rocket",
-        title="A rocket in vertical flight",
+        title="Rocket in vertical ascent",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -45,13 +45,13 @@ goddard = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Ascent of a rocket to the maximum height": "Roket naik ke ketinggian maksimum",
-        "A rocket in vertical flight": "Roket yang bergerak vertikal",
+        "Goddard rocket: ascent to maximum altitude": "Roket Goddard: naik ke ketinggian maksimum",
+        "Rocket in vertical ascent": "Roket yang bergerak vertikal",
         "distance from the centre of force": "jarak dari pusat gaya",
         "velocity": "kecepatan",
         "mass": "massa",
         "thrust": "gaya dorong",
-        "drag at velocity one and the initial height": "gaya hambat pada kecepatan satu dan ketinggian awal",
+        "drag at unit velocity and initial height": "gaya hambat pada kecepatan satu dan ketinggian awal",
         "rate of decrease of the drag with height": "laju berkurangnya gaya hambat terhadap ketinggian",
         "acceleration of gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",

@@ -18,11 +18,11 @@ STATES = (
 CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
 PARAMETERS = (
     Variable("rho0", r"\rho_0", meaning="density of the air at the initial height", default=12400.0, positive=True),
-    Variable("area", r"A_{\mathrm{ref}}", meaning="area that drag acts on", default=0.05, positive=True),
+    Variable("area", r"A_{\mathrm{ref}}", meaning="drag reference area", default=0.05, positive=True),
     Variable("beta", r"\beta", meaning="rate of decrease of the density with height", default=500.0, positive=True),
     Variable("g0", "g_0", meaning="acceleration of gravity at the initial height", default=1.0, positive=True),
     Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
-    Variable("q_max", r"q_{\max}", meaning="largest dynamic pressure", default=10.0, positive=True),
+    Variable("q_max", r"q_{\max}", meaning="maximum dynamic pressure", default=10.0, positive=True),
 )
 h, v, m = symbols_of(STATES)
 (T,) = symbols_of(CONTROLS)
@@ -32,10 +32,10 @@ pressure = rho0 / 2 * v**2 * exp(-beta * (h - 1))
 
 goddard_pressure = Problem(
     name="goddard_pressure",
-    title="Ascent of a rocket to the maximum height with bounded dynamic pressure",
+    title="Goddard rocket: ascent to maximum altitude under a dynamic-pressure limit",
     model=FirstOrder(
         name="rocket_in_air",
-        title="A rocket in vertical flight through air",
+        title="Rocket in vertical ascent through the atmosphere",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -50,20 +50,20 @@ goddard_pressure = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Ascent of a rocket to the maximum height with bounded dynamic pressure": (
-            "Roket naik ke ketinggian maksimum dengan tekanan dinamik terbatas"
+        "Goddard rocket: ascent to maximum altitude under a dynamic-pressure limit": (
+            "Roket Goddard: naik ke ketinggian maksimum dengan batas tekanan dinamik"
         ),
-        "A rocket in vertical flight through air": "Roket yang bergerak vertikal melalui udara",
+        "Rocket in vertical ascent through the atmosphere": "Roket yang bergerak vertikal melalui atmosfer",
         "distance from the centre of force": "jarak dari pusat gaya",
         "velocity": "kecepatan",
         "mass": "massa",
         "thrust": "gaya dorong",
         "density of the air at the initial height": "massa jenis udara pada ketinggian awal",
-        "area that drag acts on": "luas yang dikenai gaya hambat",
+        "drag reference area": "luas acuan gaya hambat",
         "rate of decrease of the density with height": "laju berkurangnya massa jenis udara terhadap ketinggian",
         "acceleration of gravity at the initial height": "percepatan gravitasi pada ketinggian awal",
         "exhaust velocity": "kecepatan gas buang",
-        "largest dynamic pressure": "tekanan dinamik terbesar",
+        "maximum dynamic pressure": "tekanan dinamik maksimum",
     },
 }
 

@@ -14,10 +14,10 @@ CONTROLS = (Variable("u", "u", meaning="control"),)
 
 hypersensitive = Problem(
     name="hypersensitive",
-    title="From one state to another in a long time, with minimum deviation and effort",
+    title="Hypersensitive problem: minimum deviation and effort over a long time",
     model=FirstOrder(
         name="cubic_decay",
-        title="A state that decays by its cube",
+        title="Scalar system with cubic decay",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -28,10 +28,10 @@ hypersensitive = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "From one state to another in a long time, with minimum deviation and effort": (
-            "Dari satu keadaan ke keadaan lain dalam waktu panjang dengan simpangan dan upaya minimum"
+        "Hypersensitive problem: minimum deviation and effort over a long time": (
+            "Masalah hipersensitif: simpangan dan upaya minimum selama waktu yang panjang"
         ),
-        "A state that decays by its cube": "Keadaan yang meluruh menurut pangkat tiganya",
+        "Scalar system with cubic decay": "Sistem skalar dengan peluruhan kubik",
         "state": "keadaan",
         "control": "kontrol",
     },

@@ -18,7 +18,7 @@ above, ahead = symbols_of(POINT)
 
 inspection = Problem(
     name="inspection",
-    title="Rendezvous through a point of inspection",
+    title="Rendezvous via an inspection point",
     model=replace(near, parameters=(*near.parameters, *POINT)),
     running_cost=(u1**2 + u2**2) / 2,
     interior={"viewpoint": (x1 - above, x3 - ahead)},
@@ -27,7 +27,7 @@ inspection = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Rendezvous through a point of inspection": "Pertemuan melalui titik inspeksi",
+        "Rendezvous via an inspection point": "Pertemuan melalui titik inspeksi",
         "height of the point above the orbit": "ketinggian titik di atas orbit",
         "distance of the point ahead, along the orbit": "jarak titik di depan, sepanjang orbit",
     },

@@ -14,11 +14,11 @@ given = next(p for p in load(find("polar_orbit", HERE)) if isinstance(p, Problem
 orbit = replace(given.model, parameters=tuple(v for v in given.model.parameters if not v.symbol.startswith("k")))
 near = next(m for m in load(find("clohessy_wiltshire", HERE)) if isinstance(m, Linearised))
 
-FLOOR = Variable("r_min", r"r_{\min}", "km", "smallest distance allowed from the centre of force", positive=True)
-SLOT = Variable("slot", r"\Delta", "rad", "half the width of the slot, as an angle", positive=True)
+FLOOR = Variable("r_min", r"r_{\min}", "km", "minimum distance from the centre of force", positive=True)
+SLOT = Variable("slot", r"\Delta", "rad", "angular half-width of the slot", positive=True)
 CONE = (
     Variable("slope", "k", "1", "slope of the approach cone", 0.5, positive=True),
-    Variable("mouth", "d", "km", "half the width of the cone at its end", 0.001, positive=True),
+    Variable("mouth", "d", "km", "half-width of the cone at the target", 0.001, positive=True),
 )
 r, r_dot, theta, theta_dot = symbols_of(orbit.states)
 x1, x2, x3, x4 = symbols_of(near.states)
@@ -28,7 +28,7 @@ omega = next(s for s in symbols_of(orbit.parameters) if s.name == "omega")
 
 return_above = Problem(
     name="return_above",
-    title="Return to the orbit above a smallest radius",
+    title="Return to the orbit with a minimum radius",
     model=replace(orbit, parameters=(*orbit.parameters, FLOOR)),
     running_cost=given.running_cost,
     path_constraints={"floor": r_min - r},
@@ -36,7 +36,7 @@ return_above = Problem(
 
 return_in_slot = Problem(
     name="return_in_slot",
-    title="Return to the orbit within a slot of angle about the reference",
+    title="Return to the orbit within an angular slot about the reference",
     model=replace(orbit, parameters=(*orbit.parameters, SLOT)),
     running_cost=given.running_cost,
     path_constraints={"ahead": theta - omega * t - slot, "behind": omega * t - theta - slot},
@@ -44,7 +44,7 @@ return_in_slot = Problem(
 
 approach_cone = Problem(
     name="approach_cone",
-    title="Rendezvous from behind within an approach cone",
+    title="Rendezvous from behind inside an approach cone",
     model=replace(near, parameters=(*near.parameters, *CONE)),
     running_cost=(u1**2 + u2**2) / 2,
     path_constraints={"above": x1 + slope * x3 - mouth, "below": -x1 + slope * x3 - mouth},
@@ -52,15 +52,15 @@ approach_cone = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Return to the orbit above a smallest radius": "Kembali ke orbit di atas jari-jari terkecil",
-        "Return to the orbit within a slot of angle about the reference": (
+        "Return to the orbit with a minimum radius": "Kembali ke orbit dengan batas bawah jari-jari",
+        "Return to the orbit within an angular slot about the reference": (
             "Kembali ke orbit dalam selang sudut di sekitar acuan"
         ),
-        "Rendezvous from behind within an approach cone": "Pertemuan dari belakang dalam kerucut pendekatan",
-        "smallest distance allowed from the centre of force": "jarak terkecil yang diperbolehkan dari pusat gaya",
-        "half the width of the slot, as an angle": "setengah lebar selang, sebagai sudut",
+        "Rendezvous from behind inside an approach cone": "Pertemuan dari belakang dalam kerucut pendekatan",
+        "minimum distance from the centre of force": "jarak minimum dari pusat gaya",
+        "angular half-width of the slot": "setengah lebar selang, sebagai sudut",
         "slope of the approach cone": "kemiringan kerucut pendekatan",
-        "half the width of the cone at its end": "setengah lebar kerucut di ujungnya",
+        "half-width of the cone at the target": "setengah lebar kerucut di ujungnya",
     },
 }
 

@@ -22,7 +22,7 @@ x, y, vx, vy = symbols_of(STATES)
 
 steered = FirstOrder(
     name="steered_point",
-    title="A point that is steered in a plane",
+    title="Point mass steered in a plane at constant acceleration",
     states=STATES,
     controls=CONTROLS,
     parameters=PARAMETERS,
@@ -31,7 +31,7 @@ steered = FirstOrder(
 
 linear_tangent = Problem(
     name="linear_tangent",
-    title="Steering in minimum time",
+    title="Minimum-time steering in a plane: the linear tangent law",
     model=steered,
     running_cost=1,
     control_sets={"steering": Angle("beta")},
@@ -39,8 +39,12 @@ linear_tangent = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Steering in minimum time": "Pengarahan dengan waktu minimum",
-        "A point that is steered in a plane": "Titik yang diarahkan pada bidang",
+        "Minimum-time steering in a plane: the linear tangent law": (
+            "Pengarahan pada bidang dengan waktu minimum: hukum tangen linear"
+        ),
+        "Point mass steered in a plane at constant acceleration": (
+            "Titik massa yang diarahkan pada bidang dengan percepatan konstan"
+        ),
         "horizontal distance": "jarak horizontal",
         "height": "ketinggian",
         "horizontal velocity": "kecepatan horizontal",

@@ -29,10 +29,10 @@ x_1, y_1, radius_1, x_2, y_2, radius_2 = symbols_of(PARAMETERS)
 
 obstacle = Problem(
     name="obstacle",
-    title="Minimum effort around two discs",
+    title="Minimum-effort path around two circular obstacles",
     model=FirstOrder(
         name="body_in_the_plane",
-        title="A body in the plane",
+        title="Body moving in a plane",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -47,8 +47,10 @@ obstacle = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Minimum effort around two discs": "Upaya minimum mengelilingi dua cakram",
-        "A body in the plane": "Benda pada bidang",
+        "Minimum-effort path around two circular obstacles": (
+            "Lintasan upaya minimum mengelilingi dua rintangan lingkaran"
+        ),
+        "Body moving in a plane": "Benda yang bergerak pada bidang",
         "position in the direction of the end": "posisi ke arah titik akhir",
         "position across that direction": "posisi melintang terhadap arah itu",
         "velocity in the direction of the end": "kecepatan ke arah titik akhir",

@@ -17,10 +17,10 @@ x1, x2 = symbols_of(STATES)
 
 van_der_pol_boxed = Problem(
     name="van_der_pol_boxed",
-    title="Damping of Van der Pol's oscillator with a bounded control",
+    title="Damping the Van der Pol oscillator with a bounded control",
     model=FirstOrder(
         name="van_der_pol_oscillator",
-        title="Van der Pol's oscillator",
+        title="Van der Pol oscillator",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -32,10 +32,10 @@ van_der_pol_boxed = Problem(
 
 rayleigh = Problem(
     name="rayleigh",
-    title="Damping of Rayleigh's oscillator",
+    title="Damping the Rayleigh oscillator",
     model=FirstOrder(
         name="tunnel_diode",
-        title="Rayleigh's oscillator, a tunnel diode",
+        title="Rayleigh oscillator (tunnel-diode circuit)",
         states=STATES,
         controls=CONTROLS,
         parameters=(),
@@ -47,21 +47,21 @@ rayleigh = Problem(
 rayleigh_mixed = replace(
     rayleigh,
     name="rayleigh_mixed",
-    title="Damping of Rayleigh's oscillator with a control bounded by the state",
+    title="Damping the Rayleigh oscillator with a state-dependent control bound",
     path_constraints={"bound": u + x1 / 6},
 )
 
 TRANSLATIONS = {
     "id": {
-        "Damping of Van der Pol's oscillator with a bounded control": (
+        "Damping the Van der Pol oscillator with a bounded control": (
             "Peredaman osilator Van der Pol dengan kontrol terbatas"
         ),
-        "Damping of Rayleigh's oscillator": "Peredaman osilator Rayleigh",
-        "Damping of Rayleigh's oscillator with a control bounded by the state": (
-            "Peredaman osilator Rayleigh dengan kontrol yang dibatasi oleh keadaan"
+        "Damping the Rayleigh oscillator": "Peredaman osilator Rayleigh",
+        "Damping the Rayleigh oscillator with a state-dependent control bound": (
+            "Peredaman osilator Rayleigh dengan batas kontrol yang bergantung pada keadaan"
         ),
-        "Van der Pol's oscillator": "Osilator Van der Pol",
-        "Rayleigh's oscillator, a tunnel diode": "Osilator Rayleigh, dioda terowongan",
+        "Van der Pol oscillator": "Osilator Van der Pol",
+        "Rayleigh oscillator (tunnel-diode circuit)": "Osilator Rayleigh (rangkaian dioda terowongan)",
         "state 1": "variabel keadaan 1",
         "state 2": "variabel keadaan 2",
         "position": "posisi",

@@ -1,4 +1,4 @@
-"""Rest-to-rest reorientation of a rigid body in minimum time, with a torque about each axis.
+"""Minimum-time rest-to-rest reorientation of a rigid body, with a torque about each axis.
 
 Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of Guidance, Control, and
 Dynamics 16 (1993): moments of inertia and largest torques are one, the body turns by 180 degrees about its third axis.
@@ -22,10 +22,10 @@ I1, I2, I3 = symbols_of(PARAMETERS)
 
 reorientation = Problem(
     name="reorientation",
-    title="Rest-to-rest reorientation of a rigid body in minimum time",
+    title="Minimum-time rest-to-rest reorientation of a rigid body",
     model=FirstOrder(
         name="rigid_body",
-        title="A rigid body with three torques",
+        title="Rigid body with three control torques",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -45,10 +45,10 @@ reorientation = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Rest-to-rest reorientation of a rigid body in minimum time": (
+        "Minimum-time rest-to-rest reorientation of a rigid body": (
             "Reorientasi benda tegar dari diam ke diam dengan waktu minimum"
         ),
-        "A rigid body with three torques": "Benda tegar dengan tiga torsi",
+        "Rigid body with three control torques": "Benda tegar dengan tiga torsi kontrol",
         "component 1 of the quaternion": "komponen ke-1 kuaternion",
         "component 2 of the quaternion": "komponen ke-2 kuaternion",
         "component 3 of the quaternion": "komponen ke-3 kuaternion",

@@ -17,12 +17,12 @@ STATES = (
     Variable("phi", r"\phi", "rad", "longitude", kind="angle", typical=(0.0, 1.0)),
     Variable("theta", r"\theta", "rad", "latitude", typical=(0.0, 1.0)),
     Variable("v", "v", "ft/s", "speed", positive=True, typical=(2500.0, 26000.0)),
-    Variable("gamma", r"\gamma", "rad", "angle of the path above the horizontal", typical=(-0.1, 0.1)),
+    Variable("gamma", r"\gamma", "rad", "flight-path angle", typical=(-0.1, 0.1)),
     Variable("psi", r"\psi", "rad", "azimuth", typical=(0.0, 1.6)),
 )
 CONTROLS = (
     Variable("alpha", r"\alpha", "deg", "angle of attack", typical=(0.0, 30.0)),
-    Variable("beta", r"\beta", "rad", "bank", kind="angle"),
+    Variable("beta", r"\beta", "rad", "bank angle", kind="angle"),
 )
 PARAMETERS = (
     Variable("mu", r"\mu", "ft^3/s^2", "gravitational parameter", 0.14076539e17, positive=True),
@@ -49,10 +49,10 @@ gravity = mu / r**2
 
 shuttle = Problem(
     name="shuttle",
-    title="A shuttle glides to the largest latitude",
+    title="Space shuttle entry with maximum cross-range",
     model=FirstOrder(
         name="entry",
-        title="Gliding entry over a round Earth at rest",
+        title="Gliding entry over a spherical, non-rotating Earth",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -73,13 +73,13 @@ shuttle = Problem(
 
 Q_R = 17700.0 * 0.002378**0.5
 HEATING = (
-    Variable("q_max", r"q_{\max}", "BTU/ft^2/s", "heating rate that the leading edge stands", 70.0, positive=True),
-    Variable("q_r", "q_r", "BTU/ft^2/s", "heating rate by ground air at the reference speed", Q_R, positive=True),
+    Variable("q_max", r"q_{\max}", "BTU/ft^2/s", "maximum heating rate of the leading edge", 70.0, positive=True),
+    Variable("q_r", "q_r", "BTU/ft^2/s", "heating rate at ground density and reference speed", Q_R, positive=True),
     Variable("v_r", "v_r", "ft/s", "reference speed", 1e4, positive=True),
     Variable("c_0", "c_0", meaning="heating coefficient at zero angle of attack", default=1.0672181),
-    Variable("c_1", "c_1", "1/deg", "linear coefficient of the heating in that angle", -0.19213774e-1),
-    Variable("c_2", "c_2", "1/deg^2", "quadratic coefficient of the heating in that angle", 0.21286289e-3),
-    Variable("c_3", "c_3", "1/deg^3", "cubic coefficient of the heating in that angle", -0.10117249e-5),
+    Variable("c_1", "c_1", "1/deg", "linear heating coefficient in the angle of attack", -0.19213774e-1),
+    Variable("c_2", "c_2", "1/deg^2", "quadratic heating coefficient in the angle of attack", 0.21286289e-3),
+    Variable("c_3", "c_3", "1/deg^3", "cubic heating coefficient in the angle of attack", -0.10117249e-5),
 )
 q_max, q_r, v_r, c_0, c_1, c_2, c_3 = symbols_of(HEATING)
 heating = (
@@ -89,26 +89,30 @@ heating = (
 shuttle_heating = replace(
     shuttle,
     name="shuttle_heating",
-    title="A shuttle glides to the largest latitude without being heated too much",
+    title="Space shuttle entry with maximum cross-range under a heating limit",
     model=replace(shuttle.model, name="heated_entry", parameters=PARAMETERS + HEATING),
     path_constraints={"heating": heating - q_max},
 )
 
 TRANSLATIONS = {
     "id": {
-        "A shuttle glides to the largest latitude": "Pesawat ulang-alik terbang luncur ke lintang terbesar",
-        "A shuttle glides to the largest latitude without being heated too much": (
-            "Pesawat ulang-alik terbang luncur ke lintang terbesar tanpa terlalu panas"
+        "Space shuttle entry with maximum cross-range": (
+            "Masuk atmosfer pesawat ulang-alik dengan jarak lateral maksimum"
         ),
-        "Gliding entry over a round Earth at rest": "Masuk atmosfer dengan terbang luncur di atas Bumi bulat yang diam",
+        "Space shuttle entry with maximum cross-range under a heating limit": (
+            "Masuk atmosfer pesawat ulang-alik dengan jarak lateral maksimum dan batas pemanasan"
+        ),
+        "Gliding entry over a spherical, non-rotating Earth": (
+            "Masuk atmosfer dengan terbang luncur di atas Bumi bulat yang tidak berotasi"
+        ),
         "altitude": "ketinggian",
         "longitude": "bujur",
         "latitude": "lintang",
         "speed": "laju",
-        "angle of the path above the horizontal": "sudut lintasan di atas horizontal",
+        "flight-path angle": "sudut lintasan terhadap horizontal",
         "azimuth": "azimut",
         "angle of attack": "sudut serang",
-        "bank": "sudut miring",
+        "bank angle": "sudut miring",
         "gravitational parameter": "parameter gravitasi",
         "radius of the Earth": "jari-jari Bumi",
         "density at the ground": "massa jenis udara di permukaan tanah",
@@ -122,13 +126,13 @@ TRANSLATIONS = {
             "kemiringan koefisien gaya hambat pada sudut serang nol"
         ),
         "quadratic coefficient of the drag": "koefisien kuadrat gaya hambat",
-        "heating rate that the leading edge stands": "laju pemanasan yang dapat ditahan tepi depan sayap",
-        "heating rate by ground air at the reference speed": "laju pemanasan oleh udara permukaan pada laju acuan",
+        "maximum heating rate of the leading edge": "laju pemanasan maksimum tepi depan sayap",
+        "heating rate at ground density and reference speed": "laju pemanasan oleh udara permukaan pada laju acuan",
         "reference speed": "laju acuan",
         "heating coefficient at zero angle of attack": "koefisien pemanasan pada sudut serang nol",
-        "linear coefficient of the heating in that angle": "koefisien linear pemanasan terhadap sudut itu",
-        "quadratic coefficient of the heating in that angle": "koefisien kuadrat pemanasan terhadap sudut itu",
-        "cubic coefficient of the heating in that angle": "koefisien kubik pemanasan terhadap sudut itu",
+        "linear heating coefficient in the angle of attack": "koefisien linear pemanasan terhadap sudut itu",
+        "quadratic heating coefficient in the angle of attack": "koefisien kuadrat pemanasan terhadap sudut itu",
+        "cubic heating coefficient in the angle of attack": "koefisien kubik pemanasan terhadap sudut itu",
     },
 }
 

@@ -31,10 +31,10 @@ thrust = sqrt(T_r**2 + T_t**2)
 
 transfer_fuel = Problem(
     name="transfer_fuel",
-    title="Transfer between circular orbits with minimum fuel",
+    title="Minimum-fuel transfer between circular orbits",
     model=FirstOrder(
         name="throttled_satellite",
-        title="A satellite whose thrust can be turned and throttled",
+        title="Satellite with steerable, throttleable thrust",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -46,10 +46,10 @@ transfer_fuel = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Transfer between circular orbits with minimum fuel": (
+        "Minimum-fuel transfer between circular orbits": (
             "Transfer antara orbit lingkaran dengan bahan bakar minimum"
         ),
-        "A satellite whose thrust can be turned and throttled": (
+        "Satellite with steerable, throttleable thrust": (
             "Satelit yang gaya dorongnya dapat diarahkan dan diatur"
         ),
         "distance from the centre of force": "jarak dari pusat gaya",

@@ -18,7 +18,7 @@ CONTROLS = (Variable("beta", r"\beta", meaning="direction of the thrust, above t
 PARAMETERS = (
     Variable("mu", r"\mu", meaning="gravitational parameter", default=1.0, positive=True),
     Variable("F", "F", meaning="thrust over the initial mass", default=0.1405, positive=True),
-    Variable("w", "w", meaning="flow of mass over the initial mass", default=0.07487, positive=True),
+    Variable("w", "w", meaning="mass flow rate over the initial mass", default=0.07487, positive=True),
 )
 r, u, v = symbols_of(STATES)
 (beta,) = symbols_of(CONTROLS)
@@ -27,10 +27,10 @@ push = F / (1 - w * t)
 
 transfer_time = Problem(
     name="transfer_time",
-    title="Transfer between circular orbits in minimum time",
+    title="Minimum-time transfer between circular orbits",
     model=FirstOrder(
         name="thrusting_satellite",
-        title="A satellite with constant thrust",
+        title="Satellite with constant thrust",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -42,15 +42,15 @@ transfer_time = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Transfer between circular orbits in minimum time": "Transfer antara orbit lingkaran dengan waktu minimum",
-        "A satellite with constant thrust": "Satelit dengan gaya dorong konstan",
+        "Minimum-time transfer between circular orbits": "Transfer antara orbit lingkaran dengan waktu minimum",
+        "Satellite with constant thrust": "Satelit dengan gaya dorong konstan",
         "distance from the centre of force": "jarak dari pusat gaya",
         "radial velocity": "kecepatan radial",
         "transverse velocity": "kecepatan transversal",
         "direction of the thrust, above the local horizontal": "sudut gaya dorong terhadap horizontal setempat",
         "gravitational parameter": "parameter gravitasi",
         "thrust over the initial mass": "gaya dorong dibagi massa awal",
-        "flow of mass over the initial mass": "laju aliran massa dibagi massa awal",
+        "mass flow rate over the initial mass": "laju aliran massa dibagi massa awal",
     },
 }
 

@@ -23,10 +23,10 @@ V, h = symbols_of(PARAMETERS)
 
 zermelo = Problem(
     name="zermelo",
-    title="A ship crosses a linear current in minimum time",
+    title="Zermelo's problem: minimum-time crossing of a linear current",
     model=FirstOrder(
         name="ship",
-        title="A ship in a current",
+        title="Ship in a current",
         states=STATES,
         controls=CONTROLS,
         parameters=PARAMETERS,
@@ -38,8 +38,10 @@ zermelo = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "A ship crosses a linear current in minimum time": "Kapal melintasi arus linear dengan waktu minimum",
-        "A ship in a current": "Kapal dalam arus",
+        "Zermelo's problem: minimum-time crossing of a linear current": (
+            "Masalah Zermelo: melintasi arus linear dalam waktu minimum"
+        ),
+        "Ship in a current": "Kapal dalam arus",
         "distance along the current": "jarak sepanjang arus",
         "distance across the current": "jarak melintang terhadap arus",
         "heading, from the direction of x": "sudut haluan dari arah x",

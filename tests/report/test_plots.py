@@ -282,7 +282,7 @@ def test_what_a_failed_run_left_behind_is_drawn_as_far_as_it_goes(x: np.ndarray)
 def test_title_and_facts_of_an_overview_are_whole_at_any_size(size: str) -> None:
     from satsym.report.plots import pages
 
-    title = "As high as 0.4 of the mass as fuel takes a rocket whose dynamic pressure is bounded"
+    title = "Goddard rocket: maximum altitude with bounded dynamic pressure"
     found = solution(dataclasses.replace(case(model(2, 1)), title=title))
     with style.applied(Look(size=size)):
         page = pages.overview(Scene.of(found))
