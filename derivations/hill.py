@@ -79,9 +79,7 @@ TRANSLATIONS = {
         "rate of zeta": "laju perubahan zeta",
         "thrust per unit mass in the radial direction": "gaya dorong per satuan massa ke arah luar",
         "thrust per unit mass along the track": "gaya dorong per satuan massa ke arah depan",
-        "thrust per unit mass along the orbit normal": (
-            "gaya dorong per satuan massa sepanjang normal bidang orbit"
-        ),
+        "thrust per unit mass along the orbit normal": ("gaya dorong per satuan massa sepanjang normal bidang orbit"),
         "distance from the plane of the reference orbit": "jarak dari bidang orbit acuan",
         "radius of the reference orbit": "jari-jari orbit acuan",
         "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",

@@ -100,9 +100,7 @@ TRANSLATIONS = {
         "A stable node: both states decay": "Simpul stabil: kedua keadaan meluruh",
         "Three real modes, two of which grow": "Tiga modus real, dua di antaranya tumbuh",
         "Explicit time dependence and a quadratic output": "Gerak dengan waktu eksplisit dan keluaran kuadratik",
-        "Linearisation about a time-varying trajectory": (
-            "Linearisasi di sekitar gerak yang berubah terhadap waktu"
-        ),
+        "Linearisation about a time-varying trajectory": ("Linearisasi di sekitar gerak yang berubah terhadap waktu"),
         "Singular regulator: minimum squared deviation, control at no cost": (
             "Kuadrat simpangan minimum tanpa biaya kontrol"
         ),

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: ecf7e6f49a08cfda500b40bd30851475b2cffdb82800ba5dbcde1898b9f3678e
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: 3b25ebabca237690ba5c8587767b3eb0beb7f4aa597b3c83abf9d3ff39888e78
 """
 
 import math

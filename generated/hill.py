@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py 259ef4f5596dc615c6f0be54bd7d5c51
-Digest: cfcd970f4a403a6ca9570b003b6542071613f41c344ab87db8555a26a5640526
+Source: ../derivations/hill.py e898a53b40a1fb2b2f8736c52fbbce33
+Digest: 4661cc7cde296eecdf5bdd40cb996b92bc98fc369c8c8f50c70c9f4d42f73850
 """
 
 import math

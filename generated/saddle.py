@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: 9d66e78bed8851721cc640b626765709169f2a3258e8bd502f367743604b83b2
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: 6d3f847c86261dd9fb41e7fc1aa199721d4689619fa695ffa4d453087474eb1c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: 2f5133b3973830093fff0f47649fd30426e829982846e39283683174f7e7bf5c
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: c25b63f194a24c60039c65a48637731573f425e310f24c1ea7cf70aa0d0b4ff5
 """
 
 import math

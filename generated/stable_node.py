@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: ca92b7b161270c9c47e200b4af7ec63d6a26467f628be2374b5f3afbee79cf1e
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: 3d1d05056fcdeb9b38313eedd58213835d3ffd815794399f184f8e0583a017bd
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: 43e1ef3fcbb43d05ff2722316666a8e7cdd74ab87bcf8333d9e654e29330c923
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: f2129ccf192cd6e3dafebd060ffd9fc9ca17ecf89820f5a23e15309bf58618a7
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: a6cb0896120c807956760cc08e90dcc6e7b77033b4dcefa545b25c4ac9ec52d8
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: bf67a9824a7980560072863e34633b9b08a64126ae3da6eaa99d8917b3b7ef23
 """
 
 import math

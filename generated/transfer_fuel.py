@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py 73048f5972aaa24e39a2a29fc6654dac
-Digest: 364b362ceb51c9c91c74ad0bf0b069d9c5ef1034457b656f7ebd3a4f74868563
+Source: ../derivations/examples/transfer_fuel.py eaee82127f48907190a1101d3dd9bfc3
+Digest: 469458647df7203344ecb9acf611028b604db08eeeb4c0cfa7d9a365ae053ed4
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 3bedd175f09db4a0cd3feca229875186
-Digest: bb23c9f8eb6579d13fa0724dc9a9652b79ef86caed69d4d52ce31fad606f502c
+Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
+Digest: aa4b7bb6f0bee21c4c3059c3e62080f577b378f0da01305cd47eb69a1c8be79a
 """
 
 import math

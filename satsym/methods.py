@@ -120,15 +120,15 @@ METHODS = {
         SWEEP,
         Method(
             "collocation",
-            "Gauss collocation from a cold start, refined",
+            "Gauss collocation from a cold start, with mesh refinement",
             "satsym.solvers.by_search:collocation",
             automatic=True,
         ),
         Method("shooting", "multiple shooting from a cold start", "satsym.solvers.by_search:shooting"),
-        Method("linear", "closed form, for linear canonical equations", "satsym.solvers.linear:solve"),
+        Method("linear", "closed-form solution of linear canonical equations", "satsym.solvers.linear:solve"),
         Method(
             "bang-bang",
-            "exact arcs, for controls that enter without a square",
+            "exact arcs, for controls that enter the cost linearly or not at all",
             "satsym.solvers.by_search:bang_bang",
             switching=True,
             automatic=True,

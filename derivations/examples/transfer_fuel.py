@@ -46,12 +46,8 @@ transfer_fuel = Problem(
 
 TRANSLATIONS = {
     "id": {
-        "Minimum-fuel transfer between circular orbits": (
-            "Transfer antara orbit lingkaran dengan bahan bakar minimum"
-        ),
-        "Satellite with steerable, throttleable thrust": (
-            "Satelit yang gaya dorongnya dapat diarahkan dan diatur"
-        ),
+        "Minimum-fuel transfer between circular orbits": ("Transfer antara orbit lingkaran dengan bahan bakar minimum"),
+        "Satellite with steerable, throttleable thrust": ("Satelit yang gaya dorongnya dapat diarahkan dan diatur"),
         "distance from the centre of force": "jarak dari pusat gaya",
         "polar angle": "sudut polar",
         "radial velocity": "kecepatan radial",

@@ -30,10 +30,10 @@ CLOSED_PIPE = 141
 
 OVERVIEW = """\b
 Start here:
-  satsym instances                       what can be solved as it stands
+  satsym instances                       the shipped problems
   satsym solve soft-return --plot        solve one, with pictures
-  satsym latex polar_orbit -o orbit.tex  typeset where it comes from
-  satsym audit its_thesis                judge the derivation of a thesis
+  satsym latex polar_orbit -o orbit.tex  typeset its derivation
+  satsym audit its_thesis                audit the derivation in a thesis
 
 \b
 Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,

@@ -69,7 +69,7 @@ language_option = click.option(
     expose_value=False,
     is_eager=True,
     callback=_spoken,
-    help=f"Language of what people read; by default that of {said.VARIABLE}, or English.",
+    help=f"Language of the output; by default that of {said.VARIABLE}, or English.",
 )
 
 
@@ -87,7 +87,7 @@ _quiet = click.option(
     is_flag=True,
     expose_value=False,
     callback=_voice(Voice.QUIET),
-    help="Say nothing but what goes wrong; results go into files, or are printed with --json.",
+    help="Print errors only; results go into files, or are printed with --json.",
 )
 _verbose = click.option(
     "--verbose",
@@ -95,7 +95,7 @@ _verbose = click.option(
     is_flag=True,
     expose_value=False,
     callback=_voice(Voice.VERBOSE),
-    help="Say what is done, line by line, on stderr.",
+    help="Report progress line by line on stderr.",
 )
 
 
@@ -105,25 +105,30 @@ def shared_options(command: Any) -> Any:
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+long_option = click.option("--long", "whole", is_flag=True, help="List the details as well, in one table.")
 subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))
 trajectory_option = place_option(
-    "--out", metavar="DIR", help="Write trajectory.npz, trajectory.csv and result.json there; they replace a result."
+    "--out",
+    metavar="DIR",
+    help="Write trajectory.npz, trajectory.csv and result.json into this folder, replacing an earlier result.",
 )
-out_option = place_option("--out", metavar="DIR", help="Write result.json there; it replaces a result.")
+out_option = place_option(
+    "--out", metavar="DIR", help="Write result.json into this folder, replacing an earlier result."
+)
 
 set_option = click.option(
     "--set",
     "values",
     multiple=True,
     metavar="KEY=VALUE",
-    help="Another value of a number, such as initial.r=1.05; the keys are those of `satsym study`.",
+    help="Change a number of the instance, such as initial.r=1.05; for the keys, see `satsym study`.",
 )
 
 
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Whether to draw and how, as ``look``, for a command, whose results go into a folder of its name."""
     drawn = click.option(
-        "--plot", is_flag=True, help=f"Draw pictures too; without --out into results/NAME/{command}, with all else."
+        "--plot", is_flag=True, help=f"Draw pictures as well. Without --out, all files go into results/NAME/{command}."
     )
 
     def decorated(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -158,7 +163,7 @@ _format_option = click.option(
     metavar="KIND",
     type=click.Choice(FORMATS),
     multiple=True,
-    help=f"Kind of the pictures: {', '.join(FORMATS)}; may be given several times. By default png.",
+    help=f"File format of the pictures: {', '.join(FORMATS)}. May be given several times; png by default.",
 )
 _size_option = click.option(
     "--size",
@@ -166,4 +171,6 @@ _size_option = click.option(
     type=click.Choice(tuple(SIZES)),
     help=f"What they are for: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
 )
-_title_option = click.option("--no-title", "untitled", is_flag=True, help="Pictures without titles, for captions.")
+_title_option = click.option(
+    "--no-title", "untitled", is_flag=True, help="Leave out the titles, for pictures that have a caption."
+)

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\b
 Examples:
-  satsym analyse itb-earth --plot       an orbit: its kind, its monodromy matrix, what its stability means
+  satsym analyse itb-earth --plot       an orbit: its type, its monodromy matrix, what its stability means
   satsym analyse clohessy_wiltshire     a satellite near a circular orbit
-  satsym analyse soft-return-geo        a nonlinear model, near its reference, in kilometres and seconds
-  satsym analyse gyrostat-equilibria    all attitudes at which a satellite with a wheel rests
-  satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr/analyse"""
+  satsym analyse soft-return-geo        a nonlinear model about its reference, in kilometres and seconds
+  satsym analyse gyrostat-equilibria    all equilibrium attitudes of a satellite with a wheel
+  satsym analyse uny-lqr --plot         with pictures, in results/uny-lqr/analyse"""
 
 
 @command(epilog=EXAMPLES)
@@ -36,13 +36,13 @@ Examples:
 @out_option
 @plot_options("analyse")
 def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
-    """Analyse a model near its reference or an equilibrium, and an orbit about a central body.
+    """Analyse a model about its reference or an equilibrium, an orbit about a central body, or attitudes in orbit.
 
-    X is a shipped model or instance, or the path of one. Eigenvalues with their Jordan blocks, stability with its
-    reason, the Routh array, the controllable and the observable subspace of inputs and outputs: by numbers, and exactly
-    where the model is linear. Of an instance that starts on an orbit: its elements and kind, the eigenvalues at the
-    start and why they decide nothing, its monodromy matrix and Floquet multipliers. Of a satellite's attitude in orbit:
-    all equilibria, counted exactly, and how their number and stability change with the momentum of its wheel.
+    X is a shipped model or instance, or the path of one. For a model: eigenvalues with their Jordan blocks, stability
+    and its reason, the Routh array, and the controllable and observable subspaces, numerically and, for linear
+    models, exactly. For an instance that starts on an orbit: its elements and type, the eigenvalues at the start and
+    why they decide nothing, the monodromy matrix and the Floquet multipliers. For the attitude of a satellite in
+    orbit: all equilibria, counted exactly, and how their number and stability change with the momentum of the wheel.
     """
     from satsym.analysis.subject import examined, find
     from satsym.report.results.equilibria import attitudes

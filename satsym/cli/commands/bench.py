@@ -15,22 +15,22 @@ QUICK, THOROUGH = 0.5, 5.0
 
 EXAMPLES = """\b
 Examples:
-  satsym bench return-to-orbit --quick  an instance: steps of its motion, and its solution
-  satsym bench polar_orbit              a model: steps alone, each kind for five seconds
+  satsym bench return-to-orbit --quick  an instance: integration steps and solution
+  satsym bench polar_orbit              a model: integration steps only, five seconds each
 
-Exit codes: 0 measured, 4 measured, but the instance has no answer."""
+Exit codes: 0 measured, 4 measured, but the instance has no solution."""
 
 
 @command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
-@click.option("--quick", is_flag=True, help="Half a second for each kind of step instead of five.")
+@click.option("--quick", is_flag=True, help="Measure each kind of step for half a second instead of five.")
 @json_option
 def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
-    """Measure how fast this machine is for a model.
+    """Measure how fast a model runs on this machine.
 
-    X is an instance or a model, shipped or the path of one. Steps are those of many motions at once by the classical
-    Runge-Kutta method, with NumPy, and with numba (extra fast) on one core and on all; an instance with a cost is also
-    solved and certified.
+    X is an instance or a model, shipped or the path of one. Many motions at once are integrated by the classical
+    Runge-Kutta method, with NumPy, and with numba (extra fast) on one core and on all. An instance with a cost is
+    also solved and certified.
     """
     from satsym.analysis.speed import solved, speeds
     from satsym.analysis.subject import find

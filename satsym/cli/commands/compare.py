@@ -33,14 +33,17 @@ FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 @command(epilog=EXAMPLES)
 @click.argument("subjects", metavar="X...", nargs=-1, required=True, shell_complete=names.completed(names.instances))
 @json_option
-@click.option("--range", "ranged", is_flag=True, help="Vary damping and command of the first instance's law.")
+@click.option(
+    "--range", "ranged", is_flag=True, help="Vary the damping and the command of the first instance's control law."
+)
 @out_option
 @plot_options("compare")
 def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, look: Look | None) -> ExitCode:
-    """Simulate or solve instances of one system, and set the numbers that describe them side by side.
+    """Simulate or solve several instances of one system, and compare them side by side.
 
-    An instance that states a law ([classical]) is simulated under it, any other is solved. Totals, maximum and final
-    values, durations. NAME, where results go, is that of the first X.
+    An instance that states a control law ([classical]) is simulated under it; any other is solved. The metrics are
+    durations, integrals, and peak and final values, each explained below the table. Results go into the folder of the
+    first X.
     """
     from satsym import instance
     from satsym.analysis import comparison

@@ -13,7 +13,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 EXAMPLES = """\b
 Examples:
-  source <(satsym completion bash)      now; in ~/.bashrc for good
+  source <(satsym completion bash)      for this session; put the line into ~/.bashrc to keep it
   source <(satsym completion zsh)       in ~/.zshrc, after compinit
   satsym completion fish > ~/.config/fish/completions/satsym.fish"""
 
@@ -21,9 +21,9 @@ Examples:
 @command(epilog=EXAMPLES)
 @click.argument("shell", metavar="SHELL", type=click.Choice(SHELLS))
 def completion(shell: str) -> ExitCode:
-    """Print what lets a SHELL complete what one types: bash, zsh or fish.
+    """Print the completion script for a SHELL: bash, zsh or fish.
 
-    Commands, options, and names of instances, models and documents are completed with the TAB key.
+    With it, the TAB key completes commands, options, and the names of instances, models and documents.
     """
     complete = get_completion_class(shell)
     assert complete is not None  # of all that may be chosen

@@ -12,15 +12,15 @@ EXAMPLES = """\b
 Example:
   satsym doctor
 
-Exit codes: 0 all that is required is here, 1 something required is broken."""
+Exit codes: 0 everything required works, 1 something required is broken."""
 
 
 @command(epilog=EXAMPLES)
 @json_option
 def doctor(as_json: bool) -> ExitCode:
-    """Examine the installation.
+    """Check the installation.
 
-    Looks at versions, extras, programs and shipped files, and solves a small problem.
+    Checks versions, extras, programs and shipped files, and solves a small problem.
     """
     from satsym.cli.examination import examine
     from satsym.report.terminal.table import table

@@ -1,34 +1,36 @@
-"""``satsym instances``: what can be solved as it stands, and what an instance file may say."""
+"""``satsym instances``: the shipped problems, and what an instance file may say."""
 
 from __future__ import annotations
 
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import json_option
+from satsym.cli.options import json_option, long_option
 from satsym.cli.output import answer, emit, emit_json
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
 Examples:
   satsym instances
-  satsym instances soft-return          the file of one
+  satsym instances --long               with model, boundary type, final time and bounds
+  satsym instances soft-return          the instance file itself
   satsym instances --keys               every key of an instance file, with unit, default and meaning
-  satsym instances --schema             the same for editors, as JSON Schema
+  satsym instances --schema             the same as JSON Schema, for editors
 
-The type is that of the transversality conditions: 1 final time and final state given, 2 final time free,
-3 final state free, 4 final time free and final state on the reference, 5 both free."""
+Boundary types: 1 final time and final state given; 2 final time free; 3 final state free, wholly or in part;
+4 final time free and final state on the reference; 5 both free."""
 
 
 @command(epilog=EXAMPLES)
 @click.argument("name", metavar="[X]", required=False)
-@click.option("--keys", is_flag=True, help="List what an instance file may say, key by key.")
-@click.option("--schema", is_flag=True, help="The same as JSON Schema.")
+@click.option("--keys", is_flag=True, help="List every key of an instance file.")
+@click.option("--schema", is_flag=True, help="Print the keys as JSON Schema.")
+@long_option
 @json_option
-def instances(name: str | None, keys: bool, schema: bool, as_json: bool) -> ExitCode:
-    """List the instances that can be solved as they stand.
+def instances(name: str | None, keys: bool, schema: bool, whole: bool, as_json: bool) -> ExitCode:
+    """List the shipped instances, by subject.
 
-    With X, show the file of that one.
+    An instance is a problem with its numbers, ready to be solved. With X, print the file of that instance.
     """
     if sum((name is not None, keys, schema)) > 1:
         raise click.UsageError("Give one of X, --keys, --schema.")
@@ -37,7 +39,7 @@ def instances(name: str | None, keys: bool, schema: bool, as_json: bool) -> Exit
     elif name is not None:
         _shown(name, as_json)
     else:
-        _listed(as_json)
+        _listed(as_json, whole)
     return ExitCode.DONE
 
 
@@ -70,11 +72,11 @@ def _shown(name: str, as_json: bool) -> None:
         raise BadInput(f"{printable(name, 200)}: {error}") from None
 
 
-def _listed(as_json: bool) -> None:
+def _listed(as_json: bool, whole: bool) -> None:
     """All that come with satsym."""
     from satsym import instance
     from satsym.report.results.objects import instance_object
     from satsym.report.terminal.listing import instances_text
 
     loaded = [instance.load(name) for name in instance.shipped()]
-    answer(as_json, {"instances": [instance_object(each) for each in loaded]}, lambda: instances_text(loaded))
+    answer(as_json, {"instances": [instance_object(each) for each in loaded]}, lambda: instances_text(loaded, whole))

@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 EXAMPLES = r"""
 Examples:
   satsym latex polar_orbit -o polar_orbit.tex
-  satsym latex my_model.py --fragment   for \input in a document of your own
-  satsym latex my_model.py:my_problem   one of several in a file"""
+  satsym latex my_model.py --fragment   for \input in your own document
+  satsym latex my_model.py:my_problem   one of several problems in a file"""
 
 
 @command(epilog=f"\b{EXAMPLES}")
 @click.argument("name", shell_complete=names.completed(names.models, names.derivations))
-@place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
-@click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
+@place_option("-o", "--output", metavar="FILE", help="Write to this file instead of stdout.")
+@click.option("--fragment", is_flag=True, help="Leave out the preamble, for inclusion in another document.")
 @click.option(
     "--convention",
     type=click.Choice(("minimum", "maximum")),
-    help="Whether H is to be minimised or maximised; as the derivation file says unless given.",
+    help="Minimum or maximum principle; by default as in the derivation file.",
 )
 def latex(name: str, output: Path | None, fragment: bool, convention: Convention | None) -> ExitCode:
     """Typeset a derivation.
 
-    NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
-    checked by machine, before anything is written.
+    NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived afresh, and every step is
+    checked by machine before anything is written.
     """
     from satsym.report.latex import document as typesetting
     from satsym.report.results.files import write_text

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\b
 Examples:
-  satsym lqr uny-lqr                    the gain of a thesis, with all it printed and more
-  satsym lqr geo-lqr --plot             geostationary, weights from allowed deviations, with pictures
-  satsym lqr clohessy_wiltshire         a model: all inputs, all weights 1"""
+  satsym lqr uny-lqr                    the regulator of a thesis
+  satsym lqr geo-lqr --plot             a geostationary satellite, weights from allowed deviations
+  satsym lqr clohessy_wiltshire         a model with all inputs and all weights 1"""
 
 
 @command(epilog=EXAMPLES)
@@ -33,10 +33,10 @@ Examples:
 @out_option
 @plot_options("lqr")
 def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
-    """Find the gain of minimum cost: u = -K x for the deviation x.
+    """Find the linear quadratic regulator: u = -K x for the deviation x.
 
-    X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
-    cost is the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
+    X is an instance with an [lqr] table, or a model, for which all weights are 1; shipped, or the path of one. The cost
+    is the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find

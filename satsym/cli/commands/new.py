@@ -16,7 +16,7 @@ from satsym.status import BadInput, ExitCode
 EXAMPLES = """\b
 Examples:
   satsym new my_model                           a model of your own, in my_model/
-  satsym new my_case --instance soft-return     my_case.toml, to be changed"""
+  satsym new my_case --instance soft-return     my_case.toml, ready to be edited"""
 
 TEMPLATES = Path(__file__).parents[2] / "templates"
 FILES = {
@@ -30,13 +30,17 @@ _FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
 
 @command(epilog=EXAMPLES)
 @click.argument("name")
-@click.option("--instance", "original", metavar="X", help="Copy this shipped instance instead, to NAME.toml.")
-@place_option("--out", metavar="DIR", help="Write there; without it a model goes into NAME/, an instance here.")
+@click.option("--instance", "original", metavar="X", help="Copy this shipped instance to NAME.toml instead.")
+@place_option(
+    "--out",
+    metavar="DIR",
+    help="Write into this folder; by default a model goes into NAME/ and an instance into the current folder.",
+)
 def new(name: str, original: str | None, out: Path | None) -> ExitCode:
-    """Write files to start from: a model of your own, or a copy of an instance.
+    """Write files to start from: a new model, or a copy of an instance.
 
-    A model is three files that run as they are: a commented derivation file, an instance of it, and a test.
-    Nothing that exists is written over.
+    A new model consists of three files that run as they are: a commented derivation file, an instance, and a test.
+    Existing files are never overwritten.
     """
     from satsym.report.results.files import check_writable, write_text
 

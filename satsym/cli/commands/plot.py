@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   satsym solve soft-return --plot       results and pictures
-  satsym plot soft-return --format pdf --format png    the pictures again, for print and screen
-  satsym plot soft-return/simulate      of another command than the last one
-  satsym plot run                       of what `satsym solve soft-return --out run` wrote"""
+  satsym plot soft-return --format pdf --format png    the pictures again, for print and for the screen
+  satsym plot soft-return/simulate      the results of a particular command
+  satsym plot run                       results written by `satsym solve soft-return --out run`"""
 
 
 @command(epilog=EXAMPLES)
@@ -33,17 +33,17 @@ Examples:
     "--from",
     "source",
     metavar="DIR",
-    help="Where its result.json is; by default the newest of results/X.",
+    help="Folder of its result.json; by default the newest in results/X.",
 )
-@place_option("--out", metavar="DIR", help="Where pictures go; by default there too.")
+@place_option("--out", metavar="DIR", help="Folder for the pictures; by default the same one.")
 @look_options
 @json_option
 def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:
-    """Draw a saved result, without solving again.
+    """Draw a saved result again, without solving.
 
-    X is the instance or the model whose results were saved with --out or --plot, or X/COMMAND for what that command
-    wrote, or a folder with results, also of a study. A result that is not whole any more is refused. What analyse, lqr
-    and compare show is found again.
+    X is an instance or model whose results were saved with --out or --plot; X/COMMAND, for the results of that
+    command; or a folder with results, also those of a study. Incomplete results are refused. For analyse, lqr and
+    compare the numbers are computed again.
     """
     from satsym import instance
     from satsym.cli.redrawing import named_in

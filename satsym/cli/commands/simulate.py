@@ -21,12 +21,12 @@ FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 
 EXAMPLES = """\b
 Examples:
-  satsym simulate its-thesis            the uncontrolled trajectory of the satellite
-  satsym simulate its-thesis --plot     with pictures, into results/its-thesis/simulate
-  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
-  satsym simulate lapan-classical       a pitch manoeuvre under the law that it states
-  satsym simulate lapan-minimum-time --feedback switching    the same in minimum time, by the switching curve
-  satsym simulate lapan-minimum-time --feedback pulses       the same by a sensor of the position alone"""
+  satsym simulate its-thesis            the uncontrolled motion
+  satsym simulate its-thesis --plot     with pictures, in results/its-thesis/simulate
+  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under linear feedback
+  satsym simulate lapan-classical       a pitch manoeuvre under its own control law
+  satsym simulate lapan-minimum-time --feedback switching    the same in minimum time, by a switching curve
+  satsym simulate lapan-minimum-time --feedback pulses       the same with a position sensor only"""
 
 
 @command(epilog=EXAMPLES)
@@ -36,7 +36,8 @@ Examples:
     type=click.Choice(FEEDBACKS),
     default=None,
     metavar="LAW",
-    help=f"One of: {', '.join(FEEDBACKS)}; by default classical where the instance states such a law, else none.",
+    help=f"Control law: {', '.join(FEEDBACKS)}. "
+    "By default classical if the instance states such a law, otherwise none.",
 )
 @set_option
 @json_option
@@ -48,7 +49,7 @@ def simulate(
     """Simulate the motion under a control law.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is simulated from
-    the initial state to the final time, and what ought to be conserved is measured.
+    the initial state to the final time, and the drift of conserved quantities is measured.
     """
     from satsym import instance
     from satsym.analysis.regulator.feedback import simulate as simulated

@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 METHODS = "\n".join(f"  {method.name:<15}{method.title}" for method in methods.METHODS.values())
 
 EXAMPLES = f"""\b
-Methods, instead of the instance's (auto is the one that fits):
+Methods (auto chooses the one that suits the problem):
 {METHODS}
 
 \b
 Examples:
   satsym solve soft-return --plot       results and pictures into results/soft-return/solve
-  satsym solve my_case.toml --json      the numbers alone, for another program
-  satsym solve soft-return --continue c1=1:1e-2   from a problem that is easier
+  satsym solve my_case.toml --json      numbers for another program
+  satsym solve soft-return --continue c1=1:1e-2   continuation from an easier problem
 
-Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why),
-5 an answer whose certificate fails."""
+Exit codes: 0 converged, 3 invalid instance, 4 no solution (the status says why),
+5 a solution whose certificate fails."""
 
 
 def _positive(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
@@ -52,18 +52,21 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
     "--method",
     type=click.Choice(methods.names()),
     metavar="METHOD",
-    help=f"Instead of the instance's: {', '.join(methods.names())}.",
+    help=f"Solver, overriding the instance: {', '.join(methods.names())}.",
 )
 @set_option
-@click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
+@click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Number of steps of the time grid.")
 @click.option(
     "--continue",
     "varied",
     multiple=True,
     metavar="KEY=FROM:TO",
-    help="Begin with another value of KEY, and follow the answers; a parameter, tf, t0, initial.STATE or final.STATE.",
+    help="Continuation: start from another value of KEY and follow the solutions. KEY is a parameter, tf, t0, "
+    "initial.STATE or final.STATE.",
 )
-@click.option("--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual of an answer.")
+@click.option(
+    "--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual that a solution may have."
+)
 def solve(
     subject: str,
     as_json: bool,
@@ -75,11 +78,11 @@ def solve(
     varied: tuple[str, ...],
     tolerance: float | None,
 ) -> ExitCode:
-    """Find the control of minimum cost.
+    """Find the control that minimises the cost, and certify it.
 
-    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. A summary is printed;
-    states, controls and costates over time go into files with --out or --plot. METHOD, N and EPS replace what
-    [solver] says in the instance.
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. A summary is printed; with
+    --out or --plot, states, controls and costates over time are written into files. METHOD, N and EPS override
+    [solver] in the instance.
     """
     from satsym import instance, solvers
     from satsym.instance.numbers import changed

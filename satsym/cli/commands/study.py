@@ -26,13 +26,13 @@ Examples:
   satsym study return-to-orbit --vary initial.r=0.9:1.1:20 --vary parameters.c1=log:1:100:10
   satsym study return-to-orbit --sample 1000 --normal initial.r=1.1,0.01 --uniform initial.theta_dot=0.9,1.1
   satsym study its-thesis --command simulate --vary initial.r=1.05:1.2:50 --trajectories
-  satsym study my_case.toml --out DIR --resume    go on with a study that was interrupted
+  satsym study my_case.toml --out DIR --resume    continue an interrupted study
 
 KEY is initial.STATE, final.STATE, parameters.NAME, time.tf, time.t0, time.tf_guess, control.max_norm,
-control.NAME.lower or control.NAME.upper. The table [study] of an instance says the same: command, sample, method,
-seed, and [study.vary] "initial.r" = "0.9:1.1:50".
+control.NAME.lower or control.NAME.upper. The same can be stated in the table [study] of an instance: command, sample,
+method, seed, and [study.vary] "initial.r" = "0.9:1.1:50".
 
-Exit codes: 0 done (rows that fail say so in the table), 3 the study cannot be carried out, 4 no row has an answer."""
+Exit codes: 0 done (failed rows are marked in the table), 3 the study cannot be carried out, 4 no row has a solution."""
 
 
 def _listed(choices: type[Choice]) -> str:
@@ -42,32 +42,37 @@ def _listed(choices: type[Choice]) -> str:
 
 @command(epilog=EXAMPLES)
 @subject_argument
-@click.option("--vary", multiple=True, metavar="KEY=LOW:HIGH:N", help="A grid of N values; log: of equal ratio.")
-@click.option("--sample", type=int, metavar="N", help="Draw N rows, instead of a grid.")
-@click.option("--normal", multiple=True, metavar="KEY=MEAN,SD", help="A normal distribution to draw from.")
-@click.option("--uniform", multiple=True, metavar="KEY=LOW,HIGH", help="A uniform distribution to draw from.")
-@click.option("--method", metavar="METHOD", help=f"Of drawing: {_listed(Sampling)}; by default sobol.")
-@click.option("--seed", type=int, metavar="S", help="Of drawing; 0 by default.")
-@click.option("--command", metavar="COMMAND", help=f"What is done with each row: {_listed(Command)}; by default solve.")
+@click.option(
+    "--vary",
+    multiple=True,
+    metavar="KEY=LOW:HIGH:N",
+    help="A grid of N values, evenly spaced; with KEY=log:LOW:HIGH:N, in equal ratios.",
+)
+@click.option("--sample", type=int, metavar="N", help="Draw a random sample of N rows instead of a grid.")
+@click.option("--normal", multiple=True, metavar="KEY=MEAN,SD", help="Draw from a normal distribution.")
+@click.option("--uniform", multiple=True, metavar="KEY=LOW,HIGH", help="Draw from a uniform distribution.")
+@click.option("--method", metavar="METHOD", help=f"Sampling method: {_listed(Sampling)}; by default sobol.")
+@click.option("--seed", type=int, metavar="S", help="Seed of the sampling; 0 by default.")
+@click.option("--command", metavar="COMMAND", help=f"What to do with each row: {_listed(Command)}; by default solve.")
 @click.option(
     "--certificate",
     metavar="KIND",
-    help=f"Of solve: {_listed(Checked)}; by default local, that is all but competitors; full is as `satsym solve`, "
-    "and sample that for one row in a hundred.",
+    help=f"How to certify solutions: {_listed(Checked)}. By default local, which computes no competing solutions; "
+    "full is the certificate of `satsym solve`, and sample is that for one row in a hundred.",
 )
 @set_option
-@click.option("--feedback", metavar="LAW", help="Of simulate, as `satsym simulate` has it.")
-@click.option("--trajectories", is_flag=True, help="Keep them, too, in few npz files.")
-@click.option("--table", metavar="FORM", help=f"What the table is written as: {_listed(TableFormat)}; by default csv.")
-@place_option("--out", metavar="DIR", help="Where it goes; by default results/NAME/study.")
-@click.option("--resume", is_flag=True, help="Go on with the study that is there, or begin it.")
+@click.option("--feedback", metavar="LAW", help="Control law for simulate; see `satsym simulate`.")
+@click.option("--trajectories", is_flag=True, help="Keep the trajectories as well, in a few npz files.")
+@click.option("--table", metavar="FORM", help=f"File format of the table: {_listed(TableFormat)}; by default csv.")
+@place_option("--out", metavar="DIR", help="Output folder; by default results/NAME/study.")
+@click.option("--resume", is_flag=True, help="Continue the study in the output folder, or start it.")
 @click.option(
     "--workers",
     type=click.IntRange(1, 1000),
     metavar="N",
-    help="Processes; by default one a processor.",
+    help="Number of processes; by default one per processor.",
 )
-@click.option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that computes instead: tcp://HOST:PORT.")
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster with this address: tcp://HOST:PORT.")
 @plot_options("study")
 @json_option
 def study(
@@ -85,11 +90,11 @@ def study(
     values: tuple[str, ...],
     **options: Any,
 ) -> ExitCode:
-    """Solve, simulate or regulate an instance for many values.
+    """Solve, simulate or regulate an instance for many values of its numbers.
 
-    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The table has a row for each
-    combination of values, with its numbers or with the reason why there are none. Whatever interrupts a study, --resume
-    goes on with it, and what has been computed is not computed again.
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The table has one row for each
+    combination of values, with the results or the reason why there are none. An interrupted study is continued with
+    --resume; nothing is computed twice.
     """
     from satsym import instance
     from satsym.report.results.study_table import path_of

@@ -32,8 +32,9 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \relpenalty=10000 \binoppenalty=5000 % a formula within a sentence stays on its line
 """
 
-UNHYPHENATED = r"""% the hyphenation patterns that every TeX has are for English
+OWN = r"""% the hyphenation patterns that every TeX has are for English
 \hyphenpenalty=10000
+\AtBeginDocument{\renewcommand{\abstractname}{<abstract>}}
 """
 
 MACROS = r"""\makeatletter
@@ -70,8 +71,9 @@ MACROS = r"""\makeatletter
 def preamble(texts: Texts, title: str) -> str:
     """All up to macros, in a language, for a document of that title, which is LaTeX."""
     fill = {"babel": texts.get("words", "babel"), "language": texts.language, "title": title}
-    hyphens = "" if texts.language == "en" else UNHYPHENATED
-    return re.sub("<([a-z]+)>", lambda hole: fill[hole[1]], PREAMBLE) + hyphens
+    own = "" if texts.language == "en" else OWN
+    fill["abstract"] = texts.get("words", "abstract")
+    return re.sub("<([a-z]+)>", lambda hole: fill[hole[1]], PREAMBLE + own)
 
 
 def macros(name: str, texts: Texts) -> str:

@@ -9,7 +9,8 @@ from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.prose import scrolled
 from satsym.report.results.unit_names import time_unit
 from satsym.report.said import decimal, message, numbers, say
-from satsym.report.terminal.solution import control_rows, state_rows, switching_together
+from satsym.report.terminal.arcs import switching_together
+from satsym.report.terminal.solution import control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
 from satsym.solution import Certificate, Solution

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.objects import file_of, head, plain
@@ -17,6 +17,21 @@ if TYPE_CHECKING:
 
 LEFT_OUT = ("gain_rate", "gain_state")
 """Metrics of one law alone."""
+MEANINGS = {
+    "transition_time": "time the manoeuvre takes: that of the optimum, or the settling time of a law",
+    "first_reached": "time at which the command is first reached",
+    "settling_time": "time after which the response stays within 2 % of the command",
+    "overshoot": "largest excess over the command, as a fraction of the step",
+    "impulse": "integral of the control over the instant of the step",
+    "_total": "integral of the magnitude, impulse included",
+    "_peak": "largest magnitude, impulse left out",
+    "_effort": "integral of the square; infinite with an impulse",
+    "_energy": "integral of the power; infinite with an impulse",
+    "_final": "value at the final time",
+    "_driven": "largest departure from the motion that is not driven",
+    "_share": "rate that the driving control causes, relative to the largest such rate",
+}
+"""Of metrics, by name or by what a name ends with."""
 
 
 def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:
@@ -73,9 +88,17 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
     ]
     blocks = [
         table([(say("metric"), *names, say("unit")), *rows], right=range(1, len(names) + 1)),
+        _meanings(found),
         table([each("instance", "how", "certificate", "message"), *said]),
     ]
     return joined([*blocks, _range(cases[0], over)] if over else blocks)
+
+
+def _meanings(found: Iterable[str]) -> list[str]:
+    """What the metrics measure, each kind once."""
+    kinds = {key: f"..{key}" if key.startswith("_") else key for key in MEANINGS}
+    used = [key for key in kinds if any(name == key or (key[0] == "_" and name.endswith(key)) for name in found)]
+    return table([each("metric", "meaning"), *((kinds[key], say(MEANINGS[key])) for key in used)]) if used else []
 
 
 def _without_rounding(key: str, found: Mapping[str, Sequence[float | None]]) -> list[float | None]:

@@ -2,27 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.results.objects import bounded
 from satsym.report.said import each, say
-from satsym.report.terminal.table import figure, fitting, table, wrapped
+from satsym.report.subjects import INSTANCES, MODELS, by_subject
+from satsym.report.terminal.table import GAP, SENTENCE, WIDEST, figure, fitting, room, table, wrapped
 from satsym.spec import ProblemSpec, Variable
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
 
 
+COLUMNS = 80
+"""Of a list, where there is no terminal to fill."""
 MOST = 4
 """Names of a model that fit in its line; `satsym models MODEL` has all."""
 
 
-def models_text(specs: Iterable[ProblemSpec]) -> str:
-    """A line for each model."""
+def models_text(specs: Sequence[ProblemSpec], whole: bool = False) -> str:
+    """Models by subject, a line for each; if whole, one table with states and controls."""
+    if not whole:
+        return _by_subject({spec.name: say(spec.title) for spec in specs}, MODELS)
     header = each("model", "states", "controls", "title")
     rows = [(s.name, _few(s.state_names), _few(s.control_names), say(s.title)) for s in specs]
     return "\n".join(table([header, *rows], indent=""))
+
+
+def _by_subject(titles: Mapping[str, str], subjects: Mapping[str, str]) -> str:
+    """Names with their titles under each subject, no wider than a terminal or, without one, than :data:`COLUMNS`."""
+    name_width, blocks = max(map(len, titles), default=0), []
+    left = max(SENTENCE, min(WIDEST, room() or COLUMNS) - name_width - 2 * len(GAP))
+    for subject, names in by_subject(titles, subjects).items():
+        lines = [say(subject)]
+        for name in names:
+            first, *others = textwrap.wrap(titles[name], left) or [""]
+            lines += [f"{GAP}{name.ljust(name_width)}{GAP}{first}".rstrip()]
+            lines += [" " * (name_width + 2 * len(GAP)) + part for part in others]
+        blocks.append("\n".join(lines))
+    return "\n\n".join(blocks)
 
 
 def _few(names: Sequence[str]) -> str:
@@ -31,8 +51,10 @@ def _few(names: Sequence[str]) -> str:
     return say("<names> ... <number> in all", names=", ".join(names[: MOST - 1]), number=len(names))
 
 
-def instances_text(instances: Iterable[Instance]) -> str:
-    """A line for each instance."""
+def instances_text(instances: Sequence[Instance], whole: bool = False) -> str:
+    """Instances by subject, a line for each; if whole, one table with what each asks for."""
+    if not whole:
+        return _by_subject({one.name: say(one.title) for one in instances}, INSTANCES)
     header = each("instance", "model", "type", "final time", "bounded", "title")
     rows = [
         (

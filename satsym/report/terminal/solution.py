@@ -13,14 +13,12 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
+from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
+from satsym.report.terminal.certificate import certificate_lines
 from satsym.report.terminal.table import WIDEST, figure, fitting, room, table, wrapped
-from satsym.solution import Certificate, Iteration, Simulation, Solution
-from satsym.status import Status, Verdict
+from satsym.solution import Iteration, Simulation, Solution
+from satsym.status import Status
 
-SHOWN_TIMES = 6
-"""Switching times of one control that are listed."""
-
-_AT_BOUND = 1e-9
 ROUNDING = 1e-12
 """Share of the largest value along the way at which nothing is shown."""
 
@@ -42,7 +40,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
-        _message(solution.status, solution.message),
+        _message(solution.status, solution.message, in_words(solution, solution.message)),
     ]
     if solution.status in (Status.INFEASIBLE, Status.NO_MINIMISER):
         return joined(blocks)  # there is no last attempt at an answer, for there is none
@@ -52,7 +50,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         table(control_rows(instance, solution.times, solution.u), right=(1, 2, 4)),
         _switching(solution, unit),
         _events(solution, unit),
-        _certificate(solution.certificate, instance) if solution.certificate else [],
+        certificate_lines(solution.certificate, instance.model.spec) if solution.certificate else [],
     ]
     return joined(blocks)
 
@@ -66,7 +64,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     metrics = [(name, figure(value, 10)) for name, value in simulation.metrics.items()]
     blocks = [
         _heading(instance, simulation.status, say("feedback <law>", law=message(simulation.feedback)), colour),
-        _message(simulation.status, simulation.message),
+        _message(simulation.status, simulation.message, message(simulation.message)),
         table([("", ""), *facts])[1:],
         _states(instance, simulation.times, simulation.x, None),
         table([each("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
@@ -150,43 +148,6 @@ def progress_line(iteration: Iteration, instance: Instance) -> str:
     )
 
 
-def _certificate(certificate: Certificate, instance: Instance) -> list[str]:
-    """The verdict, what it was compared with, and each check with its limit; a failed one says so."""
-    spec = instance.model.spec
-    rows = [
-        (
-            message(c.name),
-            figure(abs(c.value), 2),
-            say("ok") if c.passed else say("FAILED, limit <limit>", limit=figure(c.limit, 2)),
-        )
-        for c in certificate.checks
-    ]
-    compared = [
-        (message(c.kind.value), str(c.tried), str(c.unanswered), figure(spec.objective(c.cheapest), 10))
-        for c in certificate.competitors
-        if c.tried
-    ]
-    best = say("highest objective" if spec.maximise else "cheapest costs")
-    header = (*each("competitors", "tried", "unanswered"), best)
-    return [
-        *wrapped(say("certificate: <verdict>", verdict=_verdict(certificate))),
-        *table([("", "", ""), *rows], right=(1,))[1:],
-        *(["", *table([header, *compared], right=(1, 2, 3))] if compared else []),
-    ]
-
-
-def _verdict(certificate: Certificate) -> str:
-    """The verdict in words, with what was not checked."""
-    words = message(certificate.verdict.value)
-    solved = sum(c.solved for c in certificate.competitors)
-    if certificate.verdict is Verdict.CERTIFIED and solved:
-        compared = counted(solved, "competitor")
-        best = "strict local minimum; <compared> of these kinds compared, none cheaper"
-        words = f"{words}: {say(best, compared=compared)}"
-    missing = ", ".join(message(kind.value) for kind in certificate.not_checked)
-    return say("<verdict>; not checked: <kinds>", verdict=words, kinds=missing) if missing else words
-
-
 def joined(blocks: Sequence[Sequence[str]]) -> str:
     """Blocks of lines, an empty line between those that have any; headings, which are not moved in, fit."""
     return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
@@ -204,8 +165,9 @@ def _effort(solution: Solution) -> str:
     return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, max(2, whole))} s"
 
 
-def _message(status: Status, reason: str) -> list[str]:
-    return wrapped("; ".join(filter(None, [message(reason), message(status.advice_beside(reason))])))
+def _message(status: Status, reason: str, said: str) -> list[str]:
+    """A reason, as it is said, with the advice that is left beside it."""
+    return wrapped("; ".join(filter(None, [said, message(status.advice_beside(reason))])))
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
@@ -221,7 +183,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
     ]
     for i, state in enumerate(spec.states):
         final = _without_rounding(_last(x[i]), x[i])
-        off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i]), 3)
+        off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i], x[i]), 3)
         rows.append(
             (
                 state.symbol,
@@ -238,9 +200,11 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
     return rows
 
 
-def _difference(instance: Instance, name: str, value: float, reference: float) -> float:
+def _difference(instance: Instance, name: str, value: float, reference: float, row: Array) -> float:
+    """From the reference, modulo a turn where turns do not count; zero where it is rounding."""
     turn_does_not_count = name in instance.solver.free_angles and math.isfinite(value)
-    return math.remainder(value - reference, math.tau) if turn_does_not_count else value - reference
+    off = math.remainder(value - reference, math.tau) if turn_does_not_count else value - reference
+    return _without_rounding(off, row)
 
 
 def _given(instance: Instance, name: str) -> str:
@@ -288,27 +252,12 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
     lower, upper = (figure(limit) if math.isfinite(limit) else "" for limit in limits)
     words = f"[{lower}, {upper}]" if lower and upper else ""
     words = words or (say("at least <value>", value=lower) if lower else say("at most <value>", value=upper))
-    at_bound = np.logical_or.reduce([np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite])
-    fraction = float(np.trapezoid(at_bound.astype(float), times)) / float(times[-1] - times[0])
+    fraction = float(np.trapezoid(at_bound(row, limits).astype(float), times)) / float(times[-1] - times[0])
     return *extremes, words, f"{100.0 * fraction:.3g} %"
 
 
-def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]]:
-    """Switching times, and before them all controls that have the same: those of a vector switch together."""
-    found: dict[tuple[float, ...], list[str]] = {}
-    for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
-        if times:
-            found.setdefault(tuple(times), []).append(control)
-    return [(", ".join(controls), times) for times, controls in found.items()]
-
-
 def _switching(solution: Solution, unit: str) -> list[str]:
-    rows = []
-    for controls, times in switching_together(solution):
-        listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
-        if len(times) > SHOWN_TIMES:
-            listed = say("<listed> and <number> more", listed=listed, number=len(times) - SHOWN_TIMES)
-        rows.append((say("switching times:"), controls, say("at <times>", times=f"{listed} {unit}".rstrip())))
+    rows = rows_of_arcs(solution, unit)
     return table([("", "", ""), *rows])[1:] if rows else []
 
 

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from satsym.report.said import counted, each, message, say
+from satsym.report.terminal.certificate import meaning
 from satsym.report.terminal.table import figure, table
-from satsym.status import Status
+from satsym.status import Status, Verdict
 from satsym.studies.running import Advance
 
 
@@ -42,21 +43,26 @@ def study_text(found: Mapping[str, Any]) -> str:
     if found["verdicts"]:
         lines += [
             "",
-            *table(
-                [each("verdict", "rows"), *((message(k), str(v)) for k, v in found["verdicts"].items())], right=(1,)
-            ),
+            *table([each("certificate", "rows", "meaning"), *map(_verdict, found["verdicts"].items())], right=(1,)),
         ]
     if found.get("branches") and found["branches"]["borders"] + found["branches"]["changed"]:
         lines += ["", _branches(found["branches"])]
     if found["worst"]:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
-        lines += ["", say("worst:"), *table([each("row", "objective", "command"), *rows], right=(0, 1))]
+        lines += ["", say("rows with the worst objective:")]
+        lines += table([each("row", "objective", "command"), *rows], right=(0, 1))
     if found["failures"]:
         rows = [(str(one["row"]), message(one["status"]), one["reproduce"]) for one in found["failures"]]
         heading = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
         lines += ["", say(heading, rows=counted(failed, "row"))]
         lines += table([each("row", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
+
+
+def _verdict(counted_verdict: tuple[str, int]) -> tuple[str, str, str]:
+    """A verdict, how many rows have it, and what it claims, in the words of a solution."""
+    name, count = counted_verdict
+    return message(name), str(count), meaning(Verdict(name))
 
 
 def _branches(found: Mapping[str, int]) -> str:

@@ -1,0 +1,122 @@
+"""When controls switch, saturate, burn and coast, in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.report.said import message, say
+from satsym.report.terminal.table import figure
+from satsym.solution import Solution
+
+SHOWN_TIMES = 6
+"""Switching times, or arcs, of one control that are listed."""
+SHOWN_ARCS = 9
+"""Arcs of a structure that are put in words; longer ones keep the signs of the message."""
+_AT_BOUND = 1e-9
+_SIGNS = {"+": "upper bound", "-": "lower bound", "0": "zero", "s": "singular", "b": "boundary"}
+_THRUST = {"+": "burn", "-": "coast", "0": "coast", "s": "singular"}
+_STRUCTURE = re.compile(r"structure ([-+0sb]+), (?:\d+ switch(?:es)?, )?")
+
+
+def rows_of_arcs(solution: Solution, unit: str) -> list[tuple[str, str, str]]:
+    """For each control, or those that change together: what is said, their names, and the times."""
+    return [_row(solution, controls, times, unit) for controls, times in switching_together(solution)]
+
+
+def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]]:
+    """Switching times, and before them all controls that have the same: those of a vector switch together."""
+    found: dict[tuple[float, ...], list[str]] = {}
+    for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
+        if times:
+            found.setdefault(tuple(times), []).append(control)
+    return [(", ".join(controls), times) for times, controls in found.items()]
+
+
+def in_words(solution: Solution, text: str) -> str:
+    """A solver's message in the language asked for, with the structure ``-+-`` of arcs in words."""
+    found = _STRUCTURE.match(text)
+    if not found or len(found[1]) > SHOWN_ARCS:
+        return message(text)
+    signs = _THRUST if _throttled(solution) else _SIGNS
+    arcs = ", ".join(say(signs.get(sign, _SIGNS[sign])) for sign in found[1])
+    rest = message(text[found.end() :])
+    return say("arcs: <arcs>; <rest>", arcs=arcs, rest=rest) if rest else say("arcs: <arcs>", arcs=arcs)
+
+
+def at_bound(row: Array, limits: tuple[float, float]) -> Array:
+    """Where a control, or a norm, is at one of its finite bounds."""
+    finite = [bound for bound in limits if np.isfinite(bound)]
+    near = [np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite]
+    return np.logical_or.reduce(near) if near else np.zeros(len(row), bool)
+
+
+def _row(solution: Solution, controls: str, times: Sequence[float], unit: str) -> tuple[str, str, str]:
+    names = controls.split(", ")
+    if thrust := _burns(solution, names, times, unit):
+        return say("thrust arcs:"), controls, thrust
+    if len(names) == 1 and (spans := _saturated(solution, names[0], times)):
+        return say("saturated:"), controls, _listed([_span(*span) for span in spans], unit)
+    listed = say("at <times>", times=_listed([figure(t) for t in times], unit))
+    return say("switching times:"), controls, listed
+
+
+def _burns(solution: Solution, names: Sequence[str], times: Sequence[float], unit: str) -> str:
+    """Arcs of full and of no thrust; empty where the controls are no vector whose norm jumps between the two."""
+    all_names = solution.instance.model.spec.control_names
+    for bound in solution.instance.bounded_norms:
+        if bound.lower == 0.0 and [all_names[k] for k in bound.places] == list(names):
+            norm = np.sqrt((solution.u[list(bound.places)] ** 2).sum(axis=0))
+            found = []
+            for begin, end, value in _arcs(solution, norm, times):
+                full, none = abs(value - bound.upper) <= 1e-6 * bound.upper, value <= 1e-6 * bound.upper
+                if not (full or none):
+                    return ""
+                text = "burn from <low> to <high>" if full else "coast from <low> to <high>"
+                found.append(say(text, low=figure(begin), high=figure(end)))
+            return _listed(found, unit)
+    return ""
+
+
+def _saturated(solution: Solution, name: str, times: Sequence[float]) -> list[tuple[float, float]]:
+    """Arcs on which a control that jumps nowhere is at a bound; none where it jumps."""
+    place = solution.instance.model.spec.control_names.index(name)
+    row, limits = solution.u[place], (solution.instance.lower[place], solution.instance.upper[place])
+    if solution.method == "bang-bang" or _jumps(solution.times, row):
+        return []
+    held = at_bound(row, limits).astype(float)
+    return [(begin, end) for begin, end, share in _arcs(solution, held, times) if share > 0.5]
+
+
+def _jumps(times: Array, row: Array) -> bool:
+    twice = np.flatnonzero(np.diff(times) == 0.0)
+    return bool(len(twice)) and bool(np.any(np.abs(row[twice + 1] - row[twice]) > 1e-6 * np.abs(row).max(initial=0.0)))
+
+
+def _arcs(solution: Solution, row: Array, times: Sequence[float]) -> Iterator[tuple[float, float, float]]:
+    """Beginning and end of each arc, with the value at the node next to its middle."""
+    ends = [float(solution.times[0]), *times, float(solution.times[-1])]
+    for begin, end in pairwise(ends):
+        if end > begin:
+            yield begin, end, float(row[np.abs(solution.times - (begin + end) / 2.0).argmin()])
+
+
+def _span(begin: float, end: float) -> str:
+    return say("from <low> to <high>", low=figure(begin), high=figure(end))
+
+
+def _listed(parts: Sequence[str], unit: str) -> str:
+    """As many parts as are shown, with their unit, and how many there are besides."""
+    listed = f"{', '.join(parts[:SHOWN_TIMES])} {unit}".rstrip()
+    left = len(parts) - SHOWN_TIMES
+    return say("<listed> and <number> more", listed=listed, number=left) if left > 0 else listed
+
+
+def _throttled(solution: Solution) -> bool:
+    """Whether the controls are one vector whose norm is between zero and a bound."""
+    norms = solution.instance.bounded_norms
+    return len(norms) == 1 and norms[0].lower == 0.0

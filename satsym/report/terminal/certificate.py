@@ -1,0 +1,136 @@
+"""What a certificate says to people: its verdict in a sentence, and each condition as a statement with its limit."""
+
+from __future__ import annotations
+
+import re
+
+from satsym.report.said import each, message, say
+from satsym.report.terminal.table import figure, table, wrapped
+from satsym.solution import Certificate, Check
+from satsym.spec import ProblemSpec
+from satsym.status import Verdict
+
+_HOLDS = {
+    "boundary residual": "conditions at both ends met",
+    "dynamics defect": "equations of motion satisfied",
+    "node defect": "equations of motion satisfied between nodes",
+    "junction defect": "arcs joined without gaps",
+    "hamiltonian drift": "Hamiltonian constant",
+    "stationarity": "control minimises the Hamiltonian",
+    "cost": "cost confirmed by integration",
+    "legendre-clebsch": "strict Legendre-Clebsch condition holds",
+    "generalised legendre-clebsch": "generalised Legendre-Clebsch condition holds",
+    "switching times": "switching times confirmed by integration",
+    "minimisers of H that a jump joins stay as good": "minimisers of H differ on either side of a jump",
+    "coinciding switching times": "switching times distinct",
+    "conjugate points: none": "no conjugate points",
+    "correction of the nodes": "nodes lie on the recomputed trajectory",
+    "cost interval too narrow": "cost interval wide enough",
+    "domain violation": "states inside the domain of the model",
+    "gaps where the flow begins anew": "trajectory continuous where integration restarts",
+    "jump of costates off the constraint's gradient": "costates jump along the gradient of the constraint",
+    "jump of the costates": "costates jump along the gradient of the constraint",
+    "kernels contradict each other": "generated kernels agree",
+    "limit of the end violated": "limits at the end respected",
+    "multiplier of a limit of the end vanishes": "multipliers of the limits at the end not zero",
+    "multiplier vanishes on a boundary": "multipliers positive along boundary arcs",
+    "negative multiplier of a limit of the end": "multipliers of the limits at the end not negative",
+    "negative multiplier": "multipliers of path constraints not negative",
+    "multiplier on a boundary is negative": "multipliers of path constraints not negative",
+    "multiplier at a junction is negative": "multipliers at junctions not negative",
+    "no cheaper competitor": "no cheaper control conceivable",
+    "no proof of a minimum along singular arcs: not convex": "problem convex, so singular arcs are optimal",
+    "not convex": "problem convex, so there is no other minimum",
+    "off tangency at junctions": "tangency conditions at junctions met",
+    "off the boundary on a boundary arc": "boundary arcs lie on the boundary",
+    "off the boundary on its arcs": "boundary arcs lie on the boundary",
+    "path constraint violated": "path constraints satisfied",
+    "point on the way missed": "points on the way passed",
+    "derivative of the cost by the times of points": "cost stationary in the times of points on the way",
+    "second variation in lengths of arcs and directions": "second variation in arc lengths and directions positive",
+    "second variation in the switching times": "second variation in the switching times positive",
+    "second variation on pieces of the control": "second variation over pieces of the control not negative",
+    "second variation with the active arcs fixed": "second variation with the active arcs fixed positive",
+    "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
+    "second-order condition at the free start": "second-order condition at the free start holds",
+    "strict bang-bang condition": "strict bang-bang condition holds",
+    "switching function on singular arcs": "switching function zero on singular arcs",
+    "switching function vanishes on an arc": "switching functions zero at switching times only",
+    "width of the cost interval": "cost interval narrow",
+}
+"""A check -> what is so where it passes; checks that can only fail are not here."""
+
+_NAMED = {
+    re.compile(r"cheaper by: (.*)"): "nothing cheaper: <said_kind>",
+    re.compile(r"transversality at the start: (.*)"): "transversality condition at the start holds: <said_kind>",
+}
+"""The same with something named in them."""
+
+_MEANINGS = {
+    Verdict.CERTIFIED: "strict local minimum",
+    Verdict.LOCAL_MINIMUM: "strict local minimum; no competing solutions were computed",
+    Verdict.EXTREMAL_ONLY: "first-order conditions hold; not shown to be a strict local minimum",
+    Verdict.FAILED: "a condition of optimality is violated",
+}
+"""What a verdict claims, in the words that solve, study and compare share."""
+
+
+def meaning(verdict: Verdict) -> str:
+    """What a verdict claims, in a few words."""
+    return say(_MEANINGS[verdict])
+
+
+def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
+    """The verdict, the conditions with what was measured and its limit, and the competitors kind by kind."""
+    failed = "" if all(check.passed for check in certificate.checks) else say("FAILED")
+    rows = [
+        (
+            statement(check),
+            figure(abs(check.value), 2) if check.limit else "",
+            figure(check.limit, 2) if check.limit else "",
+            "" if check.passed else failed,
+        )
+        for check in certificate.checks
+    ]
+    compared = [
+        (message(c.kind.value), str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
+        for c in certificate.competitors
+        if c.tried
+    ]
+    best = say("highest objective" if spec.maximise else "lowest cost")
+    return [
+        *wrapped(say("certificate: <verdict>", verdict=verdict_text(certificate, spec.maximise))),
+        "",
+        *table([(*each("condition", "measured", "limit"), ""), *rows], right=(1, 2)),
+        *(
+            ["", *table([(*each("competitors", "tried", "solved"), best), *compared], right=(1, 2, 3))]
+            if compared
+            else []
+        ),
+    ]
+
+
+def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
+    """The verdict with what it claims, how many competitors it rests on, and what nobody compared."""
+    words, solved = meaning(certificate.verdict), sum(c.solved for c in certificate.competitors)
+    if certificate.verdict is Verdict.CERTIFIED and solved:
+        one = "the one competing solution is no better" if maximise else "the one competing solution is not cheaper"
+        many = (
+            "none of <number> competing solutions is better"
+            if maximise
+            else "none of <number> competing solutions is cheaper"
+        )
+        words = f"{words}; {say(one) if solved == 1 else say(many, number=solved)}"
+    text = f"{message(certificate.verdict.value)} ({words})"
+    missing = ", ".join(message(kind.value) for kind in certificate.not_checked)
+    return say("<verdict>; not compared: <kinds>", verdict=text, kinds=missing) if missing else text
+
+
+def statement(check: Check) -> str:
+    """What a check says: what holds where it passed, else what is wrong."""
+    if not check.passed:
+        return message(check.name)
+    for pattern, text in _NAMED.items():
+        if found := pattern.fullmatch(check.name):
+            return say(text, said_kind=message(found[1]))
+    return say(_HOLDS[check.name]) if check.name in _HOLDS else message(check.name)
