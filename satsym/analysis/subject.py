@@ -48,7 +48,8 @@ def examined(given: Instance | Kernels) -> tuple[Analysis | None, Survey | None]
     if isinstance(given, Kernels):
         if spec.keplerian and not spec.has_reference:
             raise BadInput(
-                f"{spec.name}: has no equilibrium and no reference, and a model as such starts on no orbit; write an "
+                f"{spec.name}: has neither an equilibrium nor a reference, and a model alone has no initial state to "
+                f"start an orbit from; write an "
                 "instance with its initial state"
             )
         return analyse(given), None

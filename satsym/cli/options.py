@@ -135,7 +135,7 @@ def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., A
         @functools.wraps(function)
         def called(*, plot: bool, formats: tuple[str, ...], size: str | None, untitled: bool, **arguments: Any) -> Any:
             if (formats or size or untitled) and not plot:
-                raise click.UsageError("--format, --size, --no-title say how pictures look; add --plot to have some.")
+                raise click.UsageError("--format, --size and --no-title need --plot.")
             return function(look=_look(formats, untitled, size) if plot else None, **arguments)
 
         return drawn(_format_option(_size_option(_title_option(called))))

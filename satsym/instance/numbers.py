@@ -203,7 +203,7 @@ def find(text: str, instance: Instance) -> Key:
     """
     key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
-        raise BadInput(f"{key.text}: {instance.called} has a range for it, which is set in its file alone")
+        raise BadInput(f"{key.text}: {instance.called} has a range for it, which can be set only in its file")
     guessed = key.name == GUESS and key.table is Table.TIME
     if guessed and instance.tf is not None:
         raise BadInput(f"{key.text}: {instance.called} gives the final time; set time.tf, or leave this out")

@@ -120,7 +120,7 @@ class Trials:
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
-            return replace(nothing, status=Status.TIME_LIMIT, message="time was up before all ends were tried")
+            return replace(nothing, status=Status.TIME_LIMIT, message="time ran out before all ends were tried")
         try:
             found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
@@ -177,7 +177,7 @@ def _unanswered(trials: Trials, first: Solution) -> Solution:
     if first.status is Status.INFEASIBLE:  # with fewer conditions, so that more of them have no answer either
         return replace(nothing, status=first.status, message=first.message)
     reasons = [one.message for one in trials.known.values() if not one.status.answered]
-    message = f"none of {count} of limits that the end meets has an answer that keeps to the others"
+    message = f"none of {count} of limits that the end meets has a solution that satisfies the others"
     return replace(nothing, status=Status.NOT_CONVERGED, message=f"{message}: {reasons[-1]}" if reasons else message)
 
 

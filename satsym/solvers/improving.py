@@ -78,7 +78,7 @@ def bottomless(solution: Solution) -> Solution | None:
     endless = None if constrained or solution.method == SWITCHED else fall(solution)
     if endless is None:
         return None
-    advice = "weigh the control or time more, shorten the time, or bound the control"
+    advice = "give the control or the time a larger weight, shorten the time, or bound the control"
     spec, within = solution.instance.model.spec, solution.instance.control_set
     if spec.control_set not in (None, "free") and not within.bounded:
         advice += "; the model has bounds for it, and [control] gives none"

@@ -121,7 +121,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     for k, start in enumerate(starts):
         if limits.expired:
             return None
-        activity.tell(f"looking whether the end can be reached at all: search {k + 1} of {len(starts)} ...")
+        activity.tell(f"checking whether the end can be reached: search {k + 1} of {len(starts)} ...")
         with np.errstate(all="ignore"):
             control = tried(start)
             if control is None:

@@ -213,7 +213,7 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
         )
         return arrived if arrived.status.answered else replace(found, message=known)
     if near.undecided:
-        return replace(found, message=f"{found.message}; {near.message}, and others may arrive")
+        return replace(found, message=f"{found.message}; {near.message}, but others may arrive")
     return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
 
 

@@ -69,7 +69,7 @@ def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original
     ("arguments", "message"),
     [
         (["two words"], 'NAME: got "two words"; write small letters'),
-        (["class"], "NAME: class is a word of Python's own; choose another name, such as my_class"),
+        (["class"], "NAME: class is a Python keyword; choose another name, such as my_class"),
         (["random"], "NAME: random.py would hide a module that Python imports"),
         (["polar_orbit"], "NAME: polar_orbit is a model that comes with satsym"),
         (["a/b", "--instance", "soft-return"], 'NAME: got "a/b"; write letters'),
@@ -91,6 +91,6 @@ def test_what_exists_is_kept(run: Run, tmp_path: Path):
     mine.write_text("mine", encoding="utf-8")
     code, _, complaint = run("new", "my_model")
     assert code == 3
-    assert "my_model.toml: exists already" in complaint
+    assert "my_model.toml: already exists" in complaint
     assert [path.name for path in mine.parent.iterdir()] == ["my_model.toml"]
     assert mine.read_text(encoding="utf-8") == "mine"

@@ -106,7 +106,7 @@ COMPOSED = (
     "the entries are not known well enough to decide. Either <verdict>: <reason>; or <other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
-    "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
+    "<said_which> does not close: without a period there are no monodromy matrix and no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
     *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),

@@ -275,7 +275,7 @@ def test_where_nothing_depends_on_the_final_time_that_is_said():
     case = replace(with_parameters(instance.load("ends-5-free"), c0=0.0, k1=0.0, k2=0.0, k4=0.0))
     found = solve(case)
     assert found.status is Status.NO_MINIMISER
-    assert "nothing decides the final time" in found.message
+    assert "nothing determines the final time" in found.message
 
 
 def test_where_only_time_costs_the_shortest_would_be_best():

@@ -233,7 +233,7 @@ def jacobians(model: Kernels, p: Sequence[float], t: float, x: Array) -> tuple[A
         A, B = model.jacobian_x(*arguments), model.jacobian_u(*arguments)
     except ArithmeticError:
         raise BadInput(
-            f"{model.spec.name}: cannot be linearised at t = {t:.6g}, where something is divided by zero; "
+            f"{model.spec.name}: cannot be linearised at t = {t:.6g}, because of a division by zero; "
             "write an instance with another t0"
         ) from None
     return np.array(A, dtype=float).reshape(n, n), np.array(B, dtype=float).reshape(n, m)

@@ -82,5 +82,5 @@ def _verdict(about: Linearisation, possible: Sequence[Sequence[Eigenvalue]]) -> 
     found = stability(*possible)
     if found.decides or not about.nonlinear:
         return found
-    reason = f"{found.reason}; of the nonlinear motion the linearisation alone decides nothing"
+    reason = f"{found.reason}; for the nonlinear motion, the linearisation alone decides nothing"
     return Stability(found.verdict, reason, False)

@@ -28,11 +28,12 @@ FASTER = 1e-6
 LOST = 1e-3
 """Errors of a monodromy matrix above this, relative to its growth, leave nothing to be told from it."""
 _LEAVING = (
-    "Neighbours leave in other directions and at other speeds, so that distances from them grow in proportion to time."
+    "Neighbouring orbits leave in other directions and at other speeds, so that the distances between them "
+    "grow in proportion to time."
 )
 _ON_THE_BORDER = (
-    "Neighbours are ellipses, which come back, or hyperbolas, which leave faster: distances from them grow beyond "
-    "all bounds."
+    "Neighbouring orbits are ellipses, which come back, or hyperbolas, which leave faster: the "
+    "distances between them grow without bound."
 )
 
 
@@ -85,8 +86,8 @@ class Floquet:
             )
         if self.status == NO_PERIOD:
             return (
-                f"{_called(self.orbit)} does not close: without a period there is no monodromy matrix, and there are "
-                f"no multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
+                f"{_called(self.orbit)} does not close: without a period there are no monodromy matrix and no "
+                f"multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
             )
         closed = (
             "All six multipliers of a closed orbit are exactly 1, for its neighbours are closed too: M - I = "

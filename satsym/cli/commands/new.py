@@ -47,7 +47,7 @@ def new(name: str, original: str | None, out: Path | None) -> ExitCode:
     texts, following = _model(name, out or Path(name)) if original is None else _copy(name, original, out or Path())
     for path in texts:
         if path.exists():
-            raise BadInput(f"{path}: exists already and is not written over; choose another name, or --out DIR")
+            raise BadInput(f"{path}: already exists and is not overwritten; choose another name, or --out DIR")
     folder = next(iter(texts)).parent
     check_writable(folder)
     for path, (text, _) in texts.items():
@@ -67,7 +67,7 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
     from satsym.wording import shown
 
     if keyword.iskeyword(name):
-        raise BadInput(f"NAME: {name} is a word of Python's own; choose another name, such as my_{name}")
+        raise BadInput(f"NAME: {name} is a Python keyword; choose another name, such as my_{name}")
     if not _NAME.match(name):
         raise BadInput(f"NAME: got {shown(name)}; write small letters, digits and single underscores, such as my_model")
     if name in {*sys.stdlib_module_names, "numpy", "pytest", "satsym", "scipy", "sympy"}:

@@ -60,7 +60,7 @@ def report(
     from satsym.studies.reading import settings
 
     if page is None:
-        raise click.UsageError("--html FILE says where the page goes.")
+        raise click.UsageError("Give --html FILE, the file to write the page to.")
     if study is not None and not interactive:
         raise click.UsageError("--study DIR is shown with --interactive.")
     if interactive:

@@ -75,7 +75,7 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     user_cache.used(path.parent)
     keeps = user_cache.read(path) == text.encode() and _writable(path.parent)
     if not any(path.parent.glob("__pycache__/*.nbi")):  # numba keeps machine code there
-        activity.tell(f"compiling {name}, which happens once ...")
+        activity.tell(f"compiling {name}, once only ...")
     module = ModuleType(f"satsym_kept_{name}_{digest}")
     sys.modules[module.__name__] = module  # where machine code that was kept looks for it
     vars(module).update(np=np, __file__=str(path))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.symbolic import Derivation
 
-BY_DERIVATION = "the exact analysis in letters needs the derivation of the model, which is not at hand"
+BY_DERIVATION = "the symbolic analysis needs the derivation of the model, which is not available"
 
 
 def exact(about: Linearisation, derivation: Derivation | None = None) -> tuple[dict[str, Any] | None, str]:
@@ -61,8 +61,8 @@ def omitted_because(about: Linearisation, derived: bool = False) -> str:
     if letters * states <= MOST_LETTERS:
         return ""
     return (
-        f"the exact analysis in letters is left out: with {states} states and {letters} letters its polynomials would "
-        "fill pages and say nothing"
+        f"the symbolic analysis is omitted: with {states} states and {letters} parameters its polynomials would "
+        "fill pages"
     )
 
 

@@ -165,7 +165,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
         "These are Hill's equations (model hill) about the circle with this semi-major axis. There a circle is an "
         "equilibrium, where eigenvalues mean something: oscillations once a revolution, in and out of the plane, and "
         "a drift along the track from the block of size 2. Over a revolution each of them becomes exp(s T) = 1: the "
-        "multipliers above. What they leave out is of the order of the eccentricity."
+        "multipliers above. Terms of the order of the eccentricity are neglected."
     )
     return [
         *wrapped(say("in axes that rotate with the orbit:")),

@@ -44,7 +44,7 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Mi
     if not search.tries:
         return _unsolved(trials, limits)
     if search.flat(FLAT * trials.unit):
-        message = f"nothing decides the final time: {_costs(search.tries[-3:])}; fix it"
+        message = f"nothing determines the final time: {_costs(search.tries[-3:])}; fix it"
         return _none(trials, Status.NO_MINIMISER, message)
     brackets = search.brackets
     found = [minimum for minimum in (search.minimum(a, b) for a, b in brackets[:POLISHED]) if minimum]
@@ -86,7 +86,7 @@ def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, 
 def _unsolved(trials: Trials, limits: Limits) -> Extremal:
     if limits.expired:
         return _none(trials, Status.TIME_LIMIT, "time was up before any duration was solved for")
-    message = f"no extremal found at any duration that was tried; {_advice(trials)}"
+    message = f"no extremal found at any of the durations tried; {_advice(trials)}"
     return _none(trials, Status.NOT_CONVERGED, message)
 
 
@@ -100,7 +100,7 @@ def _why(search: Search) -> tuple[Status, str]:
         costs = _costs(_records(search.tries))
         return Status.NO_MINIMISER, f"longer is always cheaper: {costs}; put a weight on time, or fix the final time"
     if search.ends_at_nothing:
-        advice = "weigh time less, ask something of the final state, or fix the final time"
+        advice = "give time a smaller weight, constrain the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_costs(_spread(search.tries))}; {advice}"
     advice = _advice(search.trials)
     if search.falls_to_the_longest:

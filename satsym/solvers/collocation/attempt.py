@@ -28,11 +28,11 @@ class Reason(Enum):
     DURATION_ENDS = "lengthening the duration ends at {:.4g} of {:.4g}"
     BLOCKED = "relaxed bounds could be tightened only {:.0%} of the way"
     UNSETTLED = (
-        "the times at which bounds are met do not settle: "
+        "the times at which bounds become active do not settle: "
         "try wider bounds, another tf, or --continue from an easier problem"
     )
     INACCURATE = "the estimated error stays at {:.0e} on {} intervals"
-    COSTLY = "keeping the bounds costs more and more without end"
+    COSTLY = "respecting the bounds costs ever more"
 
 
 @dataclass(frozen=True, eq=False)

@@ -114,5 +114,5 @@ def contradiction(instance: Instance, limits: Limits) -> str:
     if not left[1] > max(UNAVOIDABLE, REMAINING * left[0]):
         return ""
     return (
-        f"no motion to the given end keeps to the path constraints ({', '.join(names)}): one of them is always violated"
+        f"no motion to the given end satisfies the path constraints ({', '.join(names)}): one of them is always violated"
     )

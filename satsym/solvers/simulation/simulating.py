@@ -208,7 +208,7 @@ def _status(instance: Instance, x: Array, error: float, limits: Limits) -> Statu
 
 def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.CONVERGED:
-        return f"two runs, one of them with fewer steps, agree to {error:.0e}"
+        return f"a second run with fewer steps agrees to {error:.0e}"
     if status is Status.TIME_LIMIT:
         return f"time was up: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
     if status is Status.NOT_CONVERGED:

@@ -51,7 +51,7 @@ class Origin(Enum):
     STRUCTURE = "a given structure"
     REST = "rest"
     REACH = "the reachable set"
-    DRAWN = "switching times that were drawn"
+    DRAWN = "randomly drawn switching times"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
     SEARCH = "a direct search"
