@@ -19,7 +19,7 @@ from satsym.report.terminal.table import WIDEST, figure, fitting, room, table, w
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.status import Status
 
-ROUNDING = 1e-12
+ROUNDING = 1e-10
 """Share of the largest value along the way at which nothing is shown."""
 
 _PARTLY = "final state free or partly so"
