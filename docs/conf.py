@@ -20,6 +20,8 @@ extensions = [
     "formulas",
     "reference",
     "gallery",
+    "figures",
+    "notebooks",
 ]
 exclude_patterns = ["_build", "_ext"]
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -1,106 +1,218 @@
-"""The shipped instances, each solved, with verdict and picture; kept until the solvers or the instance change."""
+"""The gallery: every shipped instance by subject, and a page for each with problem, code, picture and certificate.
 
+What a page shows is what the command line prints and draws. It is kept until the solvers, the output or the instance
+change.
+"""
+
+import io
 import json
 import os
 import re
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stdout
 from html import escape
 from multiprocessing import get_context
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from sphinx.application import Sphinx
 
 COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\})"
 """What a style sheet of a page begins with."""
-HEAD = """<!-- Written by `make docs`: do not edit. -->
-# Gallery
+WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
+HEAD = f"""{WRITTEN}# Gallery
 
-Shipped instances, each as `satsym solve NAME --plot` gives it (or `satsym simulate`, where there is no cost), with the
-verdict of its certificate.
+Every shipped instance, by subject. Each page has the problem, the code, the picture, and all that the command prints,
+the certificate among it.
 """
-OTHERS = frozenset(
-    "lapan-coupling lapan-classical gyrostat-equilibria "
-    "its-thesis-10-50 its-thesis-50-10 its-thesis-50-50 its-thesis-return-two-sided lapan-minimum-time-100s "
-    "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked reorientation shuttle "
-    "its-thesis-return".split()
-)
-"""Asked about by other commands than these, much like their neighbours, or by far the longest to certify."""
-
-LONGEST = ("shuttle-heating", "goddard-pressure", "transfer-fuel", "cart-pole")
+COMMANDS = {
+    "lqr": "geo-lqr uny-lqr uny-lqr-both lapan-roll-yaw-lqr",
+    "analyse": "molniya itb-earth itb-earth-kicked itb-earth-escape gyrostat-equilibria gravity-gradient",
+    "simulate": "lapan-classical",
+    "compare": "lapan-coupling",
+}
+"""What is asked of instances that are not solved."""
+LONGEST = ("shuttle", "shuttle-heating", "reorientation", "goddard-pressure", "transfer-fuel", "cart-pole")
 """Begun first, so that no processor waits for another in the end."""
+WHOLE = 110
+"""Characters of LaTeX beyond which an equation is left to the derivation."""
+EQUATIONS = 12
+CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
+TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
+"""How long solving took, which is another time each time."""
+
+
+def command_of(name: str, has_cost: bool) -> str:
+    """What is asked of an instance."""
+    asked = (command for command, names in COMMANDS.items() if name in names.split())
+    return next(asked, "solve" if has_cost else "simulate")
 
 
 def shown(name: str, folder: Path) -> dict[str, str]:
     """What the page says of an instance; its picture is written into the folder."""
     from satsym import instance, source_files
-    from satsym.report.display import number, unit_text
-    from satsym.solution import Solution
-    from satsym.solvers import simulate, solve
 
     case = instance.load(name)
-    code = source_files.digest(["satsym.solvers", "satsym.report.plots", "satsym.report.page"])
-    key, said, picture = f"{code} {source_files.digest_of(case.path)}", folder / f"{name}.json", folder / f"{name}.svg"
+    command = command_of(name, case.model.spec.has_cost)
+    key = f"{command} {source_files.digest(list(CODE))} {source_files.digest_of(case.path)}"
+    said, picture = folder / f"{name}.json", folder / f"{name}.svg"
     if said.is_file() and picture.is_file() and (known := json.loads(said.read_text("utf-8")))["key"] == key:
         return known
-    found = solve(case) if case.model.spec.has_cost else simulate(case)
-    spec, verdict = case.model.spec, found.status.value
-    if isinstance(found, Solution) and found.status.answered:
-        cost = f"J = {number(spec.objective(found.objective), 8)} {unit_text(spec.objective_unit)}".rstrip()
-        verdict = f"{cost}, {found.certificate.verdict.value}" if found.certificate else cost
-    picture.write_text(drawn(found), "utf-8")
-    known = {"key": key, "name": name, "title": case.title, "model": spec.name, "verdict": verdict}
+    with TemporaryDirectory() as out:
+        text = printed([command, name, "--plot", "--format", "svg", "--size", "page", "--no-title", "--out", out])
+        drawn = sorted(Path(out).glob("*.svg"), key=lambda path: path.stem != "overview")
+        picture.write_text(themed(drawn[0].read_text("utf-8")) if drawn else "", "utf-8")
+        result = json.loads(Path(out, "result.json").read_text("utf-8"))
+    known = {
+        "key": key,
+        "name": name,
+        "title": case.title,
+        "model": case.model.spec.name,
+        "source": case.model.spec.source,
+        "command": command,
+        "text": text,
+        "verdict": verdict(result),
+        "file": case.path.read_text("utf-8").strip(),
+    }
     said.write_text(json.dumps(known), "utf-8")
     return known
 
 
-def drawn(found: object) -> str:
-    """The overview as SVG that is dark where its reader's pages are; nothing where there is no trajectory."""
+def printed(arguments: list[str]) -> str:
+    """What a command prints to a terminal of 80 columns, without the time it took and the files it wrote."""
+    from satsym import cli
+
+    os.environ |= {"COLUMNS": "80", "NO_COLOR": "1"}
+    with redirect_stdout(io.StringIO()) as stream:
+        cli.main(arguments)
+    return TAKEN.sub("", stream.getvalue().partition("\n  written to ")[0]).rstrip()
+
+
+def verdict(result: dict) -> str:
+    """A line on what came of it."""
+    if result.get("certificate"):
+        return f"{result['status']}, {result['certificate']['verdict']}"
+    return result["status"]
+
+
+def themed(svg: str) -> str:
+    """A picture that is dark where its reader's pages are."""
     from importlib.resources import files
 
-    from satsym.report.look import Look
-    from satsym.report.page.pictures import themed
-    from satsym.report.plots import pages, style
-    from satsym.report.plots.scene import Scene
+    from satsym.report.page import pictures
 
-    with style.applied(Look(size="page", titled=False)):
-        page = pages.overview(Scene.of(found))
-        if page is None:
-            return ""
-        svg = style.rendered(style.finished(page), "svg").decode("utf-8")
     sheets = [files("satsym.report").joinpath(name).read_text("utf-8") for name in ("html/page.css", "page/report.css")]
     colours = "".join("".join(re.match(COLOURS, sheet, re.DOTALL).groups()) for sheet in sheets)
-    element, inside = themed(svg).split(">", 1)
+    element, inside = pictures.themed(svg).split(">", 1)
     return f"{element}><style>{colours}svg {{ fill: var(--ink); }}</style>{inside}"
 
 
-def page(folder: Path) -> Iterator[str]:
-    """The page, piece by piece."""
-    from satsym import instance
+def equations(model: str, generated: Path) -> list[str]:
+    """Motion, cost and constraints of a model, from its typeset derivation; empty if they are long."""
+    path = generated / f"{model}.tex"
+    if not path.is_file():
+        return []
+    label = rf"\\label\{{{model}:(first_order|declared)\.([\w.]+)\}}"
+    found = re.findall(rf"^\s*(.*?) {label}", path.read_text("utf-8"), re.MULTILINE)
+    kept = [
+        tex.replace("&", "").strip()
+        for tex, step, name in found
+        if step == "first_order" or not re.match(r"directions|position|forces|reference|outputs|bodies|frames", name)
+    ]
+    short = [tex for tex in kept if len(tex) <= WHOLE]
+    return short if len(short) == len(kept) <= EQUATIONS else []
 
-    names = sorted((name for name in instance.shipped() if name not in OTHERS), key=lambda name: name not in LONGEST)
-    workers = os.cpu_count() or 1
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does: threads cost more than they save
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        every = list(pool.map(shown, names, [folder] * len(names)))
+
+def page(known: dict[str, str], root: Path) -> str:
+    """The page of one instance."""
+    name, model = known["name"], known["model"]
+    motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
+    motion = f"{motion}\n\n" if motion else "Its equations are long: they are in the derivation.\n\n"
+    alone = "--lang id" if known["command"] in ("lqr", "analyse", "compare") else "--json"
+    python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
+    call = python.get(known["command"], "found = satsym.analyse")
+    code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
+    parts = [
+        f"{WRITTEN}# {known['title']}\n",
+        f"{picture(known, '../')}\n" if known["drawn"] else "",
+        f"## Problem\n\n{about(root / 'derivations', known['source'])}\n\n{motion}",
+        f"The instance `{name}` sets the numbers:\n\n```toml\n{known['file']}\n```\n",
+        f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
+        f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
+        f"## What it prints\n\n```text\n{known['text']}\n```\n",
+        f"## Derivation\n\nEvery step is typeset in {{download}}`{model}.tex <../../generated/{model}.tex>`; "
+        f"`satsym latex {model}` writes it anew, and the physics is stated in "
+        f"{{download}}`{known['source']} <../../derivations/{placed(root, known['source'])}>`.\n",
+    ]
+    return "\n".join(filter(None, parts))
+
+
+def placed(root: Path, source: str) -> str:
+    """Where in derivations/ a file is."""
+    return next((root / "derivations").rglob(source)).relative_to(root / "derivations").as_posix()
+
+
+def about(derivations: Path, source: str) -> str:
+    """What a derivation file says of itself."""
+    import ast
+
+    return ast.get_docstring(ast.parse(next(derivations.rglob(source)).read_text("utf-8"))) or ""
+
+
+def picture(known: dict[str, str], up: str = "") -> str:
+    """The element that shows it."""
+    name = known["name"]
+    image = f"<img src='{up}_static/gallery/{name}.svg' alt='Picture of {escape(known['title'])}' loading='lazy'>"
+    return f"```{{raw}} html\n<figure class='example'>{image}</figure>\n```\n"
+
+
+def card(known: dict[str, str]) -> str:
+    """An example in the overview."""
+    name, title = known["name"], escape(known["title"])
+    image = f"<img src='_static/gallery/{name}.svg' alt='' loading='lazy'>" if known["drawn"] else ""
+    return (
+        f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"
+        f"<p><code>{name}</code> {escape(known['verdict'])}</p></figure>"
+    )
+
+
+def overview(every: dict[str, dict[str, str]]) -> Iterator[str]:
+    """The page of all, piece by piece."""
+    from satsym.report.subjects import INSTANCES, by_subject
+
     yield HEAD
-    yield "```{raw} html\n<div class='gallery'>"
-    for known in sorted(every, key=lambda known: known["model"]):
-        name, model, title = known["name"], known["model"], escape(known["title"])
-        image = f"<img src='_static/gallery/{name}.svg' alt='Path, states and controls of {name}' loading='lazy'>"
-        yield (
-            f"<figure>{image if (folder / f'{name}.svg').stat().st_size else ''}"
-            f"<figcaption><code>{name}</code>, model <code>{model}</code>: {title}. "
-            f"<b>{escape(known['verdict'])}</b></figcaption></figure>"
-        )
-    yield "</div>\n```"
+    for subject, names in by_subject(every, INSTANCES).items():
+        yield f"## {subject}\n\n```{{raw}} html\n<div class='gallery'>"
+        yield from (card(every[name]) for name in names)
+        yield "</div>\n```\n\n```{toctree}\n:hidden:\n"
+        yield from (f"gallery/{name}" for name in names)
+        yield "```\n"
 
 
 def _write(app: Sphinx) -> None:
-    folder = Path(app.srcdir, "_static", "gallery")
+    from satsym import instance
+
+    source, root = Path(app.srcdir), Path(app.srcdir).parent
+    folder, pages = source / "_static" / "gallery", source / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
-    text = "\n".join(page(folder)) + "\n"
-    path = Path(app.srcdir, "gallery.md")
+    pages.mkdir(exist_ok=True)
+    names = sorted(instance.shipped(), key=lambda name: LONGEST.index(name) if name in LONGEST else len(LONGEST))
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does: threads cost more than they save
+    with ProcessPoolExecutor(os.cpu_count() or 1, get_context("spawn")) as pool:
+        every = {known["name"]: known for known in pool.map(shown, names, [folder] * len(names))}
+    for name, known in every.items():
+        known["drawn"] = "yes" if (folder / f"{name}.svg").stat().st_size else ""
+        _put(pages / f"{name}.md", page(known, root))
+    for path in pages.glob("*.md"):
+        if path.stem not in every:
+            path.unlink()
+    _put(source / "gallery.md", "\n".join(overview(every)))
+
+
+def _put(path: Path, text: str) -> None:
+    """Write a file, unless it says so already."""
+    text = text.rstrip() + "\n"
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
 

@@ -18,6 +18,7 @@ from satsym.front.refusals import in_one_line
 from satsym.front.result import Result
 from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import solution_object
+from satsym.report.terminal.certificate import statement, verdict_text
 from satsym.report.terminal.solution import solution_text
 from satsym.solution import Certificate, Event, Progress
 from satsym.solvers.constrained.structure import stated_arcs
@@ -109,12 +110,15 @@ class Solution(Result[solution.Solution]):
         said = self.to_dict()
         facts = {name: said[name] for name in ("objective", "t_final", "method", "boundary_type", "switching_times")}
         ends = zip(said["x_final"], said["x_final"].values(), said["costate_initial"].values(), strict=True)
-        certificate = said["certificate"] or {"verdict": None, "checks": []}
-        checks = [(c["name"], c["value"], c["limit"], "ok" if c["passed"] else "FAILED") for c in certificate["checks"]]
+        found = self.certificate
+        checks = [
+            (statement(c), c.value if c.limit else None, c.limit or None, "" if c.passed else "FAILED")
+            for c in (found.checks if found else ())
+        ]
         return self._html(
-            {**facts, "certificate": certificate["verdict"]},
+            {**facts, "certificate": verdict_text(found, self._spec.maximise) if found else None},
             html.table(("state", "final", "costate at t0"), ends),
-            html.table(("check", "value", "limit", ""), checks),
+            html.table(("condition", "measured", "limit", ""), checks),
         )
 
 

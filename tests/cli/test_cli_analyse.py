@@ -121,8 +121,8 @@ def test_an_exact_part_that_is_left_out_is_said_to_be_so(run: Run) -> None:
     code, out, _ = run("analyse", "roll_yaw", "--json")
     found = json.loads(out)
     assert (code, found["exact"]) == (0, None)
-    assert "12 states and 17 letters" in found["exact_omitted"]
-    assert "17 letters" in " ".join(run("analyse", "roll_yaw")[1].split())
+    assert "12 states and 17 parameters" in found["exact_omitted"]
+    assert "17 parameters" in " ".join(run("analyse", "roll_yaw")[1].split())
     assert "letters" not in run("analyse", "clohessy_wiltshire")[1]
 
 

@@ -20,9 +20,9 @@ Examples:
 
 TEMPLATES = Path(__file__).parents[2] / "templates"
 FILES = {
-    "model.py.txt": ("{}.py", "what moves, and what it costs"),
-    "instance.toml": ("{}.toml", "the numbers of one case"),
-    "test.py.txt": ("test_{}.py", "the answer held against equations typed by hand"),
+    "model.py.txt": ("{}.py", "the model: its motion and its cost"),
+    "instance.toml": ("{}.toml", "an instance: the numbers of one case"),
+    "test.py.txt": ("test_{}.py", "a test of the solution against equations typed by hand"),
 }
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")

@@ -99,7 +99,9 @@ def _jumps(times: Array, row: Array) -> bool:
 
 def _arcs(solution: Solution, row: Array, times: Sequence[float]) -> Iterator[tuple[float, float, float]]:
     """Beginning and end of each arc, with the value at the node next to its middle."""
-    ends = [float(solution.times[0]), *times, float(solution.times[-1])]
+    if not len(solution.times):
+        return
+    ends = [float(solution.times[0]), *sorted(times), float(solution.times[-1])]
     for begin, end in pairwise(ends):
         if end > begin:
             yield begin, end, float(row[np.abs(solution.times - (begin + end) / 2.0).argmin()])

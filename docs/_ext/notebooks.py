@@ -1,0 +1,54 @@
+"""Notebooks as pages: each cell with what it ends with, as a notebook shows that."""
+
+import ast
+import json
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+NOTEBOOKS = ("notebook",)
+
+
+def page(name: str, path: Path) -> str:
+    """The page of a notebook, whose cells are executed in order."""
+    cells = json.loads(path.read_text("utf-8"))["cells"]
+    known: dict[str, object] = {}
+    parts = ["<!-- Written by `make docs`: do not edit. -->"]
+    for cell in cells:
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "markdown":
+            parts.append(source)
+            continue
+        parts += [f"```python\n{source}\n```", shown(source, known)]
+    parts.append(f"The same to run: {{download}}`{path.name} <{path.name}>`.")
+    return "\n\n".join(filter(None, parts)) + "\n"
+
+
+def shown(source: str, known: dict[str, object]) -> str:
+    """What a cell ends with."""
+    *before, last = ast.parse(source).body
+    exec(compile(ast.Module(before, []), "notebook", "exec"), known)  # noqa: S102 - our own notebooks
+    if not isinstance(last, ast.Expr):
+        exec(compile(ast.Module([last], []), "notebook", "exec"), known)  # noqa: S102
+        return ""
+    value = eval(compile(ast.Expression(last.value), "notebook", "eval"), known)  # noqa: S307
+    if hasattr(value, "_repr_html_"):
+        return f"```{{raw}} html\n<div class='cell wide' tabindex='0'>{value._repr_html_()}</div>\n```"
+    if hasattr(value, "_repr_latex_"):
+        tex = value._repr_latex_().strip("$").removeprefix(r"\displaystyle ")
+        return f"$$\n{tex}\n$$"
+    return "" if value is None else f"```text\n{value!r}\n```"
+
+
+def _write(app: Sphinx) -> None:
+    for name in NOTEBOOKS:
+        text = page(name, Path(app.srcdir, f"{name}.ipynb"))
+        path = Path(app.srcdir, f"{name}.md")
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """As Sphinx wants it."""
+    app.connect("builder-inited", _write)
+    return {"parallel_read_safe": True}
