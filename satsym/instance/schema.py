@@ -103,22 +103,27 @@ class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TimeTable(_Table, frozen=True):
-    tf: Annotated[FinalTime, Key('final time; "free" where it is found', MOVING, "time")]
-    t0: Annotated[Quantity, Key('initial time; "free" where it is found', MOVING, "time")] = 0.0
-    tf_guess: Annotated[Quantity | None, Key("where to begin with a free final time", SOLVING, "time")] = None
-    t0_guess: Annotated[Quantity | None, Key("where to begin with a free initial time", SOLVING, "time")] = None
+    tf: Annotated[FinalTime, Key('final time; "free" if it is to be found', MOVING, "time")]
+    t0: Annotated[Quantity, Key('initial time; "free" if it is to be found', MOVING, "time")] = 0.0
+    tf_guess: Annotated[Quantity | None, Key("initial guess of a free final time", SOLVING, "time")] = None
+    t0_guess: Annotated[Quantity | None, Key("initial guess of a free initial time", SOLVING, "time")] = None
 
 
 class LqrTable(_Table, frozen=True):
     Q: Annotated[Matrix | None, Key("weights of the states, in x'Qx + 2x'Nu + u'Ru", REGULATING, "1")] = None
     R: Annotated[Matrix | None, Key("weights of the inputs", REGULATING, "1")] = None
-    N: Annotated[Rows | None, Key("cross weights, a row for each state; without it zero", REGULATING, "1")] = None
+    N: Annotated[Rows | None, Key("cross weights, a row for each state; zero by default", REGULATING, "1")] = None
     allowed: Annotated[
         dict[str, Quantity],
-        Key("a deviation that counts as one, in place of Q and R", REGULATING, "the model's", "STATE or CONTROL"),
+        Key(
+            "allowed deviation, which has weight one, in place of Q and R",
+            REGULATING,
+            "the model's",
+            "STATE or CONTROL",
+        ),
     ] = {}
-    inputs: Annotated[Names | None, Key("the controls that are used; without it all of them", REGULATING)] = None
-    horizon: Annotated[Quantity | None, Key("length of time; without it an infinite one", REGULATING, "time")] = None
+    inputs: Annotated[Names | None, Key("the controls that are used; all of them by default", REGULATING)] = None
+    horizon: Annotated[Quantity | None, Key("length of the horizon; infinite by default", REGULATING, "time")] = None
 
 
 _LAW = ("simulate --feedback classical", "compare", "compare --range")
@@ -126,27 +131,31 @@ _LAW = ("simulate --feedback classical", "compare", "compare --range")
 
 class ClassicalTable(_Table, frozen=True):
     follows: Annotated[Name, Key("the state that follows the command", _LAW)]
-    command: Annotated[Quantity, Key("its value from t0 on", _LAW, "the model's")]
-    damping: Annotated[Quantity | None, Key("both poles lie at its negative", _LAW, "1/time")] = None
-    gains: Annotated[Gains | None, Key("of the rate and of the state, in place of damping", _LAW, "1")] = None
-    differentiator: Annotated[Quantity, Key("time constant of what measures the rate", _LAW, "time")] = 0.0
+    command: Annotated[Quantity, Key("commanded value from t0 on", _LAW, "the model's")]
+    damping: Annotated[Quantity | None, Key("damping parameter; both poles are at its negative", _LAW, "1/time")] = None
+    gains: Annotated[Gains | None, Key("gains of the rate and of the state, in place of damping", _LAW, "1")] = None
+    differentiator: Annotated[
+        Quantity, Key("time constant of the differentiator that measures the rate", _LAW, "time")
+    ] = 0.0
 
 
 class SwitchingTable(_Table, frozen=True):
-    deadband: Annotated[Quantity, Key("error of the position that is allowed", RELAYS, "the model's")]
+    deadband: Annotated[Quantity, Key("allowed position error", RELAYS, "the model's")]
 
 
 class DrivenTable(_Table, frozen=True):
-    control: Annotated[Name, Key("a control that other instances work out", COMPARING)]
-    by: Annotated[Names, Key("these instances; one run for each", COMPARING)]
+    control: Annotated[Name, Key("a control that other instances supply", COMPARING)]
+    by: Annotated[Names, Key("the instances that supply it; one run for each", COMPARING)]
 
 
 class GuessTable(_Table, frozen=True):
-    state: Annotated[dict[str, Series], Key("over time, evenly spaced", SOLVING, "the model's", "STATE")] = {}
-    costate: Annotated[dict[str, Series], Key("likewise; plain numbers", SOLVING, "cost by state", "STATE")] = {}
+    state: Annotated[dict[str, Series], Key("values over time, evenly spaced", SOLVING, "the model's", "STATE")] = {}
+    costate: Annotated[
+        dict[str, Series], Key("the same for costates; plain numbers", SOLVING, "cost by state", "STATE")
+    ] = {}
     control: Annotated[dict[str, Series], Key("likewise", SOLVING, "the model's", "CONTROL")] = {}
     parameter: Annotated[
-        dict[str, Quantity], Key("where to begin with a free parameter", SOLVING, "the model's", "PARAMETER")
+        dict[str, Quantity], Key("initial guess of a free parameter", SOLVING, "the model's", "PARAMETER")
     ] = {}
 
 
@@ -174,12 +183,14 @@ class StudyTable(_Table, frozen=True):
     normal: Annotated[
         Variations, Key("a sample: MEAN,SD of a normal distribution", STUDYING, "the model's", "KEY")
     ] = {}
-    uniform: Annotated[Variations, Key("a sample: LOW,HIGH, all as likely", STUDYING, "the model's", "KEY")] = {}
+    uniform: Annotated[
+        Variations, Key("a sample: LOW,HIGH of a uniform distribution", STUDYING, "the model's", "KEY")
+    ] = {}
     sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
     method: Annotated[Samplings | None, Key("how a sample is drawn", STUDYING)] = None
     seed: Annotated[Seed | None, Key("what a sample is drawn from", STUDYING)] = None
-    command: Annotated[Commands | None, Key("what is done with each", STUDYING)] = None
-    certificate: Annotated[Certificates | None, Key("what is checked of each answer", STUDYING)] = None
+    command: Annotated[Commands | None, Key("what is done with each row", STUDYING)] = None
+    certificate: Annotated[Certificates | None, Key("how solutions are certified", STUDYING)] = None
     feedback: Annotated[Name | None, Key("the law of a simulation, as simulate --feedback", STUDYING)] = None
     trajectories: Annotated[Flag, Key("whether trajectories are kept", STUDYING)] = False
 
@@ -187,14 +198,14 @@ class StudyTable(_Table, frozen=True):
 class SolverOptions(_Table, frozen=True):
     """What solvers are given besides the problem."""
 
-    method: Annotated[Method, Key("which solver; by default the one that fits", SOLVING)] = methods.AUTO
-    tolerance: Annotated[Positive, Key("largest residual of an answer", MOVING, "1")] = 1e-9
-    steps: Annotated[Steps, Key("steps of the grid", MOVING)] = 1000
-    max_seconds: Annotated[Positive, Key("processor time after which to give up", MOVING, "s")] = 60.0
-    max_iterations: Annotated[Count | None, Key("sweeps, of methods that sweep", SOLVING)] = None
-    free_angles: Annotated[Names, Key("states whose final value counts modulo a turn", SOLVING)] = ()
+    method: Annotated[Method, Key("solver; by default the one that suits the problem", SOLVING)] = methods.AUTO
+    tolerance: Annotated[Positive, Key("largest residual that a solution may have", MOVING, "1")] = 1e-9
+    steps: Annotated[Steps, Key("number of steps of the time grid", MOVING)] = 1000
+    max_seconds: Annotated[Positive, Key("processor time after which the solver gives up", MOVING, "s")] = 60.0
+    max_iterations: Annotated[Count | None, Key("number of sweeps, for methods that sweep", SOLVING)] = None
+    free_angles: Annotated[Names, Key("angles whose final value counts modulo a full turn", SOLVING)] = ()
     relaxation: Annotated[
-        UpToOne | None, Key("weight of the new control in each sweep; chooses plain relaxation", SOLVING, "1")
+        UpToOne | None, Key("weight of the new control in each sweep; selects plain relaxation", SOLVING, "1")
     ] = None
     backend: Annotated[Backends, Key("whether kernels are compiled", MOVING)] = "auto"
 
@@ -202,21 +213,21 @@ class SolverOptions(_Table, frozen=True):
 class InstanceFile(_Table, frozen=True):
     """An instance as it was written."""
 
-    model: Annotated[Name, Key("a shipped model, or a path from this file to its folder or below, without .py")]
+    model: Annotated[Name, Key("a shipped model, or the path of one relative to this file, without .py")]
     initial: Annotated[
         dict[str, Quantity],
-        Key('the initial state, every one; "free" where it is found', unit="the model's", names="STATE"),
+        Key('initial value of every state; "free" if it is to be found', unit="the model's", names="STATE"),
     ]
     time: Annotated[TimeTable, Key("when it begins and ends")]
-    title: Annotated[Text, Key("one line for people")] = ""
+    title: Annotated[Text, Key("title, one line")] = ""
     parameters: Annotated[
         dict[str, Quantity],
-        Key('values other than the defaults; "free" where it is found', unit="the model's", names="PARAMETER"),
+        Key('values other than the defaults; "free" if they are to be found', unit="the model's", names="PARAMETER"),
     ] = {}
     final: Annotated[
         dict[str, FinalValue],
         Key(
-            'given final values; a state left out or "free" is free, as is an end of a range that is "free"',
+            'required final values; a state that is left out or "free" is free, as is an end of a range that is "free"',
             (*SOLVING, *RELAYS),
             "the model's",
             "STATE",
@@ -225,7 +236,7 @@ class InstanceFile(_Table, frozen=True):
     control: Annotated[
         dict[str, Bound],
         Key(
-            "bounds [lower, upper]; or max_norm (and min_norm), also in a table [control.SET] of one set",
+            "bounds [lower, upper]; or max_norm (and min_norm), also in a table [control.SET] for one set",
             SOLVING,
             "the model's",
             "CONTROL",
@@ -237,14 +248,14 @@ class InstanceFile(_Table, frozen=True):
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
-        Key("largest magnitudes, reported only", MOVING, "the model's", "STATE or quantity"),
+        Key("largest allowed magnitudes; only reported", MOVING, "the model's", "STATE or quantity"),
     ] = {}
     switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
     driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None
     continuation: Annotated[
         dict[str, Ends],
         Key(
-            "where a number begins and ends on the way to this problem",
+            "where a number begins and ends along a continuation",
             ("solve",),
             "the model's",
             "PARAMETER, t0, tf, initial.STATE or final.STATE",
