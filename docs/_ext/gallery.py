@@ -39,6 +39,8 @@ WHOLE = 110
 """Characters of LaTeX beyond which an equation is left to the derivation."""
 EQUATIONS = 12
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
+KEPT = "SATSYM_DOCS_KEPT"
+"""Of the environment: examples are shown as they were kept, whatever has changed, for those who write other pages."""
 TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
 """How long solving took, which is another time each time."""
 
@@ -57,8 +59,10 @@ def shown(name: str, folder: Path) -> dict[str, str]:
     command = command_of(name, case.model.spec.has_cost)
     key = f"{command} {source_files.digest(list(CODE))} {source_files.digest_of(case.path)}"
     said, picture = folder / f"{name}.json", folder / f"{name}.svg"
-    if said.is_file() and picture.is_file() and (known := json.loads(said.read_text("utf-8")))["key"] == key:
-        return known
+    if said.is_file() and picture.is_file():
+        known = json.loads(said.read_text("utf-8"))
+        if known["key"] == key or os.environ.get(KEPT):
+            return known
     with TemporaryDirectory() as out:
         text = printed([command, name, "--plot", "--format", "svg", "--size", "page", "--no-title", "--out", out])
         drawn = sorted(Path(out).glob("*.svg"), key=lambda path: path.stem != "overview")
@@ -136,28 +140,24 @@ def page(known: dict[str, str], root: Path) -> str:
     parts = [
         f"{WRITTEN}# {known['title']}\n",
         f"{picture(known, '../')}\n" if known["drawn"] else "",
-        f"## Problem\n\n{about(root / 'derivations', known['source'])}\n\n{motion}",
+        f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
         f"The instance `{name}` sets the numbers:\n\n```toml\n{known['file']}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
         f"## What it prints\n\n```text\n{known['text']}\n```\n",
         f"## Derivation\n\nEvery step is typeset in {{download}}`{model}.tex <../../generated/{model}.tex>`; "
         f"`satsym latex {model}` writes it anew, and the physics is stated in "
-        f"{{download}}`{known['source']} <../../derivations/{placed(root, known['source'])}>`.\n",
+        f"{{download}}`{known['source']} <../../{known['source']}>`.\n",
     ]
     return "\n".join(filter(None, parts))
 
 
-def placed(root: Path, source: str) -> str:
-    """Where in derivations/ a file is."""
-    return next((root / "derivations").rglob(source)).relative_to(root / "derivations").as_posix()
-
-
-def about(derivations: Path, source: str) -> str:
-    """What a derivation file says of itself."""
+def about(source: Path) -> str:
+    """What a derivation file says of itself, as Markdown."""
     import ast
 
-    return ast.get_docstring(ast.parse(next(derivations.rglob(source)).read_text("utf-8"))) or ""
+    said = ast.get_docstring(ast.parse(source.read_text("utf-8"))) or ""
+    return re.sub(r"([*_<\[\]])", r"\\\1", said)
 
 
 def picture(known: dict[str, str], up: str = "") -> str:
