@@ -13,8 +13,8 @@ from pathlib import Path
 
 BUILT = Path(__file__).parents[1] / "docs" / "_build" / "html"
 PAGES = (
-    "index start howto theory gallery instances models glossary documents comparison reference/commands "
-    "reference/python tutorials/judge"
+    "index start howto theory gallery gallery/transfer-fuel instances models glossary documents comparison asked "
+    "notebook developers reference/commands reference/python tutorials/judge tutorials/return"
 )
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 QUIET = (

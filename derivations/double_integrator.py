@@ -1,6 +1,6 @@
-"""A body on a line with a bounded acceleration: minimum time, minimum energy and minimum fuel to a state.
+"""A body on a line with a bounded acceleration: minimum time, minimum energy and minimum fuel to a given state.
 
-The plainest problems on which optimal controls switch; all three have solutions in closed form.
+These are the simplest problems in which optimal controls switch; all three have solutions in closed form.
 """
 
 from dataclasses import replace

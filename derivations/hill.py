@@ -1,6 +1,6 @@
-"""Hill's equations: a satellite near a circular orbit, in axes that turn with the reference point, in and out of plane.
+"""Hill's equations: a satellite near a circular orbit, in axes that rotate with the reference point.
 
-The axes point outwards, ahead, and along the normal of the orbit. In the plane the equations are those of
+The axes point outwards, ahead, and along the orbit normal. In the orbital plane the equations are those of
 clohessy_wiltshire, which come from polar coordinates.
 """
 

@@ -1,6 +1,6 @@
-"""A body that a centre of attraction pulls, in Cartesian coordinates along fixed axes, with thrust in any direction.
+"""A body attracted by a fixed centre, in Cartesian coordinates along inertial axes, with thrust in any direction.
 
-Everything is per unit mass. The centre stays where it is: the body's own mass is small, or mu is that of both.
+Everything is per unit mass. The centre is at rest: the mass of the body is negligible, or mu is that of both.
 """
 
 from sympy import Matrix, eye

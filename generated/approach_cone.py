@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py a219be342db377a0d34bc088b831769d
+Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 450a21b90774313c873af8053d9eda027209bdcf78ce2536a9e0634772a6cd81
+Digest: 95c99c45735c7528d6da9e4cfd5b1b7c4d67e04cdc59cce56e912971f7601499
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py d33e108ac9b934fa469ba0a91f27916a
-Digest: 702b1a1f02da3b0c0aa7b312a798a3cb5007b7985bb842052e2d5bfa8c8b48b2
+Source: ../derivations/examples/bryson_denham.py fd6ab4cb3b8029ac5e392696d0b32c0e
+Digest: a7a1687adf8cf608d6d36817edc80591df4fe2209aa21767586d0991585aad4d
 """
 
 import math

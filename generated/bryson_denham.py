@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py d33e108ac9b934fa469ba0a91f27916a
-Digest: 425d2bd600eb2a8e3daf55b6efcff4b003406f9db1a42e6ef9077f477918ee7a
+Source: ../derivations/examples/bryson_denham.py fd6ab4cb3b8029ac5e392696d0b32c0e
+Digest: 31505f9468b1e287f7a548818ef353564c19a4755518b58fc22b9e6eb77e99e7
 """
 
 import math

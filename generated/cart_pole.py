@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 16eef76897b0f71c230d85cdbb1b1553
-Digest: 5a1ed27aefdd6e49a0c9f0e497a09ef53ba101c5669b5cb0a6bc3ce8080f7f81
+Source: ../derivations/examples/cart_pole.py 19501ca060724477b03f4177a54c2527
+Digest: fdb30e57f80044f282833bdd71d9ced4602d8b9fcaeca36cd3895ed798e421c7
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Source: ../derivations/examples/catalyst.py 979215c7c2d95f612f8cf29188a79611
-Digest: 3e044d0beea715e05cd23053d45febce6798b92ea793cfd568e598659b0f6953
+Source: ../derivations/examples/catalyst.py 7205cb93a16d2f88c063f0909a6ed28b
+Digest: 483d2165de1be4ced163624de2abe8555bf600e3f243b3f95dc12c469970bc1c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py dc9c99caf6d9d84a6d043ca86614cb68
-Digest: ca84f222bb5be9c2bf0527aaedcd5d7dc7f69d0ccbc4bb629f03b51195c5c844
+Source: ../derivations/examples/chain.py 2b3b137a815eb2ff5aaa375088bb3852
+Digest: d4909ff97003825ddd11d6957a01a65bfdaaddb0751774fd464be6d6c84ca0f8
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
-Digest: 834801b7bc9f99b8712c05e420a8488f1241d45456769286a972fc28f0e51066
+Source: ../derivations/double_integrator.py 872632fbd939dead61dd02b05065ecc8
+Digest: b48421b89c55d8287aea3570f11904bafa1aa0f9fd397bc85fb219275728e2cb
 """
 
 import math

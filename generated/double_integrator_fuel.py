@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
-Digest: 010b37c589eee5bc826cdec843bbbce0a33e5eede5b8bb049304838498758b65
+Source: ../derivations/double_integrator.py 872632fbd939dead61dd02b05065ecc8
+Digest: b756f9d43eb846867defcac392cf6c93bb526b2eb68e07b89ebf765b635c3ce6
 """
 
 import math

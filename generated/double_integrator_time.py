@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 9cea23c712a7ec6e5dfe32dace58ee68
-Digest: fbaf16f51b5953d598fdd20f301f97492781085004507133fc94039bcfa4e877
+Source: ../derivations/double_integrator.py 872632fbd939dead61dd02b05065ecc8
+Digest: 6be48fa0e0953b4889f6fab60943bb3c6926eb356adf4be68aacfca9679100c0
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Source: ../derivations/examples/fuller.py 2cb3cb08b7b9d8865645466ac34fe795
-Digest: e0005308a18ec97f9c1e47011d6b76404a13a3a429036dc46ee2387582c95a1d
+Source: ../derivations/examples/fuller.py 95a7cd1d5f54d0885be4ba971f16f24f
+Digest: d4cc67f24ab509efaa3031b62dabb272762164aab439a0f4eb30f1ecc3162ab8
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py 72da9274824e67514deea4f1c33cc7db
-Digest: 4e7b58484a5706fbe0aec6afc2d1a4bdf2dd4b81cb4e29172dc0147b83a40760
+Source: ../derivations/examples/goddard.py b8918e8e54cffa6d29ff2f13e5e0fae3
+Digest: 996947d1143282cd7562bf96f19755580e4a2bba37681451061f536fa5db009f
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py 665907bada7e8a66339422ae6ae75233
-Digest: e6746adf7fff8e3aa7ff659c9f7ca2bc1145013c89b95543b16398fd88dfac36
+Source: ../derivations/examples/goddard_pressure.py 597c240079c601be5b735efbfb36b230
+Digest: a8110b369105a52e2088faecf89827f33315a32a7fa9bcdc21bee8620ca7a06a
 """
 
 import math

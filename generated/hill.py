@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py e898a53b40a1fb2b2f8736c52fbbce33
-Digest: 4661cc7cde296eecdf5bdd40cb996b92bc98fc369c8c8f50c70c9f4d42f73850
+Source: ../derivations/hill.py 4e4795c416dd7578e62badd714c450d8
+Digest: c9d35eec4e004bac7df502b001a80dd47f6ead00449ae8eb2606e53af502ac0e
 """
 
 import math

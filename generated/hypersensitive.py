@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Source: ../derivations/examples/hypersensitive.py f2c15e6ed073733a72e940129bedbcfe
-Digest: 5685532c3a85d661999a9775cd6574293f27b20084636bd26131ef22433b21bc
+Source: ../derivations/examples/hypersensitive.py 93ee98122b97b77b100e2825240e18bf
+Digest: 47cc0136235f5121aeaf74e74d189bfd9f78e673837b000597017126222cce79
 """
 
 import math

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/inspection.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/inspection.py
-Source: ../derivations/examples/inspection.py 5abb94dec1a998bdcccb69c51124c48d
+Source: ../derivations/examples/inspection.py ea44ba41bc01ebbda8bec5ed189f09d4
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: b5cc5d5d1a5d1fa98856da363949d227c00f1039af8ba6d3ce353f605f867b26
+Digest: cf006c18ac3365472ee25bc895f0b133afe4ef6cf97393da5d431722c7a650c3
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Source: ../derivations/examples/linear_tangent.py ac8c4b3869d9937eab0f6dcc0f4027f6
-Digest: dec8e4a9a745390fdcac3d74505dc7349a0763a489d06f4ed5c035a7ab896dae
+Source: ../derivations/examples/linear_tangent.py ee44677e3e6754938c94ad322707df6a
+Digest: f169bed8c2ab71c1515b88b7d6853f2f2024d708acb15a56ba869dbd50eab38f
 """
 
 import math

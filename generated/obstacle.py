@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 5d13c27044b75f0651ad0839c535dd3c
-Digest: 8b919b5b555a31fe6cc665b8c87b37ba67f90230d6a4f100b7d2db92a3169b18
+Source: ../derivations/examples/obstacle.py 138a2c3cc2febd7476df74f504ecbb53
+Digest: 1ee497c1a4350259137da389710bb1a2573721c2acd513a17242f936fb4debd5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: 9371f770888f857ef0e48ea0c2a4ab22971932e9c73a895c65d3afdfd31a475f
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: feea7549db6ba485fdac4ab30f11fd658cddbe7ce1af6d8b5ff421db2ab3b44b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: f304c63072519cd8a3358fddc3e6b1bf976b72c5017d68003095cf0586f9818a
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: 48be00d46786ee90d7a4ea5d0decc5a58db012f0a79a290dfc9f192d386ab4c8
 """
 
 import math

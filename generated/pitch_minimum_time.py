@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: 4ee5ec1255522195e663a6aa0aad9f6fe5f9cd1fe1de73197bf64c28f6e5ae29
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: b02cb6f18fb2ff66d7c97c539f04d97083deaaa4e700699ebe4d5243d48e07f7
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: 539da0e325b781be54364ee24548c62e0babf05669d962b1343ea07fe78a48fc
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: 68663761f828c8c1586a137dce969a95e5f6d09fa64c73deb3aa4f99063a02c3
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: 57eeb8927621336e4f53cd49aaf851462a3f0c492da7c68ce741d0f0fcd71640
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: c2cf6b3fb4750b6b2232ea8d1baf1cee3a407ffc636ba0a108f2409b15889ce5
 """
 
 import math

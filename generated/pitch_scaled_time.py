@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: a6e935899ebce782df5521cf0365f65689f571c25e69e00255fd2ecdd6cc2ce5
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: 3d6f193627cc9e3760809dba09c3a77d82728539bc28d507f6feb550e76a3091
 """
 
 import math

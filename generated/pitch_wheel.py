@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py db3678ac2dd3158a7fd87e40c929bf27
-Digest: 7a93dc1c86bddf751877eb0cb10bfbe940fc44240150506cce867753a12bc810
+Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
+Digest: 6c33653b3adaab5c6dd4e4e4a6845111def11e4e8d4780d5c280688799b818bb
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
-Digest: 1b5e264822bf001e11406835210fcfb9bbf8b5441ccfe578dd5b05dbb016285a
+Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
+Digest: cabff77a7d5126aa61370e2c098e283c76239680e5f4e2cd093a833f470693de
 """
 
 import math

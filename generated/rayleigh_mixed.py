@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
-Digest: 198b54e661455e7b5ff3f339aee3b1458818b57e165ff063aa89c11f075f8acb
+Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
+Digest: e6a15c10aeab9c23958433a9b7f7f4b1b16d246fbf4b0a5e608e3b96508f694e
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py 308f0c47c7d0f0b28b0c78d3508bc1b5
-Digest: 00aa9ffab9eeb5b9d98c60817e8375a54395c5ba0915b500e80f84727ce9a7c8
+Source: ../derivations/examples/reorientation.py d90e8082e5ae814a8851ae1031de8cda
+Digest: e1728f609a52fa41845b2e9aafd634c22fd876230a1cf5fd42d7e605c6f68009
 """
 
 import math

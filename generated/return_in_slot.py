@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py a219be342db377a0d34bc088b831769d
+Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: e8e9988313da0ca3f9815ea51c882efce427375f95bf293f2391982b7470da7f
+Digest: 619e22e013dc7e34e9f4a1681351c6590792520057adef98686a28fb86aec04e
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 91c1c2d356b6545ada3f1c75c9fa56a9
-Digest: 513c17d615aac0b52c02dcdc6214762170edbbcc8fa4d68ed4c52bd5c99f65c3
+Source: ../derivations/examples/shuttle.py bfdb60a9086283fffb832b0d4b8303ba
+Digest: a722b70ddabb6013cecaf3f741ffb3799ed0cebf50a637222d19eaf808595219
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 91c1c2d356b6545ada3f1c75c9fa56a9
-Digest: 525c107732bd65918823f178f6d6783d498ffa7b2f7d8193322b3eeb7ddbb4fb
+Source: ../derivations/examples/shuttle.py bfdb60a9086283fffb832b0d4b8303ba
+Digest: 1f630aa05a224dc449161c984a807aa64a70d01e86cfdde0a635621cdc29fba4
 """
 
 import math

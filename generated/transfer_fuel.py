@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py eaee82127f48907190a1101d3dd9bfc3
-Digest: 469458647df7203344ecb9acf611028b604db08eeeb4c0cfa7d9a365ae053ed4
+Source: ../derivations/examples/transfer_fuel.py 455e9784f8ec0337adceae0d84d53a33
+Digest: bc2efe14027bf136d80e50386b941bf7b51c8e8b8891267b78a6378f80e05e96
 """
 
 import math

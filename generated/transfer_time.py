@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py 3a047f8f9a2240910e911051f1ab1f5e
-Digest: 3d9604b4aa9f936831c20dd7667fed384ae84c2b216ae3af7770ef8f7024b6a7
+Source: ../derivations/examples/transfer_time.py 1b494e8b28fb80003b0293b20a0c8020
+Digest: 3de3c92f677ec2769804219924a5dd34084ee9ff8942dfec2d7bd1028d1a92d2
 """
 
 import math

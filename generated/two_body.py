@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Source: ../derivations/two_body.py b89d46b2bea74c144897b0bf79994229
-Digest: 0d5ec325869d1e45bec249aba50eb458c8fa47c7098402ba0dbe08e6fbc41415
+Source: ../derivations/two_body.py 84e5519644a5b6a43f8774f89886ecdb
+Digest: e1842477fe82a643485e36a9d7eb3ca8ba2cfdd2b0fd93cac28dbd4234bd9783
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py 694c39b355280c2f63453de4730424b5
-Digest: df1faed9e5d53acaedb345e31617f451cbf409928cf8eb0b45197f574c50d1df
+Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
+Digest: e8cc4bf1c7f0aa3e56922132eb6de4b0cbcc609ed33f8b714521454f03822fcb
 """
 
 import math

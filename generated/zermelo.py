@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Source: ../derivations/examples/zermelo.py ce3a3e523556ff7436403819fa2cf8b6
-Digest: 450625f492736dbc4078540121db4265d1aebefb53def5557becd06e3bc33633
+Source: ../derivations/examples/zermelo.py 089adabda78bb52ba5d2b4e88a8133eb
+Digest: 6a6a0469765d2f6c7aaf5285149f5923b2ed750d0afd393454910b0adffbf143
 """
 
 import math

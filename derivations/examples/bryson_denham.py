@@ -1,7 +1,8 @@
-"""A body on a line that must not pass a wall (Bryson, Denham and Dreyfus 1963; Bryson and Ho, 3.11).
+"""A body on a line whose position is bounded (Bryson, Denham and Dreyfus 1963; Bryson and Ho, 3.11).
 
-From (0, 1) to (0, -1) in unit time with the least effort and x <= l. In closed form: J = 2 where l >= 1/4 and the wall
-is not met, 2 + 6 (1 - 4 l)^2 where it is touched (1/6 <= l), and 4/(9 l) where the body rests at it.
+It moves from (0, 1) to (0, -1) in unit time with minimum effort and x <= l. In closed form, J = 2 where l >= 1/4 and
+the bound is not met, 2 + 6 (1 - 4 l)^2 where it is touched (1/6 <= l), and 4/(9 l) where the body rests at it. The
+second problem is a clamped beam whose deflection is bounded.
 """
 
 from dataclasses import replace

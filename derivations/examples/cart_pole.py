@@ -1,7 +1,7 @@
 """A cart swings its pole up: from rest with the pole hanging to rest with the pole upright, a given distance away.
 
-Kelly, An introduction to trajectory optimization, SIAM Review 59 (2017), appendix E.1: a cart of 1 kg, a pole of
-0.3 kg and 0.5 m, 1 m in 2 s, a force of 20 N at most, and the integral of its square the least.
+Kelly, An introduction to trajectory optimization, SIAM Review 59 (2017), appendix E.1: a cart of 1 kg, a pole of 0.3 kg
+and 0.5 m, 1 m in 2 s, a force of at most 20 N, and the integral of its square as the cost.
 """
 
 from sympy import cos, sin

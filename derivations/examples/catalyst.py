@@ -1,7 +1,7 @@
-"""Mixing of two catalysts along a tubular reactor, such that most of the product leaves it.
+"""Two catalysts are mixed along a tubular reactor so that as much of the product as possible leaves it.
 
 Problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software with COPS 3.0, 2004), after Jackson
-(1968): time is the length that has been passed. The mixing ratio is full, singular, and zero at the end.
+(1968). The position along the reactor plays the part of time. The mixing ratio is one, then singular, then zero.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,8 +1,8 @@
-"""The hypersensitive problem: from a given state to a given state, and at rest in between for almost all of the time.
+"""The hypersensitive problem: from one state to another over a long time, almost all of which is spent at rest.
 
 Rao and Mease, Eigenvector approximate dichotomic basis method for solving hyper-sensitive optimal control problems,
-Optimal Control Applications and Methods 21 (2000): x' = -x^3 + u from 1 to 1.5. Errors of the canonical equations
-grow by exp(t) in either direction of time.
+Optimal Control Applications and Methods 21 (2000): x' = -x^3 + u from 1 to 1.5. Errors in the canonical equations grow
+like exp(t) in either direction of time.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

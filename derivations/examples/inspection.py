@@ -1,4 +1,4 @@
-"""A satellite that approaches another and passes a point beside it on the way, when that suits it best."""
+"""A satellite approaches another and passes an inspection point on the way, at a time that is free."""
 
 from dataclasses import replace
 from pathlib import Path

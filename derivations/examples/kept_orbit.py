@@ -1,4 +1,4 @@
-"""Satellites that return to their orbit and keep clear of something: a smallest radius, a slot of angle, a cone.
+"""Satellites return to their orbit and keep a distance: above a minimum radius, within an angular slot, in a cone.
 
 The motion is that of polar_orbit; near the orbit, to first order, that of clohessy_wiltshire.
 """

@@ -1,6 +1,6 @@
-"""A body in the plane on its way round two discs, with the least effort: the constraints are not convex.
+"""A body moves around two circular obstacles in a plane with minimum effort; the constraints are not convex.
 
-Which way round each disc is cheapest nobody says; every one is a local optimum of its own.
+The way around each obstacle is not prescribed; each choice leads to a local optimum of its own.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,8 +1,8 @@
 """Minimum-time rest-to-rest reorientation of a rigid body, with a torque about each axis.
 
 Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of Guidance, Control, and
-Dynamics 16 (1993): moments of inertia and largest torques are one, the body turns by 180 degrees about its third axis.
-The turn about that axis alone is not the quickest.
+Dynamics 16 (1993): moments of inertia and maximum torques are one, and the body turns by 180 degrees about its third
+axis. A turn about that axis alone is not the quickest.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,9 +1,9 @@
-"""A space shuttle enters the atmosphere and glides as far to the side as it can (Betts 2010, section 6.1).
+"""A space shuttle enters the atmosphere and glides to the greatest cross-range (Betts 2010, section 6.1).
 
-Angle of attack and bank are the controls. The lift grows linearly with the angle of attack, the drag as its square,
-and the bank turns the lift. Without a limit on heating the largest latitude is 34.1411843 degrees. The bounds of the
-bank matter: on its back, with negative lift, the same polar would glide further. In the second problem the wing's
-leading edge must not be heated more than it stands: the less the larger the angle of attack.
+The controls are the angle of attack and the bank angle. Lift grows linearly with the angle of attack and drag
+quadratically; the bank angle turns the lift. Without a limit on heating the greatest latitude is 34.1411843 degrees.
+The bounds of the bank angle matter: upside down, with negative lift, the same polar would glide further. In the second
+problem the heating of the wing's leading edge, which depends on the angle of attack, is bounded.
 """
 
 from dataclasses import replace

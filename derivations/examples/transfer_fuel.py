@@ -1,8 +1,9 @@
-"""From one circular orbit to another with minimum fuel, in a given time, with a thrust of bounded magnitude.
+"""Transfer from one circular orbit to another with minimum fuel, in a given time and with bounded thrust.
 
-Mass flows out as the thrust asks for. What is left over is a maximum where arcs of full thrust and coasts alternate, as
-the primer vector says (Lawden, Optimal Trajectories for Space Navigation, 1963). Units are those of the first orbit:
-its radius, and the time in which an angle of one is passed on it; the initial mass is one.
+Mass decreases in proportion to the magnitude of the thrust. The optimum alternates between arcs of full thrust and
+coasts, as the primer vector determines (Lawden, Optimal Trajectories for Space Navigation, 1963). Lengths are in units
+of the radius of the first orbit, times in units of the time in which a satellite on it moves through one radian, and
+the initial mass is one.
 """
 
 from sympy import sqrt

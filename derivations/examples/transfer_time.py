@@ -1,8 +1,8 @@
-"""From one circular orbit to another in minimum time, with a constant thrust whose direction is free.
+"""Transfer from one circular orbit to another in minimum time, with constant thrust in a free direction.
 
-The flow of mass is constant as well, so that the mass is known in time: from the orbit of the Earth to that of Mars
-(Bryson and Ho, Applied Optimal Control, 2.5). Units are those of the first orbit: its radius, and the time in which an
-angle of one is passed on it.
+The mass flow rate is constant, so that the mass is a known function of time. The data are those of the transfer from
+the Earth's orbit to that of Mars (Bryson and Ho, Applied Optimal Control, 2.5). Lengths are in units of the radius of
+the first orbit, times in units of the time in which a satellite on it moves through one radian.
 """
 
 from sympy import cos, sin

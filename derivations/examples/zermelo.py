@@ -1,7 +1,7 @@
 """Zermelo's problem: a ship crosses a current in minimum time (Zermelo, 1931).
 
-The current flows along x and grows with y. The ship heads for the origin; from (3.66, -1.86) h, where the current is
--V y / h, the heading turns from 105 degrees to 240 (Bryson and Ho, Applied Optimal Control, 2.7).
+The current is along x and grows with y. The ship heads for the origin; from (3.66, -1.86) h, where the current is -V y
+/ h, its heading turns from 105 degrees to 240 (Bryson and Ho, Applied Optimal Control, 2.7).
 """
 
 from sympy import cos, sin

@@ -10,7 +10,7 @@ from gallery import printed, themed
 from sphinx.application import Sphinx
 
 WIDE, HIGH = 6.5, 3.2
-"""Of a figure, in inches."""
+"""Size of a figure, in inches."""
 
 
 def bang_bang(page: Any, style: Any) -> None:

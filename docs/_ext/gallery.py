@@ -40,7 +40,7 @@ WHOLE = 110
 EQUATIONS = 12
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
 KEPT = "SATSYM_DOCS_KEPT"
-"""Of the environment: examples are shown as they were kept, whatever has changed, for those who write other pages."""
+"""Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
 TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
 """How long solving took, which is another time each time."""
 
@@ -138,7 +138,8 @@ def page(known: dict[str, str], root: Path) -> str:
     call = python.get(known["command"], "found = satsym.analyse")
     code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
     parts = [
-        f"{WRITTEN}# {known['title']}\n",
+        f"---\norphan: true\n---\n\n{WRITTEN}# {known['title']}\n",
+        "Back to the [gallery](../gallery.md).\n",
         f"{picture(known, '../')}\n" if known["drawn"] else "",
         f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
         f"The instance `{name}` sets the numbers:\n\n```toml\n{known['file']}\n```\n",
@@ -185,9 +186,7 @@ def overview(every: dict[str, dict[str, str]]) -> Iterator[str]:
     for subject, names in by_subject(every, INSTANCES).items():
         yield f"## {subject}\n\n```{{raw}} html\n<div class='gallery'>"
         yield from (card(every[name]) for name in names)
-        yield "</div>\n```\n\n```{toctree}\n:hidden:\n"
-        yield from (f"gallery/{name}" for name in names)
-        yield "```\n"
+        yield "</div>\n```\n"
 
 
 def _write(app: Sphinx) -> None:

@@ -9,10 +9,10 @@ import click
 from sphinx.application import Sphinx
 
 GROUPS = {
-    "Instances and answers": (
+    "Instances and solutions": (
         "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve export"
     ),
-    "What an answer is worth": "solution.Certificate solution.Check solution.Competitors",
+    "What a solution is worth": "solution.Certificate solution.Check solution.Competitors",
     "Many instances": "study front.studies.Study solvers.repeated.repeated.Repeated",
     "Linear systems and orbits": "analyse lqr front.analysing.Analysis front.analysing.Regulator",
     "Derivations": "derive front.derivation.Derivation front.derivation.Equation audit front.auditing.Audit",

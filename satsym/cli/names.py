@@ -30,28 +30,28 @@ def completed(*kinds: Callable[[], Iterable[str]]) -> Completed:
 
 
 def instances() -> Iterable[str]:
-    """Of shipped instances."""
+    """Names of shipped instances."""
     from satsym.instance import files
 
     return files.shipped()
 
 
 def models() -> Iterable[str]:
-    """Of shipped models."""
+    """Names of shipped models."""
     from satsym import source_files
 
     return source_files.models()
 
 
 def derivations() -> Iterable[str]:
-    """Of derivation files that come with satsym."""
+    """Names of derivation files that come with satsym."""
     from satsym import source_files
 
     return (path.stem for path in source_files.shipped())
 
 
 def documents() -> Iterable[str]:
-    """Of the documents that are audited."""
+    """Names of the documents that are audited."""
     from satsym import source_files
 
     return (path.name for path in source_files.documents())

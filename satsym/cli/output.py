@@ -29,7 +29,7 @@ VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
 TENTHS, SHORT, LONG = 10, 5.0, 60.0
-"""Of work whose share is known: how many lines it has where these stay, the least and the most seconds between two."""
+"""Progress where lines stay: how many there are, and the least and the most seconds between two."""
 
 
 def emit(text: str) -> None:
@@ -44,7 +44,7 @@ def emit(text: str) -> None:
 
 
 def tell(text: str) -> None:
-    """The same for people alone, unless these want to hear nothing."""
+    """Print a text for people, unless they want to hear nothing."""
     if VOICE.get() is not Voice.QUIET:
         emit(text)
 
@@ -155,7 +155,7 @@ class Live:
             self.replace(text)
 
     def report(self, text: str, share: float) -> None:
-        """The same of work of which a share is done; where nobody sees a line change, now and then a line that stays.
+        """Report a share of work that is done; where nobody sees a line change, print a line that stays now and then.
 
         Parameters
         ----------

@@ -25,7 +25,7 @@ KEPT = "__init__.py"
 """The one file of the generated folder that people write."""
 
 MAX_SECONDS = 900.0
-"""Of deriving one problem: several times what the longest of those that come with satsym takes."""
+"""Time limit for deriving one problem: several times what the longest shipped one takes."""
 
 Job: TypeAlias = "tuple[Path, str, Path, float]"
 """A derivation file, the name of a problem in it, where that is to be written, and the time that deriving may take."""

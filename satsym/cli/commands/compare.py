@@ -27,7 +27,7 @@ Examples:
   satsym compare lapan-classical lapan-minimum-time --range    for other dampings and commands"""
 
 FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Of the instance's damping and command, in a range."""
+"""Factors of the instance's damping and command, for a range of these."""
 
 
 @command(epilog=EXAMPLES)

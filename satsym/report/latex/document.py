@@ -164,7 +164,7 @@ class _Composer:
         return "\n".join((heading, stated, self._shown[step.name].body, *said, *self._while(step), *further))
 
     def _title(self, step: Step) -> str:
-        """That of a step, or of one about a single control where there is such a form."""
+        """The title of a step, in its form for a single control where there is one."""
         alone = len(self._derivation.model.controls) == 1
         found = self._texts.find("titles", f"{step.name}, one control") if alone else None
         return found or self._texts.get("titles", step.name)

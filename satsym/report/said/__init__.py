@@ -20,7 +20,7 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 VARIABLE = "SATSYM_LANG"
-"""Of the environment: the language where no other is asked for."""
+"""Variable of the environment that names the language where no other is asked for."""
 
 _BREAK = re.compile(r"(; |(?<=[.:]) )")
 """Between clauses and sentences of a message, each of which may be a text of its own."""

@@ -64,7 +64,7 @@ _NAMED = {
     re.compile(r"cheaper by: (.*)"): "nothing cheaper: <said_kind>",
     re.compile(r"transversality at the start: (.*)"): "transversality condition at the start holds: <said_kind>",
 }
-"""The same with something named in them."""
+"""Checks that name something -> what is so where they pass."""
 
 _MEANINGS = {
     Verdict.CERTIFIED: "strict local minimum",

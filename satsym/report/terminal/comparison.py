@@ -31,7 +31,7 @@ MEANINGS = {
     "_driven": "largest departure from the motion that is not driven",
     "_share": "rate that the driving control causes, relative to the largest such rate",
 }
-"""Of metrics, by name or by what a name ends with."""
+"""What metrics measure, by their names or by what these end with."""
 
 
 def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:

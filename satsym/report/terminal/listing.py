@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 COLUMNS = 80
-"""Of a list, where there is no terminal to fill."""
+"""Width of a list where there is no terminal to fill."""
 MOST = 4
 """Names of a model that fit in its line; `satsym models MODEL` has all."""
 

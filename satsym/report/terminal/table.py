@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 GAP = "  "
 WIDEST, NARROWEST = 100, 40
-"""Of paragraphs, in characters."""
+"""Widths of paragraphs, in characters."""
 SENTENCE = 16
 """Characters that a column of sentences needs, at least."""
 
