@@ -113,6 +113,5 @@ def contradiction(instance: Instance, limits: Limits) -> str:
         names = [name for name, push in zip(kept, pushes, strict=True) if push > PUSHING * pushes.max()]
     if not left[1] > max(UNAVOIDABLE, REMAINING * left[0]):
         return ""
-    return (
-        f"no motion to the given end satisfies the path constraints ({', '.join(names)}): one of them is always violated"
-    )
+    against = ", ".join(names)
+    return f"no motion to the given end satisfies the path constraints ({against}): one of them is always violated"
