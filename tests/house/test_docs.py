@@ -21,7 +21,7 @@ PAGES = [DOCS / "start.md", DOCS / "howto.md", DOCS / "asked.md", *sorted((DOCS 
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
-TIMED = re.compile(r"(?<=, )[\d.]+ m?s(?=\))")
+TIMED = re.compile(r"(?<=\s)[\d.]+\s+m?s(?=\))")
 """What differs from run to run: how long solving took."""
 ROUNDING = re.compile(r"(?<![\d.])\d(?:\.\d+)?e-[1-9]\d\b|(?<= )(?:0|\d(?:\.\d+)?e-\d\d)(?= +1e-0\d$)", re.MULTILINE)
 """What differs from machine to machine: residuals at the level of rounding."""
