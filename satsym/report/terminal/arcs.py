@@ -20,6 +20,7 @@ SHOWN_ARCS = 9
 _AT_BOUND = 1e-9
 _SIGNS = {"+": "upper bound", "-": "lower bound", "0": "zero", "s": "singular", "b": "boundary"}
 _THRUST = {"+": "burn", "-": "coast", "0": "coast", "s": "singular"}
+_FOUND = re.compile(r"residual (\S+), from (.+)")
 _STRUCTURE = re.compile(r"structure ([-+0sb]+), (?:\d+ switch(?:es)?, )?")
 
 
@@ -44,7 +45,11 @@ def in_words(solution: Solution, text: str) -> str:
         return message(text)
     signs = _THRUST if _throttled(solution) else _SIGNS
     arcs = ", ".join(say(signs.get(sign, _SIGNS[sign])) for sign in found[1])
-    rest = message(text[found.end() :])
+    rest = text[found.end() :]
+    if ends := _FOUND.fullmatch(rest):
+        rest = say("residual <residual>, from <origin>", residual=ends[1], origin=message(ends[2]))
+    else:
+        rest = message(rest)
     return say("arcs: <arcs>; <rest>", arcs=arcs, rest=rest) if rest else say("arcs: <arcs>", arcs=arcs)
 
 
