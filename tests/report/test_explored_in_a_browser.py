@@ -49,6 +49,10 @@ def page(answers: list[Solution], tmp_path_factory: pytest.TempPathFactory) -> I
         engine.close()
 
 
+JOINED = (2.0 / 199.0) ** 2 / 8.0 + 1e-6
+"""Error of straight lines between the 200 nodes of each of several answers, over 2 s with an acceleration of one."""
+
+
 def value(page: Any, panel: int) -> float:
     return float(page.locator(f'td[data-panel="{panel}"]').text_content().replace("−", "-"))
 
@@ -56,12 +60,12 @@ def value(page: Any, panel: int) -> float:
 def test_the_slider_moves_the_time_of_the_table_and_of_the_curves(page: Any) -> None:
     page.locator("#explore-time").fill("250")
     assert page.locator("#explore-stated").text_content() == "0.5"
-    assert value(page, 0) == pytest.approx(1.0 - 0.5 * 0.5**2, abs=1e-5)
+    assert value(page, 0) == pytest.approx(1.0 - 0.5 * 0.5**2, abs=JOINED)
     assert value(page, 1) == pytest.approx(-0.5, abs=1e-5)
     assert value(page, 2) == -1.0, "the control, before it switches"
     marked = "data.filter((d) => d.mode === 'lines+markers').map((d) => [d.x[1], d.y[1]])"
     cursors = page.evaluate(f"document.getElementById('explore-panels').{marked}")
-    np.testing.assert_allclose(cursors[0], [0.5, 0.875], atol=1e-5)
+    np.testing.assert_allclose(cursors[0], [0.5, 0.875], atol=JOINED)
     page.locator("#explore-time").fill("750")
     assert value(page, 2) == 1.0
 
