@@ -210,6 +210,8 @@ def test_the_answers_of_a_study_are_chosen_by_what_it_varies(run: Run, returned:
     assert [answer.solution.x[0, 0] for answer in answers] == pytest.approx([1.1, 1.15, 1.2])
     assert [answer.solution.instance.initial[0] for answer in answers] == pytest.approx([1.1, 1.15, 1.2])
     assert answers[0].solution.objective == pytest.approx(returned.objective)
+    assert [answer.own for answer in answers] == [True, False, False], "the instance begins at 1.1"
+    assert data([answers[2], answers[0]])["begin"] == 1
     with pytest.raises(BadInput, match="is of return-to-orbit, not of soft-return"):
         explored(solve(instance.load("soft-return")), tmp_path / "kept")
     assert run("study", "return-to-orbit", *vary, "--out", str(tmp_path / "bare"))[0] == 0

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.instance.numbers import changed
 from satsym.report.page.explored import Answer
 from satsym.report.results import sets, study_table
@@ -25,6 +26,8 @@ from satsym.wording import printable
 
 MOST = 60
 """Answers on a page, evenly chosen among more."""
+ROUNDING = 1e-12
+"""Relative difference below which two numbers of an instance are the same."""
 ARRAYS = ("t", "x", "u", "lam")
 
 
@@ -79,8 +82,20 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
             events=(),
             history=(),
         )
-        found.append(Answer(own, label))
+        found.append(Answer(own, label, _same(case, instance)))
     return found
+
+
+def _same(one: Instance, other: Instance) -> bool:
+    """Whether two instances of a model have the same numbers, but for rounding."""
+
+    def numbers(case: Instance) -> list[float]:
+        ends = [value for value in case.final.values() if isinstance(value, float)]
+        times = [case.t0, math.inf if case.tf is None else case.tf]
+        return [*case.initial, *case.parameters, *ends, *times, *case.lower, *case.upper, case.max_norm]
+
+    first, second = numbers(one), numbers(other)
+    return len(first) == len(second) and bool(np.allclose(first, second, rtol=ROUNDING, atol=0.0))
 
 
 def _trajectories(folder: Path, names: Sequence[str]) -> dict[int, dict[str, Array]]:

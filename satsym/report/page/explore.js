@@ -4,7 +4,7 @@
   const section = document.getElementById("explore");
   const source = document.getElementById("explore-data");
   if (!section || !source || !window.Plotly) return;
-  const { answers, words, decimal } = JSON.parse(source.textContent);
+  const { answers, begin, words, decimal } = JSON.parse(source.textContent);
   if (!answers.length) return;
   section.querySelector(".explorer").hidden = false;
   const slider = document.getElementById("explore-time");
@@ -19,7 +19,7 @@
   const plain = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
   const SECONDS = 12, SIDE = 380, ROW = 150, GAP = 0.045;
   const BLUE = "#0072B2", SKY = "#56B4E9", VERMILION = "#D55E00", GREEN = "#009E73";
-  let current = answers[0], time = current.t[0], running = 0, updates = [];
+  let current = answers[begin], time = current.t[0], running = 0, updates = [];
 
   /** A number with six digits; what is nothing but rounding beside a size is zero. */
   const number = (value, size = 0) => {
@@ -281,5 +281,6 @@
     time = current.t[0] + share * (current.t[current.t.length - 1] - current.t[0]);
     draw();
   });
+  if (chooser) chooser.value = String(begin);
   draw();
 })();

@@ -48,13 +48,16 @@ class Answer:
 
     solution: Solution
     label: str = ""
+    own: bool = False
+    """Whether it is the answer of the page itself, with which a slider begins."""
 
 
 def data(answers: Sequence[Answer]) -> Data:
     """What is shown of some answers, of which a slider chooses."""
     most = NODES if len(answers) == 1 else FEWER
-    found = [_answer(one, most) for one in answers]
-    return {"answers": [one for one in found if one["t"]]}
+    shown_ones = [(one, found) for one in answers if (found := _answer(one, most))["t"]]
+    begin = next((k for k, (one, _) in enumerate(shown_ones) if one.own), 0)
+    return {"answers": [found for _, found in shown_ones], "begin": begin}
 
 
 def _answer(answer: Answer, most: int) -> Data:
