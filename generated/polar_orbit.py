@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 9bf6dcac5bb89ab91e7466f9832f235ff60a0d7463879d5cf6b8d7d986d1da4b
+Digest: 8dc187de420daa1d73f50e5287fd42923e8bcecd6e96d21a85d74bd63bd51828
 """
 
 import math
@@ -128,7 +128,7 @@ def reference(t, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
@@ -801,7 +801,7 @@ def reference_batch(t, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:

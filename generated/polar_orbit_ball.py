@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 0c08f5687296e9ac5c6c006d8bdc46eb8f119fc269dbf3e75b922adb28c0144b
+Digest: f0dfd49872793630b8746af2e158ddca600c8093487b62c4862771a52e032c87
 """
 
 import math
@@ -127,7 +127,7 @@ def reference(t, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
@@ -816,7 +816,7 @@ def reference_batch(t, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:

@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: df47438d7e04fd6da06157bc45c2c82979b9041f07dfdff4c8dfa4c92fa508db
+Digest: ea60fb8abc927c413a618e4f0fbdea049057e70ad3d1d5b5289f8e3d47eab3c6
 """
 
 import math
@@ -129,7 +129,7 @@ def reference(t, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
     inv_r = 1.0/r
@@ -802,7 +802,7 @@ def reference_batch(t, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
     if out is None:

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 9d4ea193b1f90d09267c3a1a4f2c896794d6cf6afff9764df4472643db890658
+Digest: 8a0d007218ce51c2cbedc5f4f7226f34dd16be98d26c84f3d5cbabf3f690b310
 """
 
 import math
@@ -130,7 +130,7 @@ def reference(t, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, r_min = p
     inv_r = 1.0/r
@@ -857,7 +857,7 @@ def reference_batch(t, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, r_min = p
     if out is None:

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 619e22e013dc7e34e9f4a1681351c6590792520057adef98686a28fb86aec04e
+Digest: 9f530377a46b46fd780f06b9bb8dc5e1a963b02c748ab890b6ba99a4f5c04227
 """
 
 import math
@@ -131,7 +131,7 @@ def reference(t, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, slot = p
     inv_r = 1.0/r
@@ -881,7 +881,7 @@ def reference_batch(t, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
     sigma, omega, c1, c2, slot = p
     if out is None:

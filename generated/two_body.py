@@ -3,7 +3,7 @@
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
 Source: ../derivations/two_body.py 84e5519644a5b6a43f8774f89886ecdb
-Digest: e1842477fe82a643485e36a9d7eb3ca8ba2cfdd2b0fd93cac28dbd4234bd9783
+Digest: 9698dcf2a31e68f282278974112a9fbc6a31ce4d9953e79320bedfa00bff3047
 """
 
 import math
@@ -168,7 +168,7 @@ def jacobian_u(t, x, u, p):
 
 
 def invariants(t, x, p):
-    """What the motion without control keeps constant."""
+    """What the uncontrolled motion keeps constant."""
     x_value, y, z, v_x, v_y, v_z = x
     (mu,) = p
     w = x_value*x_value + y*y + z*z
@@ -610,7 +610,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
 
 
 def invariants_batch(t, x, p, out=None):
-    """What the motion without control keeps constant. Batch form."""
+    """What the uncontrolled motion keeps constant. Batch form."""
     x_value, y, z, v_x, v_y, v_z = x
     (mu,) = p
     if out is None:
