@@ -175,7 +175,7 @@ def _fill(entry: _Entry) -> None:
         _fill_matrix(entry)
         return
     named, derivatives = remedies.with_names(entry.statement, subject)
-    if fit is None or not entry.answer.address:
+    if fit is None or not entry.answer.address or entry.answer.verdict == "undecided":
         entry.table |= {"original": display.text.strip(), "printed": written(named)}
         return
     names = {name: _called(tree, k) for k, (name, tree) in enumerate(derivatives.items(), start=1)}
