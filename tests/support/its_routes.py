@@ -65,19 +65,22 @@ def hamiltonian() -> sp.Expr:
 
 
 def angular_rate(document: Rows, key: str) -> str:
-    """(4.27) of the thesis, (12) of the paper: u2 with the wrong sign, and right where the model is set up."""
+    """(4.27) of the thesis, (12) of the paper: u2 with the wrong sign, right before, and the Hamiltonian has it so."""
     printed = formula(document[key])
     model = formula(document["2.13 tangential" if "2.13 tangential" in document else "II (2) tangential"])
     right = same(model.subs({rd: x2, thd: x4, r: x1}), angular_acceleration())
     slip = same(printed.subs(u2, -u2), angular_acceleration())
     assert slip
     assert right
-    return "confirmed" if same(printed, angular_acceleration()) else "misprint"
+    following = formula(document["4.28" if "4.28" in document else "III (14)"])
+    assert same(sp.diff(following, l4), printed), "carried on"
+    return "confirmed" if same(printed, angular_acceleration()) else "wrong"
 
 
 def thesis_hamiltonian(document: Rows, key: str) -> str:
     assert same(formula(document["4.28 first line"]), hamiltonian()), "right one line before"
-    return "confirmed" if same(formula(document[key]), hamiltonian()) else "misprint"
+    assert same(sp.diff(formula(document[key]), l4), formula(document["4.35"])), "carried on"
+    return "confirmed" if same(formula(document[key]), hamiltonian()) else "wrong"
 
 
 def paper_hamiltonian(document: Rows, key: str) -> str:
