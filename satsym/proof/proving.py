@@ -197,10 +197,13 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
         raise NotProved(
             "existence: no box about the answer is mapped into itself; more digits, or a better answer, may help"
         )
-    order = Order(max(18, int(1.1 * (digits + SPARE))), 10.0 ** -(digits + SPARE))
-    box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + SPARE)))  # it lies in the former one
-    last = krawczyk(shooting, box, order)
-    if not last.inside:
+    for spare in (SPARE, 2 * SPARE):
+        order = Order(max(18, int(1.1 * (digits + spare))), 10.0 ** -(digits + spare))
+        box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + SPARE)))  # it lies in the former one
+        last = krawczyk(shooting, box, order)
+        if last.inside:
+            break
+    else:
         raise NotProved("the extremal is not located to all digits; ask for fewer")
     lengths = zip(box.lengths, box.lengths_around, strict=True)
     if not all(a + b > 0 for a, b in list(lengths)[: len(shooting.arcs)]):
