@@ -26,6 +26,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "proved.md"
 BEGIN, END = "<!-- table of proved optima -->\n", "<!-- end of the table -->\n"
 SEED, RANDOM = 4, 100
 HORIZONS = (6.0, 9.0, 12.0)
+NEAREST = 0.2
+"""Extremals that come nearer to the centre are drawn again."""
 LARGEST = 0.25
 """Random costates at t0 are uniform between its negative and it, horizons one of the former."""
 
@@ -85,10 +87,14 @@ def drawn(rng: np.random.Generator) -> tuple[Instance, Solution, int]:
         moved = model.canonical(t, y[:4], y[4:8], p, bounds)
         return np.concatenate([moved, (a @ y[8:].reshape(8, 4)).ravel()])
 
+    def fallen(_: float, y: np.ndarray) -> float:
+        return float(y[0]) - NEAREST
+
+    fallen.terminal = True  # type: ignore[attr-defined]
     start = np.concatenate([case.initial, lam, np.eye(8)[:, 4:].ravel()])
     times = np.linspace(0.0, tf, 2001)
-    run = solve_ivp(rates, (0.0, tf), start, "DOP853", times, rtol=1e-12, atol=1e-14)
-    if not run.success or np.abs(run.y).max() > 1e9 or run.y[0].min() < 0.05:
+    run = solve_ivp(rates, (0.0, tf), start, "DOP853", times, events=fallen, rtol=1e-12, atol=1e-14)
+    if run.status != 0:
         return drawn(rng)
     dets = np.linalg.det(run.y[8:].T.reshape(-1, 8, 4)[1:, :4])
     conjugate = int((dets[:-1] * dets[1:] < 0).sum())
