@@ -1,4 +1,4 @@
-"""Exact arcs from smoothed extremals, where controls may chatter: structures that show as less and less is smoothed."""
+"""Exact arcs from smoothed extremals: structures that are recognised while less and less is smoothed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
@@ -21,24 +23,34 @@ STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
-def smoothed(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
+def smoothed(
+    instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None = None
+) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
     Structures without an arc that seems to be singular seldom lead anywhere, so they are tried once all smoothed
     extremals show no better one.
+
+    Parameters
+    ----------
+    begun
+        See :func:`~satsym.solvers.switching.cold_start.homotopy.path`.
     """
     before: Sample | None = None
     levels: list[minimum_effort.Smoothed] = []
     unlikely: list[tuple[Guess, float]] = []
     looks: list[Look] = []
+    endless = bool(instance.model.spec.chattering)
+    most = homotopy.LEVELS * (2 if endless else 1)
     try:
-        for level, near in enumerate(homotopy.path(instance, limits)):
+        for level, near in enumerate(homotopy.path(instance, limits, most, begun)):
             seen = sample(near.problem, near.curve)
             levels.append(near)
             smoothing = near.problem.control_set.smoothing
-            looks.append(look(instance, near, seen))
-            if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
-                break
+            if endless:
+                looks.append(look(instance, near, seen))
+                if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
+                    break
             likeliest, *plainer = _candidates(instance, seen, before)
             exact = attempt(instance, likeliest, limits) if level <= homotopy.LEVELS else None
             if exact is not None:

@@ -18,6 +18,7 @@ from satsym.solvers.switching.by_smoothing import smoothed
 from satsym.solvers.switching.chattering import at_rest, chattered
 from satsym.solvers.switching.cold_start import homotopy, minimum_effort
 from satsym.solvers.switching.linear import by_reach
+from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.magnitudes import costs, moving
 from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.refusals import refuse
@@ -62,7 +63,8 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
     progress
         Called after each step of the continuation, and each attempt at exact arcs.
     search
-        What is asked where the motion is not linear and controls do not chatter.
+        What is asked where controls do not chatter. Where the motion is not linear and it finds nothing, smoothed
+        problems may show singular arcs.
 
     Returns
     -------
@@ -176,9 +178,10 @@ def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homoto
         return replace(exact, origin=Origin.REACH)
     if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
-    if instance.model.spec.chattering:
-        return smoothed(instance, limits)
-    return search.arcs(instance, limits) or homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
+    found = None if instance.model.spec.chattering else search.arcs(instance, limits)
+    if found is None and linear_motion(instance) is not None and not instance.model.spec.chattering:
+        return homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
+    return found or smoothed(instance, limits)
 
 
 def _resting(instance: Instance) -> Guess | None:

@@ -72,20 +72,28 @@ class Stopped(Exception):
     """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
 
-def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
-    """Smoothed extremals, less and less smoothed.
+def path(
+    instance: Instance, limits: Limits, most: int = LEVELS, begun: tuple[TwoPoint, Curve] | None = None
+) -> Iterator[Smoothed]:
+    """Smoothed extremals, less and less smoothed, that many times.
+
+    Parameters
+    ----------
+    begun
+        The first without the weight of |u|, if it is known.
 
     Raises
     ------
     Stopped
         Where there is none, or the way to the bounds is blocked.
     """
-    yield from less_and_less(instance, _weighed(instance, limits), limits)
+    first = _weighed(instance, limits, begun)
+    yield from less_and_less(instance, first, limits, most)
 
 
-def _weighed(instance: Instance, limits: Limits) -> Smoothed:
+def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None) -> Smoothed:
     """Well smoothed within the bounds, with the weight of |u|."""
-    problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
+    problem, curve = begun or (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
     def weighed(fraction: float) -> TwoPoint:
@@ -97,8 +105,8 @@ def _weighed(instance: Instance, limits: Limits) -> Smoothed:
     return Smoothed(weighed(1.0), curve)
 
 
-def less_and_less(instance: Instance, first: Smoothed, limits: Limits) -> Iterator[Smoothed]:
-    """A smoothed extremal, and then others, less and less smoothed.
+def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
+    """A smoothed extremal, and then so many others, less and less smoothed.
 
     Raises
     ------
@@ -108,7 +116,7 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits) -> Iterat
     problem, curve = first.problem, first.curve
     smoothing = problem.control_set.smoothing
     yield first
-    for _ in range(2 * LEVELS):
+    for _ in range(most):
         before = smoothing
 
         def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
