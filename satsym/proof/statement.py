@@ -18,15 +18,17 @@ from satsym.spec import ProblemSpec
 
 _OF_INSTANCES = frozenset(
     """name path title model parameters initial final t0 tf tf_guess lower upper max_norm solver lqr guess classical
-    limits deadband driven norms free continuation ranges met work""".split()
+    limits deadband driven norms free continuation ranges met work orbit""".split()
 )
+"""Fields of instances; `orbit` says where in the sky a motion takes place, and changes nothing of the problem."""
+
 _OF_MODELS = frozenset(
     """name title source states controls parameters control_set has_cost has_terminal_cost has_reference autonomous
     invariants position multipliers outputs linear keplerian switching coordinates velocities quantities balances
     switching_curve conditions equilibria control_parts mode_groups maximise objective_unit chattering moving_magnitudes
     path_constraints linear_quadratic terminal_inequalities interior""".split()
 )
-"""Fields of descriptions that this module knows: an instance or a model with others is refused."""
+"""Fields of models. An instance or a model with fields that are not among these is refused."""
 
 
 @dataclass(frozen=True)
