@@ -128,7 +128,7 @@ METHODS = {
         Method("linear", "closed-form solution of linear canonical equations", "satsym.solvers.linear:solve"),
         Method(
             "bang-bang",
-            "exact arcs, for controls that enter the cost linearly or not at all",
+            "exact arcs, for controls without a cost of their squares",
             "satsym.solvers.by_search:bang_bang",
             switching=True,
             automatic=True,

@@ -35,7 +35,7 @@ def without_time(result: dict[str, Any]) -> dict[str, Any]:
 def test_its_names_are_listed_and_the_list_loads_nothing(tmp_path: Path) -> None:
     code = "import satsym; assert set(satsym.__all__) <= set(dir(satsym)); hasattr(satsym, 'nothing')"
     assert not imported_by(code, tmp_path) & HEAVY
-    assert len(satsym.__all__) == 20
+    assert len(satsym.__all__) == 22
     assert all(getattr(satsym, name) is not None for name in satsym.__all__)
     with pytest.raises(AttributeError, match="'nothing'"):
         satsym.nothing  # noqa: B018

@@ -29,5 +29,5 @@ def test_a_generated_file_names_the_content_of_the_file_it_is_derived_from(name:
 
 def test_no_generated_file_is_left_over(repository: Path) -> None:
     files = {f"{name}{suffix}": "" for name in STATED for suffix in artefacts.SUFFIXES}
-    there = {path.name for path in (repository / "generated").iterdir() if path.suffix in artefacts.SUFFIXES}
+    there = {path.name for path in (repository / "generated").iterdir() if path.name.endswith(artefacts.SUFFIXES)}
     assert there - {artefacts.KEPT} == set(files)
