@@ -198,8 +198,8 @@ def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> 
         assert counted(2, "iteration") == "2 iterasi"
         assert message("converged; nobody says this") == "converged; nobody says this"
         assert message("converged; certified") == "konvergen; tersertifikasi"
-        arcs = message("structure free, wall, free (wall 0.3 long), from a regularised path")
-        assert arcs == "struktur bebas, wall, bebas (wall selama 0.3), dari rangkaian masalah teregularisasi"
+        arcs = message("structure free, wall, free (wall 0.3 long), from the search")
+        assert arcs == "struktur bebas, wall, bebas (wall selama 0.3), dari pencarian langsung"
 
 
 def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
