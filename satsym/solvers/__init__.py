@@ -88,11 +88,11 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
 
 
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None, examined: bool) -> Solution:
-    """What a solver finds with little work, else what a direct search finds, else what the solver finds with more."""
+    """What a solver finds with values given for what is free, and little work; else what a direct search finds."""
     from satsym.solvers import by_search
     from satsym.solvers.search import solving as search
 
-    if not search.applies(instance) or (search.begins(instance.model.spec) and not instance.free):
+    if not instance.free or not search.applies(instance):
         return solver(instance, progress)
     deadline = deadline_of(instance)
     solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)

@@ -5,8 +5,12 @@ It is asked as well where another way finds nothing, and where something may be 
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
+
+import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
@@ -14,11 +18,13 @@ from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.constrained.revision import SLACK
 from satsym.solvers.constrained.violation import violation
-from satsym.solvers.iteration import MOST, Limits, deadline_of, unsolved, watched
+from satsym.solvers.iteration import MOST, Limits, deadline_of, hurried, unsolved, watched
 from satsym.solvers.search import failing, solving
 from satsym.solvers.search.reading import collocated
 from satsym.solvers.search.reading.boundaries import UNMET
-from satsym.status import Verdict
+from satsym.status import Status, Verdict
+
+Solver = Callable[[Instance, Progress | None], Solution]
 
 RELAXED = 20_000
 """Columns that may be linearised for the extremal without path constraints."""
@@ -48,7 +54,7 @@ def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def collocation(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance by collocation, from the search where vanishing costates say nothing of the controls.
+    """Solve an instance by collocation, from a straight line or a guess, else from what the search finds.
 
     Parameters
     ----------
@@ -57,11 +63,11 @@ def collocation(instance: Instance, progress: Progress | None = None) -> Solutio
     """
     from satsym.solvers import two_point
 
-    return solving.solve(instance, progress) if _unknown(instance) else two_point.solve(instance, progress)
+    return _with_search(two_point.solve, instance, progress)
 
 
 def shooting(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance by multiple shooting, from the search where vanishing costates say nothing of the controls.
+    """Solve an instance by multiple shooting, from a straight line or a guess, else from what the search finds.
 
     Parameters
     ----------
@@ -70,10 +76,8 @@ def shooting(instance: Instance, progress: Progress | None = None) -> Solution:
     """
     from satsym.solvers.shooting import solving as by_shooting
 
-    if not _unknown(instance):
-        return by_shooting.solve(instance, progress)
-    found = solving.solve(instance, progress)
-    if not found.status.answered:
+    found = _with_search(by_shooting.solve, instance, progress)
+    if found.method == "shooting" or not found.status.answered:
         return replace(found, method="shooting")
     known = collocated.guessing(instance, found.times, found.x, found.lam)
     return replace(by_shooting.solve(known, progress), instance=instance)
@@ -108,11 +112,23 @@ def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solut
     return solving.solve(instance, progress)
 
 
-def _unknown(instance: Instance) -> bool:
-    """Whether vanishing costates say nothing of controls, and no guess says anything."""
-    spec, guess = instance.model.spec, instance.guess
-    known = all(name in guess.state and name in guess.costate for name in spec.state_names)
-    return (spec.directional or spec.stationary) and not (known or spec.in_arcs or instance.solver.free_angles)
+def _with_search(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
+    """What a solver finds from a line or a guess; else what the search finds, unless little work is asked for.
+
+    An extremal that is not accurate enough stays what was found where the search has no answer.
+    """
+    began, deadline = time.perf_counter(), deadline_of(instance)
+    found = solver(instance, progress)
+    if found.status is not Status.NOT_CONVERGED or math.isfinite(instance.work):
+        return found
+    left = hurried(instance, deadline)
+    if left is None:
+        return replace(found, status=Status.TIME_LIMIT)
+    again = solving.solve(left, progress)
+    if not again.status.answered and np.isfinite(found.x).all():
+        return found
+    again = replace(again, instance=replace(again.instance, solver=instance.solver))
+    return replace(again, wall_s=time.perf_counter() - began)
 
 
 def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:

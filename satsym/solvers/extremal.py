@@ -26,8 +26,8 @@ from satsym.status import Status
 BESIDE = 1e-9
 """Share of the duration by which nodes lie before and after a jump."""
 
-Method = Callable[[Instance, Limits, bool], Extremal]
-"""From an instance to an extremal; the last argument says whether with great effort."""
+Method = Callable[[Instance, Limits], Extremal]
+"""From an instance to an extremal."""
 
 
 def without_numbers(instance: Instance, error: Exception) -> Extremal:
@@ -59,9 +59,9 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
     began = time.perf_counter()
     limits, history = watched(instance, progress)
 
-    def guarded(one: Instance, effort: bool) -> Extremal:
+    def guarded(one: Instance) -> Extremal:
         try:
-            return method(one, limits, effort)
+            return method(one, limits)
         except FAILURES as error:
             return without_numbers(one, error)
 

@@ -110,7 +110,7 @@ class Exponential(Arcs):
         return exponential(turned) if np.isfinite(turned).all() else np.full_like(turned, np.nan)
 
 
-def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+def _extremal(instance: Instance, limits: Limits) -> Extremal:
     if instance.tf is None:
         raise _refusal(instance, "its final time is free")
     problem = two_point(instance, instance.tf - instance.t0)

@@ -16,7 +16,7 @@ import numpy as np
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.cold_start.own_time import time_scale
 from satsym.solvers.iteration import Limits
 
 Answer = TypeVar("Answer")
@@ -41,27 +41,26 @@ class Best(Generic[Answer]):
 
 
 def cheapest(
-    instance: Instance, limits: Limits, solve: Callable[[Instance, bool], Answer], cost: Callable[[Answer], float]
+    instance: Instance, limits: Limits, solve: Callable[[Instance], Answer], cost: Callable[[Answer], float]
 ) -> Best[Answer]:
     """Solve with the number of turns that costs least.
 
     Parameters
     ----------
     solve, cost
-        From an instance to an answer, with great effort or not, and its cost: infinite where there is none. The
-        first number of turns is worth the effort, its neighbours are not.
+        From an instance to an answer, and its cost: infinite where there is none.
     """
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     at = _natural(instance, angles)
     if not angles:
-        return Best(solve(instance, True), {}, "")
+        return Best(solve(instance), {}, "")
     known: dict[tuple[int, ...], Answer] = {}
 
     def costs(turns: tuple[int, ...]) -> float:
         if turns not in known:
             if known and limits.expired:
                 return math.inf
-            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))), not known)
+            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))))
         return cost(known[turns])
 
     path = [costs(at)]

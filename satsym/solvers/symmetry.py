@@ -1,4 +1,4 @@
-"""Rotations under which a motion without control looks the same, found from its rates; and spirals made of them.
+"""Rotations under which a motion without control looks the same, found from its rates.
 
 A linear map G generates such a rotation if G f(x) = f_x(x) G x for all states: then exp(phi G) maps motions into
 motions, and the angular momentum about its axis is conserved. These equations are linear in G, so a few states drawn
@@ -20,8 +20,6 @@ from satsym.arrays import Array
 from satsym.control_set import Row
 from satsym.instance import Instance
 from satsym.kernels import Kernels
-from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.scaling import straight
 
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
@@ -198,109 +196,6 @@ def _generators(model: Kernels, t0: float, about: Row, sizes: Row, parameters: R
     _, values, basis = np.linalg.svd(np.linalg.qr(rows / entries, mode="r"))
     found = (basis[values <= PERTURBED * values[0]] / entries).reshape(-1, n, n)
     return found if len(found) else None
-
-
-def turns(around: Rotation, states: Array) -> float:
-    """How many times a motion (n, M) goes round, by the phase of its largest rotating component."""
-    parts = (around.inverse @ states)[np.abs(around.angular.imag - 1.0) < 0.5]
-    if not len(parts):
-        return 0.0
-    largest = parts[int(np.argmax(np.abs(parts).min(axis=1)))]
-    return float(np.unwrap(np.angle(largest))[-1] - np.angle(largest[0])) / (TURN)
-
-
-@dataclass(frozen=True, eq=False)
-class Spiral:
-    """A path that turns with the motion to the given end."""
-
-    turns: float
-    """How often it goes round."""
-    path: States
-    """Of scaled states."""
-
-
-def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
-    """Paths that turn with the motion from the start to the given end, by their turns; the likeliest first.
-
-    Empty where the motion has no such rotation, not all that it moves is given at the end, or the duration is free.
-
-    Parameters
-    ----------
-    most
-        How many at most.
-    around
-        The rotation, where it is known.
-    """
-    if problem.free_time or not problem.fixed.any():
-        return []
-    around = around or rotation(problem.instance)
-    if around is None or not problem.fixed[around.moved].all():
-        return []
-    start, end = (column[:, None] * problem.scale.state[:, None] for column in straight(problem).T)
-    back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, TURN, ANGLES, endpoint=False))
-    size = np.sqrt(around.vectors @ (start**2 + end**2)) + 1e-300  # of vectors, not of their components
-    best = TURN / ANGLES * int(np.argmin((((back - start) / size) ** 2).sum(axis=0)))
-    first, last = _rate(problem.instance, around, start), _rate(problem.instance, around, end)
-    mean = (first + last) / 2.0
-    if not (mean > 0.0 and np.isfinite(mean)):
-        return []
-    natural = mean * problem.duration
-    nearest = round((natural - best) / (TURN))
-    angles = best + TURN * np.arange(nearest - most, nearest + most + 1)
-    likeliest = angles[np.argsort(np.abs(angles - natural), kind="stable")][:most].tolist()
-    between = _Between(problem, around, start, end, (first, last))
-
-    return [Spiral(angle / TURN, between.spiral(angle)) for angle in likeliest]
-
-
-@dataclass(frozen=True, eq=False)
-class _Between:
-    """Ends of spirals, shape (n, 1), and the rates of the free motion there."""
-
-    problem: TwoPoint
-    around: Rotation
-    start: Array
-    end: Array
-    rates: tuple[float, float]
-
-    def spiral(self, angle: float) -> States:
-        """The path through the steady rotation that turns as fast as it must; its own rate changes evenly."""
-        duration, unit = self.problem.duration, self.problem.scale.state[:, None]
-        unturned = self.around.turned(self.end, -angle)
-        steady = self._steady(angle / duration, (self.start + unturned) / 2.0)
-        middle = (self.start + unturned) / 2.0 if steady is None else steady
-        first, last = (rate * duration for rate in self.rates)
-        bulge = 6.0 * (angle - (first + last) / 2.0)
-
-        def path(tau: Array) -> Array:
-            swept = first * tau + (last - first) * tau**2 / 2.0 + bulge * (tau**2 / 2.0 - tau**3 / 3.0)
-            near = self.start * (1.0 - tau) * (1.0 - 2.0 * tau), middle * 4.0 * tau * (1.0 - tau)
-            return self.around.turned(sum(near) + unturned * tau * (2.0 * tau - 1.0), swept) / unit
-
-        return path
-
-    def _steady(self, rate: float, state: Array) -> Array | None:
-        """The state next to another one whose free motion is the rotation at that rate, if there is one."""
-        unit, turning = self.problem.scale.state[:, None], rate * self.around.matrix
-        instance = self.problem.instance
-        model = instance.model
-        for _ in range(CORRECTIONS):
-            rates, slopes = _motion(model, instance.t0, instance.parameters, state)
-            missing = (rates - turning @ state) / unit
-            if not np.isfinite(missing).all():
-                return None
-            if np.abs(missing).max() <= CLOSE * abs(rate):
-                return state
-            by_state = (slopes[:, :, 0] - turning) * unit.T / unit
-            state = state - unit * np.linalg.lstsq(by_state, missing, rcond=1e-9)[0]
-        return None
-
-
-def _rate(instance: Instance, around: Rotation, state: Array) -> float:
-    """The angular rate of the free motion at a state."""
-    rates, _ = _motion(instance.model, instance.t0, instance.parameters, state)
-    turning = around.generator(state)
-    return float((turning * rates).sum() / max(float((turning**2).sum()), 1e-300))
 
 
 def _motion(model: Kernels, t0: float, parameters: Row, x: Array) -> tuple[Array, Array]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -9,13 +11,17 @@ from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import on_mesh
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.jumping import found, located
 from satsym.solvers.collocation.attempt import Attempt, Reason
+from satsym.solvers.collocation.continuation import settled
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
+from satsym.solvers.failures import tried
+from satsym.solvers.iteration import Limits
 
 MESHES = (30, 60, 120)
 """Intervals that are tried."""
@@ -46,7 +52,17 @@ def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
     return None
 
 
-def from_guess(instance: Instance) -> tuple[TwoPoint, Start] | None:
+def _settled(problem: TwoPoint, z: Array, limits: Limits) -> Attempt | None:
+    """The extremal with nodes where bounds are met; ``None`` where these do not stand still."""
+    tau = np.linspace(0.0, 1.0, z.shape[1])
+    curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+    found = tried(lambda: settled(problem, curve, STAGES, max(len(curve.mesh) - 1, MESHES[0]), limits))
+    if found is None or not found.solved or not found.curve.in_domain(problem.positive):
+        return None
+    return replace(found, cost=System(problem, found.curve.mesh, found.curve.order).cost(found.curve))
+
+
+def from_guess(instance: Instance, limits: Limits) -> tuple[TwoPoint, Start] | None:
     """The problem and the extremal next to a guess of all states and costates; ``None`` where that is not guessed."""
     names, guess = instance.model.spec.state_names, instance.guess
     end = instance.tf_guess if instance.tf is None else instance.tf
@@ -54,6 +70,7 @@ def from_guess(instance: Instance) -> tuple[TwoPoint, Start] | None:
         return None
     problem = two_point(instance, end - instance.t0)
     even, both = np.linspace(0.0, 1.0, SAMPLES), (guess.state, guess.costate)
-    z = np.array([paths.series(table[name], even) for table in both for name in names])
-    found = by_newton(problem, z / problem.scale.both)
+    z = np.array([paths.series(table[name], even) for table in both for name in names]) / problem.scale.both
+    found = _settled(problem, z, limits) if problem.control_set.bounded else None
+    found = found or by_newton(problem, z)
     return None if found is None else (problem, Start(found, Origin.GUESS, found.iterations, bounded=True))

@@ -13,12 +13,6 @@ class Origin(str, Enum):
 
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
-    SPIRAL = "spiral of {:.2g} turns"
-    PROBLEMS = "path of problems"
-    DRAWN = "drawn path"
-    STRAIGHT_PROBLEMS = "straight path of problems"
-    DURATIONS = "path of durations"
-    ENDS = "path of ends"
     NO_MINIMUM = "straight line, but no minimum was found"
     LAST_ANSWER = "last answer"
     COLD_START = "cold start"
@@ -34,8 +28,6 @@ class Start:
     """From where it was found."""
     steps: int
     """Steps of all attempts."""
-    turns: float = 0.0
-    """Of the spiral."""
     bounded: bool = False
     """Whether it was looked for within the bounds at once."""
     saddle: Attempt | None = None
@@ -44,4 +36,4 @@ class Start:
     @property
     def named(self) -> str:
         """The origin in words."""
-        return self.origin.value.format(self.turns)
+        return self.origin.value

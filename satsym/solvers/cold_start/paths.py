@@ -48,24 +48,6 @@ def first(problem: TwoPoint) -> States:
     return overlaid
 
 
-def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> States:
-    """The path where one begins, with waves that are drawn; states that must be positive stay so."""
-    path = first(problem)
-    waves = amplitude * rng.standard_normal((problem.states, WAVES)) / np.arange(1.0, WAVES + 1.0)
-
-    def drawn(tau: Array) -> Array:
-        states = path(tau)
-        numbers = np.arange(1.0, WAVES + 1.0)
-        both, one = (np.sin(np.pi * np.outer(row, tau)) for row in (numbers, numbers - 0.5))
-        added = np.where(problem.fixed[:, None], waves @ both, waves @ one)  # a free end moves as well
-        positive = list(problem.positive)
-        found = states + added
-        found[positive] = states[positive] * np.exp(added[positive])
-        return np.asarray(found)
-
-    return drawn
-
-
 def start(problem: TwoPoint, path: States | None = None) -> Curve:
     """Where to begin as a curve, with the costates that are guessed.
 
@@ -88,12 +70,6 @@ def series(values: Sequence[float], tau: Array) -> Array:
     """Values evenly spaced over [0, 1], straight lines between."""
     found: Array = np.interp(tau, np.linspace(0.0, 1.0, len(values)), values)
     return found
-
-
-def coasting_to_the_end(problem: TwoPoint) -> States | None:
-    """The motion without control that arrives where the end should be, if there is one."""
-    end = _end_without_costates(problem)
-    return None if end is None else _coasting(problem, end, backwards=True)
 
 
 def through(problem: TwoPoint, states: Array) -> States:
@@ -161,23 +137,3 @@ def _steps(problem: TwoPoint, start: tuple[float, ...], backwards: bool) -> int:
     except FAILURES:
         return STEPS
     return int(min(max(FEWEST, np.ceil(QUICK * turned)), STEPS))
-
-
-def _end_without_costates(problem: TwoPoint) -> Array | None:
-    """A final state where costates may be zero: where a state is free, the terminal cost must not depend on it."""
-    instance, free = problem.instance, ~problem.fixed
-    if problem.free_time or instance.model.spec.multipliers:
-        return None
-    end = straight(problem)[:, 1] * problem.scale.state
-    candidates = [end]
-    tf = instance.t0 + problem.duration
-    if instance.model.spec.has_reference:
-        curve = np.array(instance.model.reference(tf, instance.parameters))
-        candidates.insert(0, np.where(free, curve, end))
-    for candidate in candidates:
-        gradient = instance.model.terminal_gradient(tf, tuple(candidate.tolist()), instance.parameters)
-        slopes = np.array(gradient) * problem.scale.state / problem.scale.cost
-        if not (np.abs(slopes[free]) > 1e-12).any():
-            found: Array = candidate / problem.scale.state
-            return found
-    return None

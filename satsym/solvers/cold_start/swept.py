@@ -1,14 +1,12 @@
-"""From controls at the corners of their box, swept until they settle, to extremals within the bounds.
+"""From a control that is guessed, swept until it settles, to the extremal within the bounds.
 
-Where nothing is asked of the end, costates belong to every control, and a sweep begins wherever one likes: also where
-the straight line and all that starts from it see nothing but a maximum (a reward at the end, say).
+Where nothing is asked of the end, costates belong to every control, and a sweep begins wherever one likes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import chain, islice, product
 
 import msgspec
 import numpy as np
@@ -28,37 +26,6 @@ STEPS, SWEEPS = 200, 60
 
 ROUGH = 1e-5
 """Residual at which sweeps end: Newton's method goes on from there."""
-
-MOST = 8
-"""Corners that are tried."""
-
-
-def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
-    """An extremal from every corner of the box, or ``None`` where that leads to none; nothing where that cannot be.
-
-    Parameters
-    ----------
-    problem
-        With its bounds, a given duration, and an end of which nothing is asked.
-    """
-    for control in constants(problem):
-        if limits.expired:
-            return
-        yield from_control(problem, control, limits)
-
-
-def constants(problem: TwoPoint, between: Sequence[float] = ()) -> Iterator[dict[str, tuple[float]]]:
-    """Constant controls by name at corners of their box, and all of them at the same share of the way between bounds.
-
-    None where sweeps cannot begin with them: the end or the time asks for something, or the controls have no box.
-    """
-    instance = problem.instance
-    low, high = np.array(instance.lower), np.array(instance.upper)
-    if not loose(problem) or instance.model.spec.control_set != "box" or not np.isfinite([low, high]).all():
-        return
-    corners = islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST)
-    for values in chain(corners, ((low + share * (high - low)).tolist() for share in between)):
-        yield {name: (value,) for name, value in zip(instance.model.spec.control_names, values, strict=True)}
 
 
 def loose(problem: TwoPoint) -> bool:

@@ -14,25 +14,19 @@ from functools import cached_property
 import numpy as np
 
 from satsym.solvers.collocation import mesh as meshes
-from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.sqp import descended
 from satsym.solvers.collocation.system import Residual, System
-from satsym.solvers.iteration import Limits
 
 Problems = Callable[[float], TwoPoint]
 """The problem at a share of the way: given values at the ends change, all else stays; at one, the problem itself."""
 
 FIRST, SHORTEST = 0.02, 1e-5
 """Lengths of a step, in shares of the way where only these change: the first one, and where it is given up."""
-
-MOST, OUTSIDE = 600, 0.5
-"""Linearisations, and by how much the share may leave the way."""
 
 CORRECTIONS, TRUSTED, SMALLEST = 7, 0.3, 1e-4
 """Newton corrections of a step, the largest size of one, and the size at which they end."""
@@ -57,38 +51,6 @@ class Direction:
     def times(self, factor: float) -> Direction:
         """The same direction, longer or shorter."""
         return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.fraction)
-
-
-def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
-    """Follow extremals to a minimum at the end of a path of problems.
-
-    Where none is found there, the minimisation goes on from the last minimum to whatever lies below.
-
-    Parameters
-    ----------
-    start
-        A minimum at its beginning.
-    path
-        What it is called where it leads nowhere.
-    """
-    problem, steps = at(1.0), 0
-    last = Point(at, 0.0, start)
-    for point in extremals(at, start):
-        steps += point.taken
-        if point.fraction == 1.0:
-            found = descended(problem, point.curve, STAGES, 1e-7, limits)
-            steps += found.iterations
-            if found.minimum:
-                return replace(found, iterations=steps, hard=True)
-        if point.fraction > last.fraction and point.minimum:
-            last = point
-        if steps >= MOST or abs(point.fraction - 0.5) > 0.5 + OUTSIDE or limits.expired:
-            break
-    below = descended(problem, last.curve, STAGES, 1e-7, limits)
-    steps += below.iterations
-    if below.minimum:
-        return replace(below, iterations=steps, hard=True)
-    return Attempt(last.curve, Reason.PATH_ENDS, steps, float("inf"), facts=(path, last.fraction))
 
 
 def extremals(at: Problems, start: Curve) -> Iterator[Point]:

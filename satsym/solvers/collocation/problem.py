@@ -7,7 +7,6 @@ costates at most so over the horizon.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -66,11 +65,6 @@ class TwoPoint:
     """Units."""
     relaxation: float = 0.0
     """By how much every bound of the control is moved outwards; infinite: no bounds."""
-    softness: float = 0.0
-    """Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That is
-    the law where exceeding them costs as its square, so a soft problem is one of optimal control as well."""
-    forcing: Callable[[Array], Array] | None = None
-    """What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default."""
 
     @cached_property
     def states(self) -> int:
@@ -127,14 +121,6 @@ class TwoPoint:
         moved = self.instance.control_set.relaxed(by)
         return self if moved == self.control_set else replace(self, relaxation=by)
 
-    def softened(self, softness: float) -> TwoPoint:
-        """The same problem with bounds of another softness."""
-        return replace(self, softness=softness)
-
-    def forced(self, forcing: Callable[[Array], Array], fraction: float) -> TwoPoint:
-        """The same problem with a share of a forcing."""
-        return replace(self, forcing=(lambda tau: fraction * forcing(tau)) if fraction else None)
-
     def elapsed(self, theta: Array) -> float:
         """The duration."""
         return float(theta[-1]) if self.free_time else self.duration
@@ -146,10 +132,7 @@ class TwoPoint:
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
-        found: Array = self._blended(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
-        if self.forcing is not None:
-            found[: self.states] += self.forcing(tau)
-        return found
+        return self._of(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
 
     def rates_beyond(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates if no bound held the control; where H may have no minimum then, by a step of Newton's method."""
@@ -164,17 +147,13 @@ class TwoPoint:
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
         shape = (len(z), *z.shape)
-        return self._blended(self.instance.model.canonical_jacobian_batch, shape, tau, z, theta) * self.scale.ratio
+        return self._of(self.instance.model.canonical_jacobian_batch, shape, tau, z, theta) * self.scale.ratio
 
-    def _blended(self, kernel: Any, shape: tuple[int, ...], tau: Array, z: Array, theta: Array) -> Array:
-        """A kernel of the canonical equations; with soft bounds a mean: they are affine in the control."""
+    def _of(self, kernel: Any, shape: tuple[int, ...], tau: Array, z: Array, theta: Array) -> Array:
+        """Values of a kernel of the canonical equations."""
         arguments = self._arguments(tau, z, theta)
         found = np.empty(shape, z.dtype)  # given, so that kernels need not find out shapes and types
         kernel(*arguments, self.control_set.arguments, out=found)
-        if self.softness:
-            without = np.empty(shape, z.dtype)
-            kernel(*arguments, self.instance.control_set.without_bounds.arguments, out=without)
-            found += self.softness * (without - found)
         return found
 
     def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
@@ -207,15 +186,9 @@ class TwoPoint:
         if model.spec.directional:
             return np.asarray(model.regularised_cost_batch(t, x, lam, p, self.control_set.arguments)) / self.scale.cost
         u = self._law(t, x, lam, p, self.control_set)
-        beyond = 0.0
-        if self.softness:
-            over = self._law(t, x, lam, p, self.instance.control_set.without_bounds) - u
-            weight = np.asarray(model.control_hessian_batch(t, x, u, lam, p))
-            beyond = self.softness * (1.0 - self.softness) / 2.0 * np.einsum("ik,ijk,jk->k", over, weight, over)
-            u = u + self.softness * over
         found = np.empty(x.shape[1:], x.dtype)
         model.running_cost_batch(t, x, u, p, out=found)
-        return np.asarray((found + beyond) / self.scale.cost)
+        return np.asarray(found / self.scale.cost)
 
     def _law(self, t: Array, x: Array, lam: Array, p: Row, within: ControlSet) -> Array:
         """The control law within a set, by its batch form, shape (m, N)."""

@@ -18,12 +18,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
-from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
@@ -289,19 +287,3 @@ def _corrected(at: _Merit, trial: _Trial) -> Curve | None:
         if not (corrected.stages[i] > 0.1 * at.curve.stages[i]).all():
             return None
     return corrected
-
-
-ROUNDS, STEPS = 6, 60
-"""Minimisations, and steps of each."""
-
-
-def descended(problem: TwoPoint, curve: Curve, stages: int, tolerance: float, limits: Limits) -> Attempt:
-    """Minimise from a neighbour's minimum. Where there is none nearby the way may be long, and need other meshes."""
-    steps = 0
-    for _ in range(ROUNDS):
-        curve = curve.on(meshes.laid(problem, curve), stages)
-        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, meshes.COARSEST)
-        steps, curve = steps + found.iterations, found.curve
-        if limits.expired or found.reason not in (Reason.OUTGROWN, Reason.NO_CONVERGENCE):
-            break
-    return replace(found, iterations=steps)

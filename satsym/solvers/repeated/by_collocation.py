@@ -23,6 +23,7 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search.solving import guessed
+from satsym.status import Status
 
 
 class ByCollocation:
@@ -65,12 +66,11 @@ class ByCollocation:
         return self._sound(problem, found, limits) if found else None
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
-        """A cold start, with a mesh and scales of its own."""
-
-        def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-            return two_point.explained(self._within(problem, start, limits), limits)
-
-        return two_point.from_cold_start(guessed(case, limits), limits, True, accurate)
+        """A cold start, with a mesh and scales of its own; from the search where that leads nowhere."""
+        found = two_point.from_cold_start(case, limits, self._within)
+        if found.status is not Status.NOT_CONVERGED:
+            return found
+        return two_point.from_cold_start(guessed(case, limits), limits, self._within)
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
         """Nothing is missing."""
@@ -82,7 +82,7 @@ class ByCollocation:
         return extremal if extremal.status.answered else None
 
     def _within(self, problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-        extremal = two_point.within(problem, start, limits)
+        extremal = two_point.accurate(problem, start, limits)
         if extremal.status.answered:
             self._good = problem, start.found.curve
         return extremal

@@ -17,6 +17,7 @@ from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import linearised
 from satsym.solvers.shooting.quick import quick_newton
 from satsym.solvers.shooting.solving import ACCURACY, converged, extremal, without_guess
+from satsym.status import Status
 
 Shot = tuple[Arcs, float, int]
 """Arcs that meet, with their error and the iterations."""
@@ -52,8 +53,10 @@ class ByShooting:
         return self._kept(self._shot(problem, found[0]) if problem.control_set.bounded else found)
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
-        """A cold start, which also decides on arcs and steps."""
-        found = without_guess(guessed(case, limits), limits, True)
+        """A cold start, which also decides on arcs and steps; from the search where that leads nowhere."""
+        found = without_guess(case, limits)
+        if found.status is Status.NOT_CONVERGED:
+            found = without_guess(guessed(case, limits), limits)
         if found.status.answered and isinstance(found.path, Arcs):
             self._good, self._steps = found.path, max(found.path.steps // 2, 1)
         return found

@@ -171,7 +171,7 @@ class Repeated:
         if not answer.status.answered:
             raise ValueError(f"no answer: {answer.message}")
 
-        def method(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+        def method(instance: Instance, limits: Limits) -> Extremal:
             return self._means.full(answer.extremal, limits)
 
         return solved(answer.extremal.problem.instance, None, self._means.name, method)

@@ -16,6 +16,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import order
 from satsym.solvers.search.feasibility import contradiction
+from satsym.solvers.switching.linear.by_reach import unreachable
 from satsym.solvers.switching.solving import NOT_FOUND
 from satsym.solvers.switching.throttled import switched
 from satsym.status import Status
@@ -36,6 +37,8 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     if limits.late:
         return Status.TIME_LIMIT, "time was up before an extremal was found"
     message, limits = NOT_FOUND, replace(limits, meter=Meter())
+    if instance.tf is not None and (separated := tried(partial(unreachable, instance, limits))):
+        return Status.INFEASIBLE, separated
     if stated_constraints(instance.model.spec):
         against = tried(partial(contradiction, instance, limits))
         if against:

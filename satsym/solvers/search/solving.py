@@ -7,7 +7,6 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,9 +25,6 @@ from satsym.solvers.search.reading import boundaries, collocated, extremals, lev
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.refusals import refuse_angles
 
-if TYPE_CHECKING:
-    from satsym.spec import ProblemSpec
-
 WORK = 4_000_000
 """Unknowns times iterations that a search may take."""
 
@@ -40,11 +36,6 @@ def applies(instance: Instance) -> bool:
     arcs = not (spec.in_arcs and (spec.throttled or instance.free))
     timed = any(one.place is Place.TIME for one in instance.free)
     return plain and arcs and not timed and not instance.continuation
-
-
-def begins(spec: ProblemSpec) -> bool:
-    """Whether methods begin with the search: with arcs, and where vanishing costates say nothing of the controls."""
-    return spec.in_arcs or spec.switching or spec.throttled or spec.directional or spec.stationary
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
@@ -77,9 +68,8 @@ def searched(instance: Instance, limits: Limits) -> Solution | None:
 
 
 def guessed(instance: Instance, limits: Limits) -> Instance:
-    """An instance with states and costates guessed by the search, where vanishing costates say nothing of controls."""
-    spec = instance.model.spec
-    if not (spec.directional or spec.stationary) or instance.guess:
+    """An instance with states and costates guessed by the search, unless it has a guess or the search finds nothing."""
+    if instance.guess:
         return instance
     found = searched(instance, replace(limits, work=WORK))
     return instance if found is None else collocated.guessing(instance, found.times, found.x, found.lam)

@@ -20,7 +20,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs, sufficient
 from satsym.solvers.shooting.newton import Outcome, doubled, newton
 from satsym.solvers.shooting.runge_kutta import ORDER
-from satsym.solvers.two_point import explained, from_cold_start, inside, unfinished
+from satsym.solvers.two_point import from_cold_start, inside, unfinished
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -63,9 +63,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     return solved(instance, progress, "shooting", without_guess)
 
 
-def without_guess(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+def without_guess(instance: Instance, limits: Limits) -> Extremal:
     """The extremal to which a cold start leads; see :func:`satsym.solvers.two_point.from_cold_start`."""
-    return from_cold_start(instance, limits, effort, _accurate)
+    return from_cold_start(instance, limits, _accurate)
 
 
 def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
@@ -116,8 +116,8 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     bounded = inside(problem, start, start.found.curve, limits)
     steps = start.steps + bounded.iterations
     if bounded.reason is Reason.BLOCKED:
-        return explained(unfinished(problem, bounded.curve, bounded.message, steps, limits), limits)
-    found = explained(extremal(problem, bounded.curve, limits), limits)
+        return unfinished(problem, bounded.curve, bounded.message, steps, limits)
+    found = extremal(problem, bounded.curve, limits)
     return replace(found, iterations=steps + found.iterations)
 
 
