@@ -17,7 +17,7 @@ from sympy import sympify
 
 import satsym
 from satsym.solution import Event, Solution
-from satsym.solvers import two_point
+from satsym.solvers import by_search
 from satsym.solvers.by_search import boundary_arcs
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained import second_variation
@@ -162,7 +162,7 @@ def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, min
 def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end():
     """x'' = -q x with three conjugate points: without the constraint the cost is unbounded below."""
     given = in_the_plane().with_(parameters={"q": 100.0}, initial={"x": 0.3, "y": 5.0}, final={"x": 0.3, "y": 5.0})
-    stationary = two_point.solve(given.case)
+    stationary = by_search.collocation(given.case)
     assert stationary.status is Status.CONVERGED
     assert fall(stationary) is not None
     assert bottomless(stationary) is None

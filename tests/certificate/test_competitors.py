@@ -19,15 +19,8 @@ from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.comparison import UNCOMPARED, Compared, Comparison
 from satsym.solvers.certificate.competitors import none_conceivable
 from satsym.solvers.certificate.verdict import examined
-from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.path_of_problems import along_turns, fading
-from satsym.solvers.collocation.curve import Curve
-from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.collocation.system import System
 from satsym.solvers.improving import improved, starting_from
-from satsym.solvers.iteration import Limits
-from satsym.solvers.symmetry import rotation, spirals
+from satsym.solvers.symmetry import rotation
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -125,39 +118,6 @@ def test_a_transfer_in_cartesian_coordinates_makes_the_revolutions_that_cost_lea
     assert int(np.argmin(turns)) == 1
     assert certificate(found).verdict == "certified"
     assert Kind.REVOLUTIONS in compared(found)
-
-
-def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path) -> None:
-    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = 0.0\ny = 1.3\nv_x = -0.8\nv_y = 0.1\n"
-    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 1.0\ntf = 12.0\n"), 11.0)
-    for spiral in spirals(problem, 4):
-        path = spiral.path(np.linspace(0.0, 1.0, 2001)) * problem.scale.state[:, None]
-        assert path[:, 0] == pytest.approx([1.0, 0.0, 0.0, 1.0], abs=1e-9)
-        assert path[:, -1] == pytest.approx([0.0, 1.3, -0.8, 0.1], abs=1e-9)
-        angle = np.unwrap(np.arctan2(path[1], path[0]))
-        assert (angle[-1] - angle[0]) / (2.0 * np.pi) == pytest.approx(spiral.turns, abs=0.03)
-
-
-@pytest.mark.study
-def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns(tmp_path: Path) -> None:
-    """Polar coordinates have the same minima, by final angle; with all of the force the spiral is a motion."""
-    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"
-    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).relaxed(np.inf)
-    for spiral in spirals(problem, 3):
-        curve = paths.curve(problem, spiral.path)
-        forced, free = (fading(problem, spiral)(fraction) for fraction in (0.0, 1.0))
-        assert 1e3 * defect(forced, curve) < defect(free, curve) == defect(problem, curve)
-        found = along_turns(problem, spiral, Limits(1, np.inf))
-        end = {"r": 1.2, "r_dot": 0.0, "theta": spiral.turns * 2.0 * np.pi, "theta_dot": 0.75}
-        polar = replace(instance.load("return-to-orbit"), initial=(1.0, 0.0, 0.0, 1.0), final=end, tf=10.0)
-        wide = replace(polar, lower=(-np.inf,) * 2, upper=(np.inf,) * 2)
-        assert found.cost * problem.scale.cost == pytest.approx(solve(wide).objective, rel=1e-5)
-
-
-def defect(problem: TwoPoint, curve: Curve) -> float:
-    """How far a curve is from a motion."""
-    system = System(problem, curve.mesh, curve.order)
-    return float(system.infeasibility(system.residual(curve)).sum())
 
 
 @pytest.mark.slow

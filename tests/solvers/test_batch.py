@@ -18,8 +18,8 @@ from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.motion import motion
 from satsym.solvers.batch.newton import Nodes, Outcome, transitions
 from satsym.solvers.batch.solving import solved, solved_together
+from satsym.solvers.by_search import collocation as solve
 from satsym.solvers.certificate.corners import positive
-from satsym.solvers.two_point import solve
 from tests.certificate.test_certificate import oscillator
 
 BACKENDS = [False, pytest.param(True, marks=pytest.mark.slow)]

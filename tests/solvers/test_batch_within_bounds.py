@@ -17,8 +17,8 @@ from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes, Outcome
 from satsym.solvers.batch.solving import solved_together
+from satsym.solvers.by_search import collocation as solve
 from satsym.solvers.certificate import certify
-from satsym.solvers.two_point import solve
 from satsym.status import Verdict
 from tests.certificate.test_certificate import oscillator
 

@@ -21,11 +21,11 @@ from satsym.instance.ends import Side
 from satsym.report.results import trajectory
 from satsym.report.results.objects import solution_object
 from satsym.solvers import end_limits
+from satsym.solvers.by_search import collocation
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.end_limits import pushes
 from satsym.solvers.end_limits import BUDGETS
 from satsym.solvers.iteration import unsolved
-from satsym.solvers.two_point import solve as collocation
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t

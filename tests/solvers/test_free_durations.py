@@ -19,7 +19,7 @@ from sympy import Rational, nsolve
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers import solve, two_point
+from satsym.solvers import by_search, solve
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.cases import with_parameters
@@ -49,7 +49,7 @@ def weighed(name: str, c0: float, guess: float | None = None) -> Instance:
 @cache
 def effort(name: str, tf: float) -> float:
     """The least cost with the final time given, without a weight on it."""
-    found = two_point.solve(replace(weighed(name, 0.0), tf=tf))
+    found = by_search.collocation(replace(weighed(name, 0.0), tf=tf))
     return found.objective if found.status is Status.CONVERGED else math.inf
 
 
@@ -82,10 +82,10 @@ def assert_least(found: Solution, name: str, c0: float) -> None:
     ],
 )
 def test_every_weight_of_time_gives_the_minimum_from_every_guess(name, c0):
-    best = two_point.solve(weighed(name, c0))
+    best = by_search.collocation(weighed(name, c0))
     assert_least(best, name, c0)
     for fraction in FRACTIONS[::3]:
-        found = two_point.solve(weighed(name, c0, fraction * float(best.times[-1])))
+        found = by_search.collocation(weighed(name, c0, fraction * float(best.times[-1])))
         assert found.status is Status.CONVERGED, found.message
         assert found.times[-1] == pytest.approx(best.times[-1], rel=1e-6)
         assert found.objective == pytest.approx(best.objective, rel=1e-9)
@@ -100,7 +100,7 @@ def test_every_weight_of_time_gives_the_minimum_from_every_guess(name, c0):
 )
 def test_the_best_final_time_is_what_golden_section_finds(name, c0, near):
     tf = golden(lambda tf: c0 * tf + effort(name, tf), *near, 4e-3)
-    found = two_point.solve(weighed(name, c0))
+    found = by_search.collocation(weighed(name, c0))
     assert found.times[-1] == pytest.approx(tf, abs=4e-3)
     assert_least(found, name, c0)
 
@@ -117,13 +117,13 @@ def test_free_ends_have_a_best_final_time_where_moving_pays(c0, fraction):
 @pytest.mark.parametrize("c0", [1.01 * UNMOVED, WEIGHTS[4], 1.0, 100.0])
 def test_free_ends_have_none_where_time_costs_more_than_moving_saves(c0):
     for guess in (None, 0.3):
-        found = two_point.solve(weighed(FIVE, c0, guess))
+        found = by_search.collocation(weighed(FIVE, c0, guess))
         assert found.status is Status.NO_MINIMISER
         assert "shorter is always cheaper" in found.message
 
 
 def test_free_ends_have_a_short_best_time_where_moving_just_pays():
-    found = two_point.solve(weighed(FIVE, 0.99 * UNMOVED))
+    found = by_search.collocation(weighed(FIVE, 0.99 * UNMOVED))
     assert found.status is Status.CONVERGED
     assert found.times[-1] < 0.05
     # What staying costs: S of the initial state, k1 (r - 1)^2 / 2 + k4 (theta_dot - 1)^2 / 2.
@@ -155,11 +155,11 @@ def test_a_minimum_just_beyond_the_longest_duration_of_the_scan_is_found(guess):
     initial = (0.998493, -0.014321, -0.046177, 1.003848)
     final = {"r": 1.0, "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0}
     case = replace(weighed(FOUR, 0.002, guess), initial=initial, final=final)
-    found = two_point.solve(case)
+    found = by_search.collocation(case)
     assert found.status is Status.CONVERGED
 
     def cost(tf: float) -> float:
-        return two_point.solve(replace(case, tf=tf, tf_guess=None)).objective
+        return by_search.collocation(replace(case, tf=tf, tf_guess=None)).objective
 
     tf = golden(cost, 1.6, 2.4, 2e-3)
     assert found.times[-1] == pytest.approx(tf, abs=2e-3)
@@ -168,10 +168,10 @@ def test_a_minimum_just_beyond_the_longest_duration_of_the_scan_is_found(guess):
 
 @pytest.mark.parametrize("guess", [0.05, 60.0])
 def test_a_guess_that_leads_nowhere_does_no_harm(guess):
-    found = two_point.solve(weighed(TWO, 0.07, guess))
+    found = by_search.collocation(weighed(TWO, 0.07, guess))
     assert_least(found, TWO, 0.07)
 
 
 def test_without_a_weight_on_time_nothing_is_said_to_be_cheaper_when_shorter():
     for name in (TWO, FOUR):
-        assert "shorter" not in two_point.solve(weighed(name, 0.0)).message
+        assert "shorter" not in by_search.collocation(weighed(name, 0.0)).message

@@ -19,8 +19,8 @@ from sympy import Expr, exp, sin, sympify
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
+from satsym.solvers import by_search, solve
 from satsym.solvers import linear as closed_form
-from satsym.solvers import solve, two_point
 from satsym.spec import ControlSetKind, Variable
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, symbols_of, t
@@ -114,7 +114,7 @@ def test_the_gramian_says_the_same(oscillator: Instance, start: Any, end: Any, t
 
 
 def test_collocation_agrees(oscillator: Instance):
-    mine, other = linear(oscillator), two_point.solve(oscillator)
+    mine, other = linear(oscillator), by_search.collocation(oscillator)
     assert mine.objective == pytest.approx(other.objective, rel=1e-10)
     assert mine.lam[:, 0] == pytest.approx(other.lam[:, 0], rel=1e-10)
 

@@ -11,7 +11,7 @@ import pytest
 
 from satsym import instance
 from satsym.solution import Solution
-from satsym.solvers import shooting, two_point
+from satsym.solvers import by_search
 from satsym.solvers.certificate import certify
 from satsym.solvers.repeated import Answer, Repeated
 from satsym.status import BadInput, Status
@@ -19,7 +19,7 @@ from tests.house.test_floors import imported_by
 from tests.support.cases import with_parameters
 
 MEANS = ("shooting", "collocation")
-OTHER = {"shooting": two_point.solve, "collocation": shooting.solve}
+OTHER = {"shooting": by_search.collocation, "collocation": by_search.shooting}
 """By what the answers of each means are checked."""
 
 
@@ -161,4 +161,4 @@ def test_other_models_as_well(name: str, nudge: float, means: str):
         initial = (case.initial[0] + sign * nudge, *case.initial[1:])
         answer = machine.solve(initial=initial)
         assert answer.origin == "last answer"
-        matches(answer, two_point.solve(replace(case, initial=initial)))
+        matches(answer, by_search.collocation(replace(case, initial=initial)))

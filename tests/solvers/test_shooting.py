@@ -15,7 +15,7 @@ import pytest
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers import shooting, solve, two_point
+from satsym.solvers import by_search, shooting, solve
 from satsym.solvers.certificate.conditions import boundary_residual
 from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.cold_start import paths
@@ -60,7 +60,7 @@ def again(found: Solution) -> float:
 @pytest.mark.parametrize("name", [*ORBIT, *GEO, *ENDS])
 def test_it_finds_what_collocation_finds(name: str):
     """The rounding of 42164 km is 1e-12 of the 5 km that the geostationary satellite is off."""
-    mine, other = shot(instance.load(name)), two_point.solve(instance.load(name))
+    mine, other = shot(instance.load(name)), by_search.collocation(instance.load(name))
     assert mine.objective == pytest.approx(other.objective, rel=1e-10)
     assert mine.lam[:, 0] == pytest.approx(other.lam[:, 0], rel=1e-10, abs=1e-10 * np.abs(other.lam[:, 0]).max())
     assert mine.times[-1] == pytest.approx(other.times[-1], rel=1e-12)

@@ -16,7 +16,7 @@ from scipy.optimize import root
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers import solve, two_point
+from satsym.solvers import by_search, solve
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits, computed
@@ -121,7 +121,7 @@ def test_costs_are_what_other_programs_find(name, cost):
 
 
 def test_initial_costates_are_what_other_programs_find():
-    found = two_point.solve(instance.load("return-to-orbit"))
+    found = by_search.collocation(instance.load("return-to-orbit"))
     known = [0.13817547355, 0.02984866111, -0.00567694889, 0.08773937141]
     assert found.lam[:, 0] == pytest.approx(known, abs=2e-11)
 
@@ -161,7 +161,7 @@ def by_scipy(found: Solution, tf_free: bool = False) -> tuple[np.ndarray, float,
 
 @pytest.mark.parametrize("name", ["return-to-orbit", "ends-3-given-time", "ends-4-rendezvous"])
 def test_scipy_agrees(name):
-    found = two_point.solve(instance.load(name))
+    found = by_search.collocation(instance.load(name))
     costates, cost, tf = by_scipy(found, tf_free=found.instance.tf is None)
     assert found.lam[:, 0] == pytest.approx(costates, abs=1e-8)
     assert found.objective == pytest.approx(cost, rel=1e-8)
@@ -169,7 +169,7 @@ def test_scipy_agrees(name):
 
 
 def test_switching_times_are_what_arcs_with_events_give():
-    found = two_point.solve(instance.load("return-to-orbit-005"))
+    found = by_search.collocation(instance.load("return-to-orbit-005"))
     orbit = Orbit(k=(0.0, 0.0, 0.0, 0.0), lower=(-0.05, -0.05), upper=(0.05, 0.05))
     goal = np.array([1.0, 0.0, TURN, 1.0])
     start = found.lam[:, 0] * 1.001
@@ -194,7 +194,7 @@ def test_units_do_not_matter():
         lower=tuple(u / thrust for u in geo.lower),
         upper=tuple(u / thrust for u in geo.upper),
     )
-    mine, theirs = two_point.solve(geo), two_point.solve(scaled)
+    mine, theirs = by_search.collocation(geo), by_search.collocation(scaled)
     cost = thrust**2 / omega
     assert mine.objective == pytest.approx(theirs.objective * cost, rel=1e-8)
     assert mine.lam[:, 0] == pytest.approx(theirs.lam[:, 0] * cost / unit, rel=1e-6)
@@ -203,7 +203,7 @@ def test_units_do_not_matter():
 
 @pytest.mark.parametrize("name", ENDS)
 def test_each_kind_of_end_is_transversal(name):
-    found = two_point.solve(instance.load(name))
+    found = by_search.collocation(instance.load(name))
     case, p, tf = found.instance, numbers(found.instance), found.times[-1]
     assert found.status is Status.CONVERGED
     assert case.boundary_type == int(name[5])
@@ -225,22 +225,22 @@ def test_each_kind_of_end_is_transversal(name):
 
 @pytest.mark.parametrize("name", ["ends-2-given-state", "ends-4-rendezvous", "ends-5-free"])
 def test_the_free_final_time_is_the_cheapest(name):
-    found = two_point.solve(instance.load(name))
+    found = by_search.collocation(instance.load(name))
     for fraction in (0.5, 0.7, 0.97, 1.03, 1.4, 2.0):
         there = replace(found.instance, tf=float(found.times[-1]) * fraction)
-        other = two_point.solve(there)
+        other = by_search.collocation(there)
         assert other.status is not Status.CONVERGED or other.objective > found.objective
 
 
 @pytest.mark.parametrize("guess", [1.0, 4.0, 9.0])
 def test_the_guess_of_the_final_time_hardly_matters(guess):
-    found = two_point.solve(replace(instance.load("ends-4-rendezvous"), tf_guess=guess))
+    found = by_search.collocation(replace(instance.load("ends-4-rendezvous"), tf_guess=guess))
     assert found.times[-1] == pytest.approx(5.213428793, rel=1e-8)
 
 
 def test_a_bounded_control_may_come_with_a_free_final_time():
     case = replace(instance.load("ends-4-rendezvous"), lower=(-0.08, -0.08), upper=(0.08, 0.08))
-    found = two_point.solve(case)
+    found = by_search.collocation(case)
     assert found.status is Status.CONVERGED
     assert np.abs(found.u).max() <= 0.08 + 1e-12
     assert found.switching_times[1]
@@ -265,7 +265,7 @@ def test_without_a_weight_on_time_there_is_no_minimiser(free):
     assert sorted(costs, reverse=True) == costs
     assert sorted(durations) == durations
     assert len(costs) == 3
-    given = two_point.solve(replace(case, tf=durations[0]))
+    given = by_search.collocation(replace(case, tf=durations[0]))
     assert given.objective == pytest.approx(costs[0], rel=1e-3)
     assert found.certificate is None
     assert math.isnan(found.objective)
@@ -286,31 +286,31 @@ def test_where_only_time_costs_the_shortest_would_be_best():
 
 
 def test_a_final_angle_may_count_modulo_a_turn():
-    plain = two_point.solve(instance.load("ends-1-given"))
+    plain = by_search.collocation(instance.load("ends-1-given"))
     case = instance.load("ends-1-given")
     stated = {**case.final, "theta": case.final["theta"] - 2.0 * TURN}
-    found = two_point.solve(options(replace(case, final=stated), free_angles=("theta",)))
+    found = by_search.collocation(options(replace(case, final=stated), free_angles=("theta",)))
     assert found.objective == pytest.approx(plain.objective, rel=1e-9)
     assert found.x[:, 0] == pytest.approx(case.initial, abs=1e-12)
     assert found.x[2, -1] == pytest.approx(case.final["theta"], rel=1e-12)
     assert "theta ends 2 turns above what is stated; a turn less costs" in found.message
     beside = [{**case.final, "theta": case.final["theta"] + k * TURN} for k in (-1, 1)]
-    less, more = (two_point.solve(replace(case, final=final)) for final in beside)
+    less, more = (by_search.collocation(replace(case, final=final)) for final in beside)
     assert min(less.objective, more.objective) > found.objective
     assert f"a turn less costs {less.objective:.6g}, a turn more costs {more.objective:.6g}" in found.message
 
 
 def test_an_angle_that_follows_the_reference_may_lose_turns():
     case = replace(instance.load("return-to-orbit"), initial=(1.1, 0.0, TURN, 0.9))
-    plain = two_point.solve(instance.load("return-to-orbit"))
-    found = two_point.solve(options(case, free_angles=("theta",)))
+    plain = by_search.collocation(instance.load("return-to-orbit"))
+    found = by_search.collocation(options(case, free_angles=("theta",)))
     assert found.objective == pytest.approx(plain.objective, rel=1e-9)
     assert "theta ends 1 turn above" in found.message
 
 
 @pytest.mark.study
 def test_the_thesis_can_be_answered_with_thrusts_both_ways():
-    found = two_point.solve(instance.load("its-thesis-return-two-sided"))
+    found = by_search.collocation(instance.load("its-thesis-return-two-sided"))
     assert found.status is Status.CONVERGED
     assert missed(found) < 1e-8
     assert found.objective < 0.08
@@ -364,7 +364,7 @@ def test_the_time_limit_ends_the_search_for_the_nearest_end():
 @pytest.mark.parametrize("name", ["its-thesis-return", "ends-2-given-state"])
 def test_the_time_limit_is_kept(name, seconds):
     began = time.thread_time()
-    found = two_point.solve(options(instance.load(name), max_seconds=seconds))
+    found = by_search.collocation(options(instance.load(name), max_seconds=seconds))
     assert time.thread_time() - began < seconds + 2.0
     assert found.status.answered or found.status is Status.TIME_LIMIT
 
@@ -382,7 +382,7 @@ def test_methods_that_do_not_fit_are_refused(changed, words):
 
 
 def test_the_ball_is_kept_and_left_in_time():
-    found = two_point.solve(instance.load("return-to-orbit-ball"))
+    found = by_search.collocation(instance.load("return-to-orbit-ball"))
     assert found.status is Status.CONVERGED
     norm = np.hypot(*found.u)
     assert norm.max() <= 0.05 * (1.0 + 1e-12)

@@ -13,7 +13,7 @@ from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.instance.types import Guess
 from satsym.solution import Solution
-from satsym.solvers import shooting, two_point
+from satsym.solvers import by_search, shooting
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.status import Status
@@ -28,7 +28,7 @@ def starting(**changed: float) -> Instance:
     return replace(RETURN, initial=tuple(changed.get(n, x) for n, x in zip(names, RETURN.initial, strict=True)))
 
 
-@pytest.mark.parametrize("method", [two_point.solve, shooting.solve], ids=["collocation", "shooting"])
+@pytest.mark.parametrize("method", [by_search.collocation, by_search.shooting], ids=["collocation", "shooting"])
 @pytest.mark.parametrize(
     "case",
     [
@@ -48,7 +48,7 @@ def test_numbers_beyond_arithmetic_end_as_not_finite(case: Instance, method: Any
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", [two_point.solve, shooting.solve], ids=["collocation", "shooting"])
+@pytest.mark.parametrize("method", [by_search.collocation, by_search.shooting], ids=["collocation", "shooting"])
 def test_where_a_control_can_only_brake_too_much_speed_is_not_reached(method: Any) -> None:
     """The angular momentum h cannot grow, and without it growing the end asked for is out of reach.
 
@@ -80,7 +80,7 @@ def test_a_guess_is_where_the_way_begins(guess: Guess) -> None:
         for name, wanted in table.items():
             row = values[4 * k + names.index(name)]
             assert row[[0, -1]] == pytest.approx([wanted[0], wanted[-1]], rel=1e-12)
-    found = two_point.solve(case)
+    found = by_search.collocation(case)
     assert "from the guess" in found.message
     assert found.objective == pytest.approx(COST, rel=1e-10)
 
