@@ -8,6 +8,7 @@ from dataclasses import replace
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.by_newton import from_guess
+from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import from_control, loose
@@ -59,7 +60,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> Extremal:
     """Find an extremal of low order, from a guess or without bounds from a straight line, and make it accurate.
 
-    Free final times, and controls of which vanishing costates say nothing, need a guess of all states and costates.
+    Controls of which vanishing costates say nothing need a guess of all states and costates.
 
     Parameters
     ----------
@@ -67,13 +68,18 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
         When to stop, and the observer of the cost of what was found.
     """
     spec, led = instance.model.spec, from_guess(instance, limits)
-    if led is None and (spec.stationary or spec.directional or instance.tf is None):
+    duration = ""
+    if led is None and (spec.stationary or spec.directional):
         message = "no extremal is known near which Newton's method could begin: guess states and costates"
         return nothing(instance, Status.NOT_CONVERGED, message)
     if led is not None:
         problem, start = led
+    elif instance.tf is None:
+        chosen = free_duration(instance, limits)
+        if isinstance(chosen, Extremal):
+            return replace(chosen, problem=chosen.problem.relaxed(0.0))
+        problem, start, duration = chosen.problem.relaxed(0.0), chosen.start, f", {chosen.message}"
     else:
-        assert instance.tf is not None
         problem = two_point(instance, instance.tf - instance.t0)
         start = under_guess(problem, limits) or cold_start(problem, limits)
         if start.saddle is not None:
@@ -84,7 +90,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
-    return replace(found, message=f"{found.message}, from the {start.named}")
+    return replace(found, message=f"{found.message}, from the {start.named}{duration}")
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
+from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, Search
 from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
 from satsym.solvers.cold_start.own_time import long_time, own_time
 from satsym.solvers.collocation.extremal import Extremal
@@ -32,15 +32,15 @@ FLAT = 1e-12
 """Costs at all durations that differ by less, relative to the problem's own scale, leave the duration open."""
 
 
-def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Minimum | Extremal:
-    """Find the duration that costs least, without bounds, or why there is none; with effort, also by slower ways."""
+def free_duration(instance: Instance, limits: Limits) -> Minimum | Extremal:
+    """Find the duration that costs least, without bounds, or why there is none."""
     scale = time_scale(instance)
     guess = scale if instance.tf_guess is None else instance.tf_guess - instance.t0
     trials = Trials(instance, limits, guess)
-    search = Search(trials, effort, long_time(instance, scale))
-    for around, powers, quick in _plans(instance, scale, guess):
-        if not search.tries and (quick or effort):
-            search.scan(around, powers, quick)
+    search = Search(trials, long_time(instance, scale))
+    for around, powers in _plans(instance, scale, guess):
+        if not search.tries:
+            search.scan(around, powers)
     if not search.tries:
         return _unsolved(trials, limits)
     if search.flat(FLAT * trials.unit):
@@ -48,7 +48,7 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Mi
         return _none(trials, Status.NO_MINIMISER, message)
     brackets = search.brackets
     found = [minimum for minimum in (search.minimum(a, b) for a, b in brackets[:POLISHED]) if minimum]
-    best = search.confirmed(min(found, key=lambda minimum: minimum.cost)) if found else None
+    best = min(found, key=lambda minimum: minimum.cost, default=None)
     if best and search.is_cheapest(best, FLAT * trials.unit):
         others = f"cheapest of {len(brackets)} minima over the duration" if len(brackets) > 1 else "minimum over time"
         return replace(best, message=others)
@@ -74,13 +74,13 @@ def time_scale(instance: Instance) -> float:
     return own_time(instance) or 1.0
 
 
-def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, tuple[int, int], bool]]:
-    """Where durations are looked for, one place after the other: around what, at which powers, and whether quickly."""
+def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, tuple[int, int]]]:
+    """Where durations are looked for, one place after the other: around what, and at which powers."""
     own = own_time(instance) or scale
     if instance.tf_guess is None:
-        elsewhere = [(own, AROUND_SCALE, True)] if max(own / scale, scale / own) > APART else []
-        return [(scale, AROUND_SCALE, True), *elsewhere, (scale, FEWER, False)]
-    return [(guess, AROUND_GUESS, True), (scale, AROUND_SCALE, True), (guess, (0, 0), False)]
+        elsewhere = [(own, AROUND_SCALE)] if max(own / scale, scale / own) > APART else []
+        return [(scale, AROUND_SCALE), *elsewhere]
+    return [(guess, AROUND_GUESS), (scale, AROUND_SCALE)]
 
 
 def _unsolved(trials: Trials, limits: Limits) -> Extremal:

@@ -1,7 +1,7 @@
 """From a cold start to a minimum without bounds: Newton's method from the straight line, else a minimisation.
 
-The straight line in the state space is that between the ends or, where nothing is asked of the end, the uncontrolled motion
-control; or else what is guessed. What this does not solve is left to the direct search.
+The straight line in the state space is that between the ends or, where nothing is asked of the end, the uncontrolled
+motion; or else what is guessed. What this does not solve is left to the direct search.
 """
 
 from __future__ import annotations

@@ -91,7 +91,9 @@ def _nearest(instance: Instance, limits: Limits) -> Nearest | None:
     from satsym.solvers.control.regularised import regularised
     from satsym.solvers.nearest_end import nearest
 
-    assert instance.tf is not None
+    spec = instance.model.spec
+    if spec.switching or spec.throttled or spec.directional:
+        instance = regularised(instance, 1.0, 1.0)
     with np.errstate(all="ignore"):
-        problem = two_point(regularised(instance, 1.0, 1.0), instance.tf - instance.t0)
+        problem = two_point(instance, instance.tf - instance.t0)
         return nearest(problem, start(problem), replace(limits, work=math.inf))

@@ -8,7 +8,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.cold_start.own_time import time_scale
+from satsym.solvers.cold_start.durations import time_scale
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.nearest_end import ARRIVED, NO_MOTION, ROUNDS, Reach
 from satsym.solvers.unknowns.trials import Trials

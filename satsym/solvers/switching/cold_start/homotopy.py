@@ -12,11 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.following import ROUGHLY, follow
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
@@ -48,9 +50,6 @@ FINER = 1e-6
 
 MOST_INTERVALS = 240
 """Of a mesh, there."""
-
-SHARES = (1.0, 2.0, 0.5, 4.0)
-"""Of a first duration, from which a best one is looked for."""
 
 SPLIT = 2, 4
 """Into so many parts intervals are split where their errors cannot be corrected."""
@@ -221,34 +220,17 @@ def _later(instance: Instance) -> float:
 def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     """The regularised problem without bounds, solved."""
     if instance.tf is None:
-        return _lasting_best(instance, limits)
+        near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
+        duration = first_duration(instance) if near is None else near.problem.duration
+        chosen = free_duration(replace(instance, tf_guess=instance.t0 + duration), limits)
+        if isinstance(chosen, Extremal):
+            raise Stopped(chosen.status, chosen.message, chosen.problem, chosen.path)
+        return chosen.problem, chosen.start.found.curve
     problem = two_point(instance, instance.tf - instance.t0)
     start = cold_start(problem, limits)
     if not start.found.minimum:
         raise Stopped(Status.NOT_CONVERGED, f"no extremal found: {start.found.message}", problem, start.found.curve)
     return problem, start.found.curve
-
-
-def _lasting_best(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
-    """The regularised problem without bounds in its best duration, from that in a given one."""
-    near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
-    first = first_duration(instance) if near is None else near.problem.duration
-    last: tuple[TwoPoint, Curve] | None = None
-    for share in SHARES:
-        if limits.expired:
-            break
-        given = replace(instance, tf=instance.t0 + share * first, tf_guess=None)
-        problem = two_point(given, share * first).relaxed(float("inf"))
-        start = cold_start(problem, limits)
-        if not start.found.minimum:
-            continue
-        last = problem, start.found.curve
-        free = replace(problem, instance=instance)
-        curve = replace(start.found.curve, theta=np.append(start.found.curve.theta, share * first))
-        outcome = newton(System(free, curve.mesh, curve.order), curve, tolerance=ROUGHLY)
-        if outcome is not None and outcome.solved and outcome.curve.theta[-1] > 0.0:
-            return free, outcome.curve
-    raise Stopped(Status.NOT_CONVERGED, "no extremal found at any duration that was tried", *(last or (None, None)))
 
 
 def _violation(problem: TwoPoint, curve: Curve) -> float:

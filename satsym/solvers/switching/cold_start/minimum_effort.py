@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solvers.cold_start.own_time import time_scale
+from satsym.solvers.cold_start.durations import time_scale
 from satsym.solvers.cold_start.paths import curve as as_curve
 from satsym.solvers.cold_start.paths import first
 from satsym.solvers.cold_start.straight_through import straight_through
