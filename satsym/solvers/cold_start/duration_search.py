@@ -162,7 +162,7 @@ class Search:
         return planned or (not falls and duration <= most)
 
     def _walk(self, down: bool) -> None:
-        """On from the shortest or the longest duration while the cost falls that way, where need be in smaller steps."""
+        """Go on from the shortest or the longest duration while the cost falls that way."""
         growth = RATIO
         while not self.limits.expired:
             edge = self.tries[0 if down else -1]

@@ -94,6 +94,7 @@ def _nearest(instance: Instance, limits: Limits) -> Nearest | None:
     spec = instance.model.spec
     if spec.switching or spec.throttled or spec.directional:
         instance = regularised(instance, 1.0, 1.0)
+    assert instance.tf is not None
     with np.errstate(all="ignore"):
         problem = two_point(instance, instance.tf - instance.t0)
         return nearest(problem, start(problem), replace(limits, work=math.inf))
