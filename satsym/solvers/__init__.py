@@ -217,6 +217,10 @@ def _in_time(method: Method) -> Solver:
     def solved(instance: Instance, progress: Progress | None) -> Solution:
         began = time.perf_counter()
         try:
+            if instance.solver.free_angles:
+                from satsym.solvers.revolutions import with_cheapest_turns
+
+                return with_cheapest_turns(solver, instance, progress)
             return solver(instance, progress)
         except TimeUp:
             from satsym.solvers import iteration

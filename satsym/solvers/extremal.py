@@ -1,4 +1,4 @@
-"""What the methods for given ends share: limits, history, turns of angles, and how an extremal becomes a solution."""
+"""What the methods for given ends share: limits, history, and how an extremal becomes a solution."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from satsym.arrays import Array, distinct
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.solution import Event, Iteration, Progress, Solution
-from satsym.solvers import revolutions
 from satsym.solvers.collocation.accuracy.jumping import found
 from satsym.solvers.collocation.continuation import by_bound
 from satsym.solvers.collocation.curve import Curve
@@ -20,7 +19,6 @@ from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.control.slopes import continued
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
-from satsym.solvers.revolutions import TURN, Best
 from satsym.status import Status
 
 BESIDE = 1e-9
@@ -45,7 +43,7 @@ def nothing(instance: Instance, status: Status, message: str) -> Extremal:
 
 
 def solved(instance: Instance, progress: Progress | None, name: str, method: Method) -> Solution:
-    """Solve an instance by a method, with the cheapest number of turns.
+    """Solve an instance by a method.
 
     Parameters
     ----------
@@ -59,26 +57,22 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
     began = time.perf_counter()
     limits, history = watched(instance, progress)
 
-    def guarded(one: Instance) -> Extremal:
-        try:
-            return method(one, limits)
-        except FAILURES as error:
-            return without_numbers(one, error)
-
     with np.errstate(all="ignore"):
-        best = revolutions.cheapest(instance, limits, guarded, lambda found: found.cost)
-        return _solution(instance, name, best, tuple(history), limits, began)
+        try:
+            extremal = method(instance, limits)
+        except FAILURES as error:
+            extremal = without_numbers(instance, error)
+        return _solution(instance, name, extremal, tuple(history), limits, began)
 
 
 def _solution(
     instance: Instance,
     method: str,
-    best: Best[Extremal],
+    extremal: Extremal,
     history: tuple[Iteration, ...],
     limits: Limits,
     began: float,
 ) -> Solution:
-    extremal = best.answer
     problem, path = extremal.problem, extremal.path
     n, m = problem.states, len(instance.model.spec.controls)
     tau = distinct(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
@@ -88,18 +82,12 @@ def _solution(
     tau.sort()
     scaled = limits.in_blocks(path, tau)
     z = scaled * problem.scale.both
-    for name, turns in best.turns.items():
-        z[instance.model.spec.state_names.index(name)] += turns * TURN
     elapsed = problem.elapsed(path.theta)
-    status, message = extremal.status, "; ".join(part for part in (extremal.message, best.message) if part)
-    if best.endless and instance.tf is None:
-        costs = ", ".join(f"{value:.4g}" for value in best.endless)
-        message = f"more turns are always cheaper: the last three numbers cost {costs}; fix the final time"
-        status = Status.NO_MINIMISER
+    status = extremal.status
     u = problem.control(tau, scaled, path.theta)
     if instance.model.spec.directional:
         u = continued(instance, instance.t0 + elapsed * tau, z[:n], z[n:], u)
-    if not status.answered and not (extremal.obeys and status is extremal.status):
+    if not status.answered and not (extremal.obeys):
         z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
         elapsed = float("nan") if instance.tf is None else elapsed
     met = by_bound(problem, path) if status.answered else []
@@ -107,7 +95,7 @@ def _solution(
         instance=instance,
         method=method,
         status=status,
-        message=message,
+        message=extremal.message,
         objective=extremal.cost if status.answered else float("nan"),
         times=instance.t0 + elapsed * tau,
         x=z[:n],

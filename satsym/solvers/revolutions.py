@@ -7,62 +7,55 @@ each number of turns is an ordinary instance. The numbers next to the best one a
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from dataclasses import replace
 
+import msgspec
 import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Solution
+from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.durations import time_scale
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import deadline_of, hurried
+from satsym.status import Status
 
-Answer = TypeVar("Answer")
 TURN = 2.0 * math.pi
 MOST_MOVES = 6
 """Moves from one number of turns to a cheaper neighbour; after so many there may be no end to it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Best(Generic[Answer]):
-    """The cheapest number of turns."""
-
-    answer: Answer
-    """What solving with it gave."""
-    turns: dict[str, int]
-    """Turns added to the final value of each angle."""
-    message: str
-    """Which number won, and what its neighbours cost; empty where no angle counts modulo a turn."""
-    endless: tuple[float, ...] = ()
-    """Costs of the last numbers of turns where they fall without end in sight: after all moves, or up to a neighbour
-    that has no answer."""
-
-
-def cheapest(
-    instance: Instance, limits: Limits, solve: Callable[[Instance], Answer], cost: Callable[[Answer], float]
-) -> Best[Answer]:
+def with_cheapest_turns(
+    solve: Callable[[Instance, Progress | None], Solution], instance: Instance, progress: Progress | None
+) -> Solution:
     """Solve with the number of turns that costs least.
 
     Parameters
     ----------
-    solve, cost
-        From an instance to an answer, and its cost: infinite where there is none.
+    solve
+        Solves an instance whose final angles are what they are.
+    instance
+        Whose ``[solver] free_angles`` count modulo a turn.
+    progress
+        Called after each iteration of each solution.
     """
     angles = [name for name in instance.solver.free_angles if name in instance.final]
-    at = _natural(instance, angles)
     if not angles:
-        return Best(solve(instance), {}, "")
-    known: dict[tuple[int, ...], Answer] = {}
+        return solve(instance, progress)
+    began, deadline = time.perf_counter(), deadline_of(instance)
+    plain = replace(instance, solver=msgspec.structs.replace(instance.solver, free_angles=()))
+    known: dict[tuple[int, ...], Solution] = {}
 
     def costs(turns: tuple[int, ...]) -> float:
         if turns not in known:
-            if known and limits.expired:
+            left = hurried(plain, deadline) if known else plain
+            if left is None:
                 return math.inf
-            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))))
-        return cost(known[turns])
+            known[turns] = solve(shifted(left, dict(zip(angles, turns, strict=True))), progress)
+        return known[turns].objective if known[turns].status.answered else math.inf
 
+    at = _natural(instance, angles)
     path = [costs(at)]
     for _ in range(MOST_MOVES):
         best = min(_neighbours(at), key=costs)
@@ -70,11 +63,23 @@ def cheapest(
             break
         at = best
         path.append(costs(at))
-    turns = dict(zip(angles, at, strict=True))
     others = {k: costs(k) for k in _neighbours(at)}
     lost = len(path) > 2 and any(math.isinf(value) for value in others.values())
-    endless = tuple(path[-3:]) if lost or len(path) > MOST_MOVES else ()
-    return Best(known[at], turns, _message(angles, at, others), endless)
+    status, message = known[at].status, f"{known[at].message}; {_message(angles, at, others)}"
+    if instance.tf is None and (lost or len(path) > MOST_MOVES):
+        values = ", ".join(f"{value:.4g}" for value in path[-3:])
+        message = f"more turns are always cheaper: the last three numbers cost {values}; fix the final time"
+        status = Status.NO_MINIMISER
+    found = _turned(known[at], instance, dict(zip(angles, at, strict=True)))
+    return replace(found, status=status, message=message, wall_s=time.perf_counter() - began)
+
+
+def _turned(solution: Solution, instance: Instance, turns: dict[str, int]) -> Solution:
+    """A solution of an instance with so many turns less, as one of the instance itself."""
+    names = instance.model.spec.state_names
+    return replace(
+        solution, instance=instance, x=solution.x + TURN * np.array([turns.get(name, 0) for name in names])[:, None]
+    )
 
 
 def shifted(instance: Instance, turns: dict[str, int]) -> Instance:

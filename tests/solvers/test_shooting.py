@@ -21,6 +21,7 @@ from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits
+from satsym.solvers.revolutions import with_cheapest_turns
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import doubled, newton
 from satsym.solvers.shooting.solving import without_guess
@@ -43,7 +44,7 @@ def options(case: Instance, **changed: Any) -> Instance:
 
 
 def shot(case: Instance) -> Solution:
-    found = shooting.solve(case)
+    found = by_search.shooting(case)
     assert found.status is Status.CONVERGED, found.message
     assert found.method == "shooting"
     return found
@@ -107,7 +108,7 @@ def test_newton_comes_from_a_straight_line():
 def held(compiled: bool) -> Arcs:
     """Solved arcs along which the second control is at its bound for a while, which a node ends."""
     problem = straight("return-to-orbit-005", 6, 3, compiled).problem
-    found = without_guess(instance.load("return-to-orbit-005"), LIMITS, True).path
+    found = without_guess(instance.load("return-to-orbit-005"), LIMITS).path
     assert isinstance(found, Arcs)
     return replace(found, problem=replace(found.problem, instance=problem.instance), steps=3)
 
@@ -164,7 +165,7 @@ def test_random_returns_are_solved_to_the_last_digits(population: Population, nu
 def test_a_final_angle_may_count_modulo_a_turn():
     case = instance.load("ends-1-given")
     stated = {**case.final, "theta": float(case.final["theta"]) - TURN}
-    found = shot(options(replace(case, final=stated), free_angles=("theta",)))
+    found = with_cheapest_turns(shooting.solve, options(replace(case, final=stated), free_angles=("theta",)), None)
     assert found.objective == pytest.approx(shot(case).objective, rel=1e-12)
     assert found.x[2, -1] == pytest.approx(case.final["theta"], rel=1e-13)
     assert "theta ends 1 turn above what is stated; a turn less costs" in found.message

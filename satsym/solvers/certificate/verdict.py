@@ -71,6 +71,7 @@ def examined(
 
 def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Solution | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
+    solution = revolutions.as_stated(solution)
     if solution.interval is not None:
         from satsym.solvers.certificate.switching import chattering
 
@@ -85,7 +86,6 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         from satsym.solvers.certificate.constrained import conditions as constrained
 
         return constrained.certify(solution, deadline, seed, compared)
-    solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)
         first = _first_order(solution, along)

@@ -23,7 +23,6 @@ from satsym.solvers.search.nlp import ACCEPTABLE
 from satsym.solvers.search.order import Tried
 from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
 from satsym.solvers.switching.attempt import Exact
-from satsym.solvers.switching.refusals import refuse_angles
 
 WORK = 4_000_000
 """Unknowns times iterations that a search may take."""
@@ -112,15 +111,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Solution
         Without a certificate. Times hold each switching time twice: the last instant of one arc and the first of the
         next.
-
-    Raises
-    ------
-    BadInput
-        If final angles are to count modulo a turn.
     """
     throttled = instance.model.spec.throttled
-    if throttled:
-        refuse_angles(instance)
     began = time.perf_counter()
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)

@@ -17,7 +17,6 @@ def refuse(instance: Instance) -> None:
         If a bound is missing, if no control is left to choose, if nothing costs anything, or if the motion starts
         where it is to end.
     """
-    refuse_angles(instance)
     names = instance.model.spec.control_names
     for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
         if not np.isfinite([low, high]).all():
@@ -39,15 +38,6 @@ def refuse(instance: Instance) -> None:
         raise BadInput(
             f"{instance.called}: [initial]: the motion starts where it is to end, so the best final time is none at "
             "all; move the start, or give a final time"
-        )
-
-
-def refuse_angles(instance: Instance) -> None:
-    """Refuse final angles modulo a turn."""
-    if instance.solver.free_angles:
-        raise BadInput(
-            f'{instance.called}: [solver] free_angles: method "bang-bang" does not compare turns; give the final angle '
-            "that is meant, and remove it"
         )
 
 
