@@ -98,7 +98,11 @@ class Tried(Generic[Answer]):
 
 
 def searched(
-    instance: Instance, limits: Limits, exact: Callable[[Motion, Limits], Answer | None], loose: str = ""
+    instance: Instance,
+    limits: Limits,
+    exact: Callable[[Motion, Limits], Answer | None],
+    loose: str = "",
+    starts: int = STARTS,
 ) -> Answer | None:
     """The first extremal that a start leads to; ``None`` without one.
 
@@ -110,6 +114,8 @@ def searched(
         Makes a motion an exact extremal, where it can.
     loose
         A state whose given end follows from those of the others.
+    starts
+        How many are tried at most.
     """
     costs: list[float] = []
     failing = CONVEX if convex(instance) else FAILING
@@ -121,7 +127,7 @@ def searched(
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
-        if len(costs) >= TRIED or (not costs and number + 1 >= failing):
+        if len(costs) >= TRIED or (not costs and number + 1 >= failing) or number + 1 >= starts:
             break
     return None
 

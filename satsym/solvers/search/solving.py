@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from satsym.instance import Instance
+from satsym.arrays import Array
+from satsym.instance import Guess, Instance
 from satsym.instance.unknowns import Place
 from satsym.methods import automatic
 from satsym.solution import Progress, Solution
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter, unsolved, watched
 from satsym.solvers.redundant_ends import Redundant, redundant
 from satsym.solvers.search import failing, order
@@ -83,6 +85,32 @@ def others(instance: Instance, solution: Solution, limits: Limits) -> Iterator[T
     return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden)
 
 
+def _from_meeting_motions(instance: Instance, limits: Limits) -> Solution | None:
+    """The extremal to which motions lead that were drawn from both ends and nearly meet, of smooth problems.
+
+    Where a weak control has to push in time with a swing, hardly any other start arrives.
+    """
+    from satsym.solvers.collocation.scaling import two_point
+    from satsym.solvers.drawn_motions import motions
+
+    spec = instance.model.spec
+    if instance.tf is None or spec.in_arcs or spec.switching or spec.throttled or spec.directional or instance.free:
+        return None
+    problem = two_point(instance, instance.tf - instance.t0)
+    for one in tried(lambda: motions(problem, np.random.default_rng(0), cheapest=True)) or []:
+        states = one.states * problem.scale.state[:, None]
+        guess = Guess(_named(spec.state_names, states), {}, _named(spec.control_names, one.control))
+        within = replace(limits, meter=Meter())
+        found = order.searched(replace(instance, guess=guess), within, partial(exact, instance), starts=1)
+        if found is not None:
+            return replace(found, instance=replace(found.instance, guess=instance.guess))
+    return None
+
+
+def _named(names: Sequence[str], rows: Array) -> dict[str, tuple[float, ...]]:
+    return dict(zip(names, map(tuple, rows.tolist()), strict=True))
+
+
 def _hidden(solution: Solution) -> float:
     """What the cost changes by where states miss what is asked of them by as much as a programme lets them."""
     size, slope = (np.abs(row).max(axis=1) for row in (solution.x, solution.lam))
@@ -117,6 +145,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)
     found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
+    found = found or _from_meeting_motions(instance, limits)
     if found is not None:
         limits.tell(found.objective, history[-1].residual if history else math.nan)
         return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
