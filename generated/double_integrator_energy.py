@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py 872632fbd939dead61dd02b05065ecc8
-Digest: b48421b89c55d8287aea3570f11904bafa1aa0f9fd397bc85fb219275728e2cb
+Digest: 384086ba709320ee1e586956668455faae651439d139b127654bcbe9a1dd1a42
 """
 
 import math
@@ -33,6 +33,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'objective_unit': 'm**2/s**3',
+    'linear_quadratic': True,
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py 872632fbd939dead61dd02b05065ecc8
-Digest: 6be48fa0e0953b4889f6fab60943bb3c6926eb356adf4be68aacfca9679100c0
+Digest: c7080f0a483aa4cfabee3080c7d4d600f49f02a70a1bcb37e2ff6239e4fedd89
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
         'q_dot',
     ),
     'objective_unit': 's',
+    'linear_quadratic': True,
 }
 
 

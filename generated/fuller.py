@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
 Source: ../derivations/examples/fuller.py 95a7cd1d5f54d0885be4ba971f16f24f
-Digest: d4cc67f24ab509efaa3031b62dabb272762164aab439a0f4eb30f1ecc3162ab8
+Digest: 9fc75abad77f544b78d4682d4cd0fbe55a438968bf3b6bdd11ca57a2a5297b52
 """
 
 import math
@@ -37,6 +37,7 @@ MODEL = {
     'chattering': (
         'u',
     ),
+    'linear_quadratic': True,
 }
 
 

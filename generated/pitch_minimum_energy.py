@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 48be00d46786ee90d7a4ea5d0decc5a58db012f0a79a290dfc9f192d386ab4c8
+Digest: 7b81339f59a06e3d938fd357f6ecf5267d543a493f61526cad5f73cf40f85b8d
 """
 
 import math
@@ -50,6 +50,7 @@ MODEL = {
         {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
     ),
     'objective_unit': 'W*s',
+    'linear_quadratic': True,
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: b02cb6f18fb2ff66d7c97c539f04d97083deaaa4e700699ebe4d5243d48e07f7
+Digest: 285d554ed4997cbbafac6d2a6ce28441c54ab0e25e1a1959bdca7225e99c5e0f
 """
 
 import math
@@ -55,6 +55,7 @@ MODEL = {
         {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
     ),
     'objective_unit': 's',
+    'linear_quadratic': True,
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: c2cf6b3fb4750b6b2232ea8d1baf1cee3a407ffc636ba0a108f2409b15889ce5
+Digest: c60174958e53de821187a5ace10a7e710fba21f85baefa7f0eca2d7f04fe914c
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
         {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power relative to the heat dissipated at maximum torque'},
     ),
     'objective_unit': '1',
+    'linear_quadratic': True,
 }
 
 

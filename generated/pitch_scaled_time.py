@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 3d6f193627cc9e3760809dba09c3a77d82728539bc28d507f6feb550e76a3091
+Digest: 58ace79dfb770e734daeff5965c5403fc09a72ebb341ecfac69c7c617409fdeb
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
         'X2',
     ),
     'objective_unit': '1',
+    'linear_quadratic': True,
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
 Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: a401acd8cb53e8ad721f30a4b61591798b7fa1c427171d1eb03fa5357768087f
+Digest: dd292eed83836003f822ffdee7b847438ca255b8522e5a3d0883cf8d62df0cc0
 """
 
 import math
@@ -50,6 +50,7 @@ MODEL = {
         {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
     ),
     'objective_unit': 'N**2*m**2*s',
+    'linear_quadratic': True,
 }
 
 

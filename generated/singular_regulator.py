@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: c25b63f194a24c60039c65a48637731573f425e310f24c1ea7cf70aa0d0b4ff5
+Digest: 3b050b484cf1244320679701c53ac8c12f9896daad3d4c8a8c5c4344a5f5f0e6
 """
 
 import math
@@ -33,6 +33,7 @@ MODEL = {
     'multipliers': (),
     'switching': True,
     'objective_unit': '1',
+    'linear_quadratic': True,
 }
 
 

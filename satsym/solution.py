@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.status import Status, Verdict
+from satsym.status import Scope, Status, Verdict
 
 
 @dataclass(frozen=True)
@@ -137,6 +137,10 @@ class Certificate:
     not_checked
         Kinds of competitors that the problem allows and nobody tried, of which none was solved, or for which time was
         up.
+    scope
+        Whether the cost is the least near by, or of all admissible motions.
+    because
+        The theorem that carries the verdict; where none does, the first condition that was not shown.
     """
 
     verdict: Verdict
@@ -149,6 +153,8 @@ class Certificate:
     checks: tuple[Check, ...]
     competitors: tuple[Competitors, ...] = ()
     not_checked: tuple[Kind, ...] = ()
+    scope: Scope = Scope.LOCAL
+    because: str = ""
 
 
 @dataclass(frozen=True)

@@ -73,6 +73,13 @@ class Verdict(str, Enum):
         return cls.CERTIFIED if compared else cls.LOCAL_MINIMUM
 
 
+class Scope(str, Enum):
+    """Among which motions the claim of a certificate holds: those near by, or all that are admissible."""
+
+    LOCAL = "local"
+    GLOBAL = "global"
+
+
 class ExitCode(IntEnum):
     """Exit codes of the command line."""
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from satsym.solution import Certificate, Check, Competitors, Kind
 from satsym.spec import ProblemSpec
-from satsym.status import Verdict
+from satsym.status import Scope, Verdict
 
 
 class _Check(msgspec.Struct):
@@ -42,6 +42,8 @@ class Stored(msgspec.Struct):
     checks: list[_Check]
     competitors: list[_Competitors] = []
     not_checked: list[Kind] = []
+    scope: Scope = Scope.LOCAL
+    because: str = ""
 
     def certificate(self, spec: ProblemSpec) -> Certificate:
         """The same as solving handed it back, but for infinite numbers, which JSON lacks."""
@@ -58,6 +60,8 @@ class Stored(msgspec.Struct):
                 Competitors(c.kind, c.tried, c.solved, spec.objective(absent(c.cheapest))) for c in self.competitors
             ),
             not_checked=tuple(self.not_checked),
+            scope=self.scope,
+            because=self.because,
         )
 
 

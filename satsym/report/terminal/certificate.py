@@ -8,7 +8,7 @@ from satsym.report.said import each, message, say
 from satsym.report.terminal.table import figure, table, wrapped
 from satsym.solution import Certificate, Check
 from satsym.spec import ProblemSpec
-from satsym.status import Verdict
+from satsym.status import Scope, Verdict
 
 _HOLDS = {
     "boundary residual": "conditions at both ends met",
@@ -100,6 +100,7 @@ def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
     best = say("highest objective" if spec.maximise else "lowest cost")
     return [
         *wrapped(say("certificate: <verdict>", verdict=verdict_text(certificate, spec.maximise))),
+        *theorem_lines(certificate),
         "",
         *table([(*each("condition", "measured", "limit"), ""), *rows], right=(1, 2)),
         *(
@@ -110,9 +111,24 @@ def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
     ]
 
 
+def claim(certificate: Certificate) -> str:
+    """What a certificate claims, in a few words."""
+    if certificate.scope is Scope.LOCAL:
+        return meaning(certificate.verdict)
+    strict = certificate.verdict in (Verdict.CERTIFIED, Verdict.LOCAL_MINIMUM)
+    return say("global minimum") if strict else say("global minimum; others may cost the same")
+
+
+def theorem_lines(certificate: Certificate) -> list[str]:
+    """The theorem that shows what a certificate claims; none where no theorem does."""
+    if certificate.verdict is Verdict.FAILED or any(check.name == certificate.because for check in certificate.checks):
+        return []
+    return wrapped(say("shown by: <theorem>", theorem=message(certificate.because))) if certificate.because else []
+
+
 def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
     """The verdict with what it claims, how many competitors it rests on, and what nobody compared."""
-    words, solved = meaning(certificate.verdict), sum(c.solved for c in certificate.competitors)
+    words, solved = claim(certificate), sum(c.solved for c in certificate.competitors)
     if certificate.verdict is Verdict.CERTIFIED and solved:
         one = "the one competing solution is no better" if maximise else "the one competing solution is not cheaper"
         many = (

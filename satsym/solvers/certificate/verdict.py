@@ -19,6 +19,7 @@ from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
 from satsym.solvers.certificate.reintegration.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.reintegration.node_defect import node_defect
 from satsym.solvers.certificate.reintegration.segments import Segments, segments
+from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.solvers.iteration import deadline_of
 from satsym.status import Verdict
@@ -65,8 +66,9 @@ def examined(
     given = settled(solution)
     certificate, competitor = _judged(given, deadline, seed, compared)
     certificate = with_limits(with_kernels_examined(certificate, given), given)
-    # how the least cost is curved in what is free tells only who solves beside it
-    return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
+    if solution.instance.free:  # how the least cost is curved in what is free tells only who solves beside it
+        certificate = with_start(certificate, solution, UNRESOLVED.checks)
+    return with_scope(certificate, solution), competitor
 
 
 def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Solution | None]:

@@ -1,4 +1,4 @@
-"""Whether a problem with path constraints is convex, so that an extremal is the one global minimum.
+"""Whether a problem is convex, so that an extremal is the one global minimum.
 
 The motion is linear, costs and constraints are quadratic with weights that do not depend on time, as was proved when
 they were derived; left to look at are the signs of the second derivatives, which depend on the parameters.
@@ -23,7 +23,10 @@ def convex(instance: Instance) -> bool:
     Second derivatives of such problems are the same everywhere, so that they are taken at the start.
     """
     spec = instance.model.spec
-    if spec.switching or not spec.linear_quadratic or instance.tf is None or "reference" in instance.final.values():
+    kinds = {spec.control_set, *(part.kind for part in spec.control_parts)}
+    if spec.switching or not spec.linear_quadratic or kinds & {"annulus", "angle"}:
+        return False
+    if instance.tf is None or "reference" in instance.final.values() or instance.solver.free_angles:
         return False
     t, x = np.array([instance.t0]), np.array(instance.initial)[:, None]
     u = np.zeros((len(instance.model.spec.controls), 1))

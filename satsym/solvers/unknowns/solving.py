@@ -15,6 +15,7 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Progress, Solution
+from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import deadline_of, unsolved
@@ -91,7 +92,7 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
     others = Competitors(Kind.UNKNOWNS, trials.tried, len(trials.costs), min(trials.costs))
     less = float(max(0.0, final.objective - others.cheapest) / here.size)
     cheaper_by = Check(f"cheaper by: {others.kind.value}", less, SAME)
-    certificate = with_start(final.certificate, final, [*curvature.checks, cheaper_by])
+    certificate = with_scope(with_start(final.certificate, final, [*curvature.checks, cheaper_by]), final)
     return replace(final, certificate=replace(certificate, competitors=(*certificate.competitors, others)))
 
 

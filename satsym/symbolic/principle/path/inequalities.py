@@ -18,12 +18,12 @@ def every(so_far: Derivation) -> list[path_constraints.Constraint]:
 
 
 def linear_quadratic(so_far: Derivation) -> bool:
-    """Whether there are constraints, linear or quadratic ones, the motion is linear and the costs are quadratic.
+    """Whether the motion is linear, costs are quadratic, and constraints along the way, if any, linear or quadratic.
 
     What is left to make the problem convex are signs of matrices, which depend on the parameters.
     """
     problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
-    if problem is None or not found or problem.interior:  # times that are free make none convex
+    if problem is None or problem.interior:  # times that are free make none convex
         return False
     moving = (*states, *symbols_of(so_far.model.controls))
 
