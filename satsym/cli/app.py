@@ -48,6 +48,7 @@ COMMANDS = (
     "instances",
     "new",
     "solve",
+    "certify",
     "prove",
     "simulate",
     "study",

@@ -50,16 +50,17 @@ def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Con
 
 
 def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Look | None) -> dict[str, Content]:
-    """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
+    """Trajectory, problem and, where asked for, pictures: name -> content; none where nothing is to be written."""
     if folder is None:
         return {}
     from satsym.cli.output import live
     from satsym.report import plots
-    from satsym.report.results import trajectory
+    from satsym.report.results import problem, trajectory
 
     with live() as line:
         line.show(say("drawing ..." if look else "writing ..."))
-        return trajectory.contents(found) | (plots.pictures(found, look) if look else {})
+        stated = problem.contents(found.instance)
+        return trajectory.contents(found) | stated | (plots.pictures(found, look) if look else {})
 
 
 def split(subject: str) -> tuple[str, str | None]:

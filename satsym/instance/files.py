@@ -71,7 +71,17 @@ def read(path: Path) -> dict[str, Any]:
     BadInput
         For whatever keeps it from being read.
     """
-    found = text(path)
+    return parsed(text(path))
+
+
+def parsed(found: str) -> dict[str, Any]:
+    """Parse TOML whose numbers are all finite.
+
+    Raises
+    ------
+    BadInput
+        If it is something else.
+    """
     if _LONG_KEY.search(found):
         raise BadInput(f"a key has more than {MAX_PARTS} parts joined by dots; see the shipped instances for the keys")
     return finite(_parse(found))

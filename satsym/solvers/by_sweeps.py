@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.certificate.competitors import none_conceivable
+from satsym.solvers.certificate.competitors.comparing import none_conceivable
 from satsym.solvers.improving import bottomless
 from satsym.solvers.sweep import solving as forward_backward
 from satsym.status import Status

@@ -18,7 +18,7 @@ from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.solution import Kind, Progress, Solution
 from satsym.solvers import iteration
-from satsym.solvers.certificate.comparison import summed
+from satsym.solvers.certificate.competitors.comparison import summed
 from satsym.solvers.certificate.end_limits import BEYOND, SIGN, beyond, pushes
 from satsym.status import BadInput, Status, Verdict
 from satsym.wording import counted

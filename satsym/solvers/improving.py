@@ -12,7 +12,7 @@ from satsym.instance import Guess, Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
 from satsym.solvers import iteration
-from satsym.solvers.certificate.saddle import departures, fall
+from satsym.solvers.certificate.competitors.saddle import departures, fall
 from satsym.solvers.certificate.verdict import examined
 from satsym.status import Status, Verdict
 

@@ -60,10 +60,10 @@ def _coarse(case: Any) -> Any:
 def _certified(cases: Sequence[Any]) -> Table:
     """What the parts of a certificate take."""
     from satsym.solvers import solve
-    from satsym.solvers.certificate import competitors
+    from satsym.solvers.certificate.competitors import comparing
+    from satsym.solvers.certificate.competitors.neighbours import neighbours
     from satsym.solvers.certificate.jacobi import conjugate
     from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-    from satsym.solvers.certificate.neighbours import neighbours
     from satsym.solvers.certificate.reintegration.segments import segments
     from satsym.solvers.certificate.verdict import certify
 
@@ -72,7 +72,7 @@ def _certified(cases: Sequence[Any]) -> Table:
     counts: dict[int, int] = {}
 
     def compared(answer: Any) -> None:
-        comparison = competitors.compared(answer, time.perf_counter() + 60.0)
+        comparison = comparing.compared(answer, time.perf_counter() + 60.0)
         counts[id(answer)] = sum(kind.summary.tried for kind in comparison.kinds)
 
     def examined(answer: Any) -> None:

@@ -16,8 +16,8 @@ from satsym.solution import Certificate, Competitors, Kind, Progress, Solution
 from satsym.solvers import solve
 from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.comparison import UNCOMPARED, Compared, Comparison
-from satsym.solvers.certificate.competitors import none_conceivable
+from satsym.solvers.certificate.competitors.comparing import none_conceivable
+from satsym.solvers.certificate.competitors.comparison import UNCOMPARED, Compared, Comparison
 from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.improving import improved, starting_from
 from satsym.solvers.symmetry import rotation

@@ -14,8 +14,8 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
 from satsym.solvers import linear
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.competitors.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.jacobi import NOT_STRICT, Conjugate, conjugate
-from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.spec import ControlSetKind, Variable
 from satsym.status import Status

@@ -9,10 +9,10 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import load
 from satsym.solvers import solve
-from satsym.solvers.certificate import accessory
-from satsym.solvers.certificate.neighbours import neighbours
+from satsym.solvers.certificate.competitors import accessory
+from satsym.solvers.certificate.competitors.neighbours import neighbours
+from satsym.solvers.certificate.competitors.side_by_side import SideBySide
 from satsym.solvers.certificate.reintegration.chain import Chain
-from satsym.solvers.certificate.side_by_side import SideBySide
 
 
 @pytest.mark.parametrize("name", ["return-to-orbit", "soft-return", "return-to-orbit-ball", "hypersensitive"])
@@ -57,7 +57,7 @@ def test_controls_that_act_apart_need_no_decompositions(monkeypatch: pytest.Monk
 def test_those_that_do_not_settle_are_simulated_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
     solution = solve(load("return-to-orbit"), examined=False)
     expected = neighbours(solution)
-    monkeypatch.setattr("satsym.solvers.certificate.side_by_side.SHRINKING", 1e-9)
+    monkeypatch.setattr("satsym.solvers.certificate.competitors.side_by_side.SHRINKING", 1e-9)
     assert neighbours(solution).competitors.cheapest == pytest.approx(expected.competitors.cheapest, rel=2e-9)
 
 

@@ -22,7 +22,20 @@ from satsym.report.results.files import to_json
 
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = [
-    *("models", "instances", "new", "solve", "prove", "simulate", "study", "plot", "compare", "analyse", "lqr"),
+    *(
+        "models",
+        "instances",
+        "new",
+        "solve",
+        "certify",
+        "prove",
+        "simulate",
+        "study",
+        "plot",
+        "compare",
+        "analyse",
+        "lqr",
+    ),
     *("derive", "latex", "report", "export", "check", "read", "audit", "completion", "doctor", "bench"),
 ]
 HEAD = "satsym schema command model instance status units instance_file".split()
@@ -231,7 +244,12 @@ def test_solve_writes_results_where_it_is_told(run: Run, case: Path, tmp_path: P
     code, out, _ = run("solve", case, "--json", "--out", tmp_path / "new" / "folder")
     assert code == 0
     folder = tmp_path / "new" / "folder"
-    assert {path.name for path in folder.iterdir()} == {"trajectory.npz", "trajectory.csv", "result.json"}
+    assert {path.name for path in folder.iterdir()} == {
+        "trajectory.npz",
+        "trajectory.csv",
+        "instance.toml",
+        "result.json",
+    }
     assert printed(folder) == out
 
 
@@ -242,8 +260,9 @@ def test_pictures_go_to_results_by_default(
     monkeypatch.setattr("satsym.report.plots.pictures", lambda _result, _look: {"picture.png": lambda stream: None})
     code, out, _ = run(command, case, "--plot")
     assert code == 0
-    assert f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, picture.png, result.json" in " ".join(
-        out.split()
+    assert (
+        f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, instance.toml, picture.png, result.json"
+        in " ".join(out.split())
     )
     assert (tmp_path / "results" / "case" / command / "picture.png").is_file()
 

@@ -14,7 +14,7 @@ from sympy import Expr, Float, cos, sin, sqrt
 
 from satsym.instance import Instance
 from satsym.solvers import solve
-from satsym.solvers.certificate.comparison import UNCOMPARED
+from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
 from satsym.status import Status, Verdict
 from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build

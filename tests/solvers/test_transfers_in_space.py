@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 import satsym
 from satsym.arrays import Array
 from satsym.solution import Kind
-from satsym.solvers.certificate.comparison import going_round
+from satsym.solvers.certificate.competitors.comparison import going_round
 from satsym.solvers.symmetry import rotations
 from satsym.status import Verdict
 from satsym.symbolic import Ball, FirstOrder, Newton, Problem, Variable, symbols_of

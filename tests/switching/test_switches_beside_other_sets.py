@@ -13,7 +13,7 @@ from scipy.optimize import fsolve
 from sympy import Expr, cos, sin, sqrt
 
 import satsym
-from satsym.solvers.certificate.comparison import UNCOMPARED
+from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Free, Problem, Variable, symbols_of
 from satsym.symbolic.derivation import DerivationError

@@ -21,9 +21,9 @@ from satsym.instance import Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.comparison import UNCOMPARED
+from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
+from satsym.solvers.certificate.competitors.searched import Searched
 from satsym.solvers.certificate.reintegration.flow import typical
-from satsym.solvers.certificate.searched import Searched
 from satsym.solvers.certificate.switching import comparison
 from satsym.solvers.certificate.switching.arc_lengths import quadratic
 from satsym.solvers.certificate.switching.conditions import LATER

@@ -9,7 +9,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
-from satsym.solvers.certificate.competitors import none_conceivable
+from satsym.solvers.certificate.competitors.comparing import none_conceivable
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
 from satsym.solvers.switching.linear.linear_motion import linear_motion
@@ -19,8 +19,8 @@ NOTHING_COSTS = "every control costs at least as much as this one, and states co
 CONVEX = "the motion is linear, costs and constraints are convex and the final time is given (Mangasarian 1966)"
 PRICED = "the motion is linear, the cost is convex in the controls and the final time is given (Mangasarian 1966)"
 SOONEST = (
-    "the motion is linear, only time costs and the end can be held, so that what can be reached grows with time and an "
-    "extremal leads to its boundary (Lee and Markus 1967, chapter 2)"
+    "the motion is linear, only time costs and the final state can be maintained, so that what can be reached grows "
+    "with time and an extremal leads to its boundary (Lee and Markus 1967, chapter 2)"
 )
 """Why no admissible motion at all costs less."""
 

@@ -8,19 +8,21 @@ from satsym.arrays import Array
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
-from satsym.solvers.certificate import competitors, conditions, jumps
-from satsym.solvers.certificate.comparison import Comparison
+from satsym.solvers.certificate import conditions, jumps
+from satsym.solvers.certificate.competitors import comparing
+from satsym.solvers.certificate.competitors.comparison import Comparison
+from satsym.solvers.certificate.competitors.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
 from satsym.solvers.certificate.reintegration.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.reintegration.node_defect import node_defect
 from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
+from satsym.solvers.certificate.stated_times import with_stated_times
 from satsym.solvers.iteration import deadline_of
 from satsym.status import Verdict
 
@@ -65,7 +67,7 @@ def examined(
         return None, None
     given = settled(solution)
     certificate, competitor = _judged(given, deadline, seed, compared)
-    certificate = with_limits(with_kernels_examined(certificate, given), given)
+    certificate = with_stated_times(with_limits(with_kernels_examined(certificate, given), given), given)
     if solution.instance.free:  # how the least cost is curved in what is free tells only who solves beside it
         certificate = with_start(certificate, solution, UNRESOLVED.checks)
     return with_scope(certificate, solution), competitor
@@ -105,7 +107,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             close = neighbours(solution)
             second = _sufficient(solution, legendre, field, close)
             if compared:
-                others = competitors.compared(solution, deadline, seed)
+                others = comparing.compared(solution, deadline, seed)
                 second += others.checks
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(

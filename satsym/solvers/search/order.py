@@ -74,8 +74,8 @@ FALLING = 1e-2
 TRIED = 3
 """Different costs of which none is made exact, after which it ends."""
 
-SHARE = 0.2
-"""Share of the work that the finer meshes of one start may take: a wild motion needs ever more intervals."""
+FINER = 0.2
+"""Fraction of the work that the finer meshes of one start may take: a wild motion needs ever more intervals."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def searched(
     failing = CONVEX if convex(instance) else FAILING
     for number, (_, found) in enumerate(_started(instance, limits, loose)):
         if found.solved and not any(_same(found.objective, cost) for cost in costs):
-            one = replace(limits, work=min(limits.work, limits.meter.spent + SHARE * limits.work))
+            one = replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
             for at in _finer(found, one):
                 answer = exact(at, one)
                 if answer is not None or limits.expired:

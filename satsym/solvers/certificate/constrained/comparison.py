@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from satsym.solution import Kind, Solution
-from satsym.solvers.certificate.comparison import Comparison, summed
+from satsym.solvers.certificate.competitors.comparison import Comparison, summed
 from satsym.solvers.certificate.constrained.variants import near
 
 

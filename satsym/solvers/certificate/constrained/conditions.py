@@ -10,8 +10,9 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
-from satsym.solvers.certificate import competitors, conditions
-from satsym.solvers.certificate.comparison import Comparison
+from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.competitors import comparing
+from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
@@ -63,7 +64,7 @@ def certify(
             elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
-                    others = competitors.compared(solution, deadline, seed)
+                    others = comparing.compared(solution, deadline, seed)
                     if again.meets_a_boundary(solution):
                         others = others.joined(comparison.compared(solution, deadline))
                     second += others.checks

@@ -9,8 +9,8 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.comparison import COST_MARGIN, UNCOMPARED, margin
-from satsym.solvers.certificate.searched import kinds, searched
+from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, UNCOMPARED, margin
+from satsym.solvers.certificate.competitors.searched import kinds, searched
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.certificate.switching.shorter import shorter
 from satsym.solvers.iteration import Limits

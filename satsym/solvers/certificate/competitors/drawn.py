@@ -18,9 +18,9 @@ from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.instance import Guess, Instance
 from satsym.solution import Solution
+from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.certificate.simulations import Simulations, simulations_of
 from satsym.solvers.simulation.together import together
 from satsym.solvers.spare_time import frequency, longest, rates_by_states
 from satsym.solvers.switching.linear.linear_motion import linear_motion

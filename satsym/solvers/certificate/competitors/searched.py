@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 from satsym.instance import Guess, Instance
 from satsym.solution import Competitors, Kind, Solution
-from satsym.solvers.certificate.comparison import COST_MARGIN, going_round, margin
-from satsym.solvers.certificate.drawn import extremals_below
+from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, going_round, margin
+from satsym.solvers.certificate.competitors.drawn import extremals_below
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 

@@ -13,10 +13,10 @@ import numpy as np
 from satsym import activity
 from satsym.instance import Guess
 from satsym.solution import Check, Kind, Solution
-from satsym.solvers.certificate.comparison import Compared, Comparison, summed
-from satsym.solvers.certificate.drawn import Drawn, drawable, drawn_below
+from satsym.solvers.certificate.competitors.comparison import Compared, Comparison, summed
+from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
+from satsym.solvers.certificate.competitors.searched import kinds, searched
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.certificate.searched import kinds, searched
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST, Limits

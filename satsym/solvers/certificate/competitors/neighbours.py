@@ -11,11 +11,11 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.accessory import Along, accessory
-from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
+from satsym.solvers.certificate.competitors.accessory import Along, accessory
+from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, HIDDEN, hidden, margin
+from satsym.solvers.certificate.competitors.side_by_side import SideBySide
+from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of, stated_control
 from satsym.solvers.certificate.reintegration.flow import idle_end, products, typical
-from satsym.solvers.certificate.side_by_side import SideBySide
-from satsym.solvers.certificate.simulations import Simulations, simulations_of, stated_control
 
 AMPLITUDES = (0.05, 0.01)
 """Of departures from the control to both sides, relative to the largest control, and of the final time's change."""

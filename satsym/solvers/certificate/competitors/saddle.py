@@ -16,9 +16,9 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
-from satsym.solvers.certificate.accessory import accessory
-from satsym.solvers.certificate.drawn import drawn_below, natural
-from satsym.solvers.certificate.simulations import Simulations, simulations_of, stated_control
+from satsym.solvers.certificate.competitors.accessory import accessory
+from satsym.solvers.certificate.competitors.drawn import drawn_below, natural
+from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of, stated_control
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""

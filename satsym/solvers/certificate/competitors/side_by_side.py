@@ -15,9 +15,9 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.grid import interleave
-from satsym.solvers.certificate.accessory import Along
+from satsym.solvers.certificate.competitors.accessory import Along
+from satsym.solvers.certificate.competitors.simulations import Simulations
 from satsym.solvers.certificate.reintegration.chain import Chain
-from satsym.solvers.certificate.simulations import Simulations
 
 SWEEPS = 16
 """Over all steps, at most."""

@@ -1,0 +1,1 @@
+"""What a solution is compared with: neighbours, other starts of the search, and controls that are drawn."""

@@ -1,0 +1,142 @@
+"""Stated times of an answer, of events and of switching, beside what its trajectory shows at them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solution import Certificate, Check, Solution
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.constrained.arcs import sizes, values
+from satsym.solvers.failures import tried
+from satsym.status import Verdict
+
+TIMES = "stated times of events"
+SATURATION = "stated times of saturation"
+APART, MET = 1e-8, 1e-6
+"""Share of the duration by which a stated time may be off a junction, and share of the range of a control by which the
+law may be off its bound at a stated time."""
+
+ACTIVE = 1e-9
+"""Share of its size along the way up to which a path constraint is active."""
+
+
+def with_stated_times(certificate: Certificate, solution: Solution) -> Certificate:
+    """A certificate with the stated times of an answer compared; where one is wrong, it fails."""
+    with np.errstate(all="ignore"):
+        found = tried(lambda: checks(solution)) or []
+    verdict = certificate.verdict if all(check.passed for check in found) else Verdict.FAILED
+    return replace(certificate, verdict=verdict, checks=(*certificate.checks, *found))
+
+
+def checks(solution: Solution) -> list[Check]:
+    """Compare stated times with the trajectory; none where an answer states none and shows none.
+
+    The trajectory of an answer in arcs has two nodes at each junction, and every junction has an event or a switching
+    time. Where the control is continuous, the law without bounds meets a bound at each stated time.
+    """
+    if solution.interval is not None:
+        return [Check(SATURATION, _off_changes(solution), MET)]
+    if np.any(np.diff(solution.times) == 0.0) or any(one.kind != "jump" for one in solution.events):
+        return [Check(TIMES, _off_junctions(solution), APART)]
+    bounded = solution.instance.control_set.bounded and not solution.instance.model.spec.switching
+    found = [Check(TIMES, _off_jumps(solution), APART)] if solution.events else []
+    return [*found, Check(SATURATION, _off_bounds(solution), MET)] if bounded else found
+
+
+def _off_junctions(solution: Solution) -> float:
+    """Largest distance of a stated time from the nearest junction, or the reverse, as a share of the duration."""
+    if not all(_shown(solution, event.kind, event.name, event.t) for event in solution.events):
+        return 1.0
+    times = solution.times
+    junctions = times[:-1][np.diff(times) == 0.0]
+    begin, end = float(times[0]), float(times[-1])
+    stated = np.array([t for row in solution.switching_times for t in row] + [one.t for one in solution.events])
+    stated = stated[(stated > begin) & (stated < end)]
+    if not len(junctions) or not len(stated):
+        return float(len(junctions) != len(stated))
+    apart = np.abs(stated[:, None] - junctions)
+    return float(max(apart.min(axis=0).max(), apart.min(axis=1).max())) / (end - begin)
+
+
+def _shown(solution: Solution, kind: str, name: str, t: float) -> bool:
+    """Whether there is such an event: a constraint becomes active, ceases to be, or is active for an instant only."""
+    instance, times = solution.instance, solution.times
+    if kind == "interior":
+        return name in [one.name for one in instance.model.spec.interior]
+    if kind == "jump":
+        return name in instance.model.spec.control_names
+    names = [one.name for one in instance.model.spec.path_constraints]
+    if name not in names or kind not in ("entry", "exit", "touch"):
+        return False
+    row = values(instance, times, solution.x, solution.u)[names.index(name)]
+    size = max(float(sizes(instance, times, solution.x, solution.u)[names.index(name)]), float(np.abs(row).max()))
+    active, near = np.abs(row) <= ACTIVE * size, APART * float(times[-1] - times[0])
+    if not active[np.abs(times - t) <= near].any():
+        return False
+    stated = [float(times[0]), *(one.t for one in solution.events if one.name == name), float(times[-1])]
+    before = (times < t - near) & (times > max((one for one in stated if one < t - near), default=t) + near)
+    after = (times > t + near) & (times < min((one for one in stated if one > t + near), default=t) - near)
+    shown = {"entry": (False, True), "exit": (True, False), "touch": (False, False)}[kind]
+    return all(
+        not side.any() or bool(active[side].all()) is one for side, one in zip((before, after), shown, strict=True)
+    )
+
+
+def _off_changes(solution: Solution) -> float:
+    """Whether a control stays the same around a time at which it is stated to switch: 1 then, else 0."""
+    for row, stated in zip(solution.u, solution.switching_times, strict=True):
+        for t in stated:
+            k = int(np.searchsorted(solution.times, t))
+            if np.ptp(row[max(k - 2, 0) : k + 2]) == 0.0:
+                return 1.0
+    return 0.0
+
+
+def _off_jumps(solution: Solution) -> float:
+    """Largest distance of the stated time of a jump from the nodes on either side, as a share of the duration."""
+    names, times = solution.instance.model.spec.control_names, solution.times
+    if any(one.name not in names for one in solution.events):
+        return 1.0
+    return max(float(np.abs(times - one.t).min()) for one in solution.events) / float(times[-1] - times[0])
+
+
+def _off_bounds(solution: Solution) -> float:
+    """Largest distance of the law from its bound at a stated time; 1 where a bound is met and no time is stated.
+
+    Between nodes, states and costates are the cubics with their values and rates at both.
+    """
+    instance, times = solution.instance, solution.times
+    within, lasting = instance.control_set, float(times[-1] - times[0])
+    stated = np.unique([t for row in solution.switching_times for t in row])
+    at = np.concatenate([times, stated])
+    problem = two_point(replace(instance, t0=float(times[0]), tf=float(times[-1]), tf_guess=None), lasting)
+    scaled, tau = _between(solution, at) / problem.scale.both, (at - times[0]) / lasting
+    room = within.excess(problem.control(tau, scaled, problem.theta, bounded=False))
+    low, high = (np.asarray(one).ravel() for one in within.around(len(solution.u)))
+    size = float(np.max(np.where(np.isfinite(high - low), high - low, 0.0), initial=0.0)) or 1.0
+    nodes, met = room[:, : len(times)], np.abs(room[:, len(times) :]).min(axis=0, initial=np.inf)
+    signs = np.sign(np.where(np.abs(nodes) <= MET * size, 0.0, nodes))
+    for row in signs:
+        place = np.flatnonzero(row)
+        for k, after in pairwise(place):
+            if row[k] != row[after] and not ((stated >= times[k]) & (stated <= times[after])).any():
+                return 1.0
+    return float(met.max(initial=0.0)) / size
+
+
+def _between(solution: Solution, at: Array) -> Array:
+    """States and costates at any times, shape (2n, M)."""
+    instance, n, t = solution.instance, len(solution.x), solution.times
+    model, p = instance.model, instance.parameters
+    z = np.concatenate([solution.x, solution.lam])
+    moving = (model.dynamics_batch(t, z[:n], solution.u, p), model.costate_rate_batch(t, z[:n], solution.u, z[n:], p))
+    rates = np.concatenate([np.broadcast_to(one, solution.x.shape) for one in moving])
+    k = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
+    h = t[k + 1] - t[k]
+    s = (at - t[k]) / h
+    found = (1 + 2 * s) * (1 - s) ** 2 * z[:, k] + s * s * (3 - 2 * s) * z[:, k + 1]
+    return np.asarray(found + h * (s * (1 - s) ** 2 * rates[:, k] - s * s * (1 - s) * rates[:, k + 1]))
