@@ -110,7 +110,8 @@ subject_argument = click.argument("subject", metavar="X", shell_complete=names.c
 trajectory_option = place_option(
     "--out",
     metavar="DIR",
-    help="Write trajectory.npz, trajectory.csv, instance.toml and result.json into this folder, replacing an earlier result.",
+    help="Write trajectory.npz, trajectory.csv, instance.toml and result.json into this folder, replacing an earlier "
+    "result.",
 )
 out_option = place_option(
     "--out", metavar="DIR", help="Write result.json into this folder, replacing an earlier result."
