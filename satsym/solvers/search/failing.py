@@ -58,8 +58,10 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
         advice = "where two of them stay equally good there is no optimum (chattering)"
         return Status.NOT_CONVERGED, f"{message}; {several}, and {advice}"
     near = tried(partial(_nearest, instance, limits))
-    if near is None or near.arrives or near.undecided or limits.expired:
+    if near is None or near.arrives or limits.expired:
         return Status.NOT_CONVERGED, message
+    if near.undecided:
+        return Status.NOT_CONVERGED, f"{message}; {near.message}, but others may arrive"
     return Status.INFEASIBLE, f"{near.message}; {message}"
 
 
@@ -85,7 +87,8 @@ def _undecided(instance: Instance, limits: Limits) -> str:
 
 
 def _nearest(instance: Instance, limits: Limits) -> Nearest | None:
-    """How near to the end controls come that start from the straight line."""
+    """How near to the end controls come that start from the extremal without bounds, or from the straight line."""
+    from satsym.solvers.cold_start.first_minimum import cold_start
     from satsym.solvers.cold_start.paths import start
     from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.control.regularised import regularised
@@ -97,4 +100,6 @@ def _nearest(instance: Instance, limits: Limits) -> Nearest | None:
     assert instance.tf is not None
     with np.errstate(all="ignore"):
         problem = two_point(instance, instance.tf - instance.t0)
-        return nearest(problem, start(problem), replace(limits, work=math.inf))
+        free = tried(partial(cold_start, problem, limits))
+        path = start(problem) if free is None or not free.found.minimum else free.found.curve
+        return nearest(problem, path, replace(limits, work=math.inf))
