@@ -76,7 +76,8 @@ def test_a_single_node_off_the_extremal_fails(fuel: Solution, values: str, place
 
 def test_a_switching_time_that_is_not_where_the_law_switches_fails(fuel: Solution) -> None:
     first, last = fuel.switching_times[0]
-    assert failures(replace(fuel, switching_times=((first + 1e-6, last),))) == ["switching times"]
+    altered = replace(fuel, switching_times=((first + 1e-6, last),))
+    assert failures(altered) == ["switching times", "stated times of events"]
 
 
 @pytest.mark.parametrize("kept", [(), (0,), (0, 0, 1)])

@@ -8,11 +8,15 @@ from itertools import pairwise
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.constrained.arcs import sizes, values
 from satsym.solvers.failures import tried
 from satsym.status import Verdict
+
+ARCS = ("bang-bang", BOUNDARY_ARCS)
+"""Methods whose answers are in arcs."""
 
 TIMES = "stated times of events"
 SATURATION = "stated times of saturation"
@@ -40,7 +44,8 @@ def checks(solution: Solution) -> list[Check]:
     """
     if solution.interval is not None:
         return [Check(SATURATION, _off_changes(solution), MET)]
-    if np.any(np.diff(solution.times) == 0.0) or any(one.kind != "jump" for one in solution.events):
+    in_arcs = solution.method in ARCS or any(one.kind != "jump" for one in solution.events)
+    if in_arcs:
         return [Check(TIMES, _off_junctions(solution), APART)]
     bounded = solution.instance.control_set.bounded and not solution.instance.model.spec.switching
     found = [Check(TIMES, _off_jumps(solution), APART)] if solution.events else []
@@ -52,8 +57,8 @@ def _off_junctions(solution: Solution) -> float:
     if not all(_shown(solution, event.kind, event.name, event.t) for event in solution.events):
         return 1.0
     times = solution.times
-    junctions = times[:-1][np.diff(times) == 0.0]
     begin, end = float(times[0]), float(times[-1])
+    junctions = times[:-1][(np.diff(times) == 0.0) & (times[:-1] > begin) & (times[:-1] < end)]
     stated = np.array([t for row in solution.switching_times for t in row] + [one.t for one in solution.events])
     stated = stated[(stated > begin) & (stated < end)]
     if not len(junctions) or not len(stated):
