@@ -2,15 +2,16 @@
 
 Rounding leaves two numbers that are equal a small distance apart. How small depends on the terms that cancel on the
 way, so that no fixed limit tells it from a mistake. It does shrink with the digits of the computation, and a mistake
-does not. Numbers that agree to 20 of 30 digits are equal. Any others are computed again with twice the digits:
+does not. Numbers that agree to 40 of 60 digits are equal. Any others are computed again with twice the digits:
 
 - they differ if their difference stays what it was;
-- they are equal as soon as they agree to 20 digits, or both vanish as the digits grow;
+- they are equal as soon as they agree to 40 digits, or both vanish as the digits grow;
 - as long as neither is the case, the digits are doubled, up to :data:`MOST`: the distance shrinks, or rounding made it
   small by chance the time before.
 
-A mistake is seen if it changes the terms that are added by more than 1e-25 of them or so. Symbolic steps, generated
-text and loaded kernels are all held to this rule.
+A mistake is seen if it changes the result by more than 1e-40 of it. That many digits are needed: a term may be 1e-9 of
+its sum, be wrong by 1e-6 of itself, and act on the result by the square of that, as a control does on the Hamiltonian
+that it minimises. Symbolic steps and generated text are held to this rule.
 """
 
 from __future__ import annotations
@@ -19,32 +20,32 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias
 
-DIGITS = 30
-"""With which numbers are computed first."""
+DIGITS = 60
+"""Decimal digits with which numbers are computed first."""
 
-MOST = 8 * DIGITS
-"""With which they are computed at most."""
+MOST = 4 * DIGITS
+"""Most decimal digits with which numbers are computed."""
 
-LIMIT = 1e-20
+LIMIT = 1e-40
 """Largest distance of equal numbers, relative to the larger one: two thirds of the digits."""
 
 FAINT, TINY = 1e-60, 1e-240
-"""What is smaller than the first, times the largest number beside it, or than the second counts as zero.
+"""Numbers below the first, times the largest number beside them, or below the second count as zero.
 
 Differences do not resolve the one, and decimals that cancel leave the other.
 """
 
 NEARLY, SURELY = 0.4, 1.0 / 6.0
-"""By which powers of ten, as shares of the digits, rounding shrinks at least when these have been doubled.
+"""Least powers of ten, as shares of the digits, by which rounding shrinks when the digits have been doubled.
 
-That is half of them in arithmetic, and a third of that in routes that lose digits as they gain some.
+They are half of them in arithmetic, and a third of that in routes that lose digits as they gain some.
 """
 
 SETTLED = 1e-2
 """Largest share of itself by which a difference that is no rounding changes when the digits are doubled."""
 
 LARGEST_SIZE = 3000
-"""Digits before the point of numbers that are differentiated."""
+"""Most digits before the decimal point of numbers that are differentiated."""
 
 Sides: TypeAlias = tuple[Sequence[Any], Sequence[Any]]
 
@@ -120,5 +121,5 @@ def finite(values: Iterable[Any]) -> bool:
 
 
 def _size(one: Any, other: Any) -> Any:
-    """Of the larger one of two numbers."""
+    """Return the magnitude of the larger one of two numbers."""
     return max(abs(one), abs(other))

@@ -25,11 +25,12 @@ from satsym.codegen.block import used
 from satsym.codegen.functions import ARGUMENTS, Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.codegen.printers import WRITTEN
+from satsym.codegen.thresholds import beside_thresholds
 from satsym.kernels import Kernels, many_digits, plain
 from satsym.kernels.contract import BATCH, TUPLES
 from satsym.kernels.core import Function as GeneratedFunction
 from satsym.kernels.evaluation import COMPLEX_STEP
-from satsym.kernels.many_digits import NO_NUMBERS, loops
+from satsym.kernels.many_digits import NO_NUMBERS, exactly, loops
 from satsym.spec import ProblemSpec
 from satsym.symbolic.checks import drawn_from, numeric_along, random_number
 from satsym.symbolic.derivation import Derivation, DerivationError
@@ -102,6 +103,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     rng = random.Random(derivation.name)
     places, expected = _places(derivation, kernels, found, exact, rng)
     text = many_digits.functions_of(kernels.text or "", WRITTEN)
+    watched = many_digits.watched(kernels.text or "", WRITTEN)
     for k, function in enumerate(found):
         of = _Of(derivation.name, function, exact[k], known)
         for place, values in zip(places[:FEW], expected, strict=False):
@@ -109,6 +111,12 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
         for place in limiting(kernels.spec, function, places[0]):
             if (there := _moderate_values(of, place)) is not None:
                 _same_text(of, text, place, there)
+        for form in (form for form in ("", BATCH) if function.name + form in watched):
+            out = _shape(function) if form else None
+            begin = [*places[:FEW], *limiting(kernels.spec, function, places[0])]
+            for place in beside_thresholds(watched[function.name + form], function.arguments, out, begin, DIGITS):
+                if _ordered(kernels.spec, place) and (there := _moderate_values(of, place)) is not None:
+                    _same_text(of, text, place, there, (form,))
         _same_values(of, kernels, text, places, [each[k] for each in expected])
     names = {f.name for f in found}
     for name, (argument, by, factor) in DERIVATIVES.items():
@@ -155,7 +163,7 @@ def _places(
 def symbols_at(function: Function, known: Symbols, place: Arguments) -> dict[sp.Symbol, Any]:
     """What the symbols of a function's arguments stand for."""
     pairs = ((s, v) for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True))
-    return {s: mp.mpf(float(v)) for s, v in pairs}
+    return {s: mp.mpf(v) for s, v in pairs}
 
 
 def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
@@ -170,6 +178,13 @@ def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
         bounds[ring[0]], bounds[ring[1]] = sorted(bounds[i] for i in ring)
     place["bounds"] = tuple(bounds)
     return place | {"t": draw(known.t)}
+
+
+def _ordered(spec: ProblemSpec, place: Arguments) -> bool:
+    """Whether lower bounds are negative, others positive, and the ends of rings in order, as :func:`drawn` has them."""
+    bounds = place["bounds"]
+    signs = all((b < 0) == (i in spec.lower_bounds) for i, b in enumerate(bounds))
+    return signs and all(bounds[least] <= bounds[largest] for least, largest in spec.rings)
 
 
 def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterator[Arguments]:
@@ -198,9 +213,15 @@ def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
     return None
 
 
-def _same_text(of: _Of, text: Mapping[str, GeneratedFunction], place: Arguments, values: Sequence[Any]) -> None:
-    """Compare both forms of a function at a place with its expression, with as many digits as that takes."""
-    for form in ("", BATCH):
+def _same_text(
+    of: _Of,
+    text: Mapping[str, GeneratedFunction],
+    place: Arguments,
+    values: Sequence[Any],
+    forms: Sequence[str] = ("", BATCH),
+) -> None:
+    """Compare forms of a function at a place with its expression, with as many digits as that takes."""
+    for form in forms:
         try:
             error = _text_error(of, text, place, values, form)
         except (ArithmeticError, TypeError):  # on arrays such a place may be passed over
@@ -227,10 +248,9 @@ def _values(
     """The numbers of functions at a place, one after another, in the working precision of mpmath."""
     found: list[Any] = []
     for function in functions:
-        given = [_exactly(place[a]) for a in function.arguments]
+        given = [exactly(place[a]) for a in function.arguments]
         if form:
-            shape = {"scalar": (), "vector": (len(function.outputs),)}.get(function.kind, function.value.shape)
-            out = np.empty(shape, dtype=object)
+            out = np.empty(_shape(function), dtype=object)
             text[function.name + form](*given, out)
             found += out.ravel().tolist()
         else:
@@ -239,9 +259,10 @@ def _values(
     return found
 
 
-def _exactly(value: Any) -> Any:
-    """A number, or several, with all digits of mpmath."""
-    return tuple(map(mp.mpf, value)) if isinstance(value, tuple) else mp.mpf(value)
+def _shape(function: Function) -> tuple[int, ...]:
+    """The shape of the array that the batch form of a function fills at one place."""
+    shapes: dict[str, tuple[int, ...]] = {"scalar": (), "vector": (len(function.outputs),)}
+    return shapes.get(function.kind, function.value.shape)
 
 
 def _same_values(

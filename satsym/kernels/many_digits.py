@@ -46,15 +46,50 @@ def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]
     written
         Floats -> the numbers that they are the nearest ones of, where these are known.
     """
+    return _defined([node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)], written, {})
+
+
+def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function, dict[int, Any]]]:
+    """The functions of a module that have conditions, each with what it fills when it is called.
+
+    That is, by the number of a condition in the function, the difference of both its sides. Conditions are comparisons,
+    steps, and choices of the smaller or larger number; those that steer an iteration are left out.
+    """
+    found = {}
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.FunctionDef):
+            watching = _Watched()
+            changed, seen = watching.visit(node), dict[int, Any]()
+            if watching.count:
+                note = {_Watched.NOTE: _noting(seen)}
+                found[node.name] = _defined([changed], written, note)[node.name], seen
+    return found
+
+
+def _noting(seen: dict[int, Any]) -> Function:
+    """A function that takes note of the difference of two numbers and returns the first."""
+
+    def note(number: int, left: Any, right: Any) -> Any:
+        seen[number] = left - right
+        return left
+
+    return note
+
+
+def _defined(
+    body: list[ast.FunctionDef], written: Mapping[float, Any], besides: Mapping[str, Any]
+) -> dict[str, Function]:
+    """The functions of syntax trees by name, in the working precision of mpmath."""
     constants = _Constants(written)
-    body = [constants.visit(node) for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
-    module = ast.fix_missing_locations(ast.Module(body, []))
+    body = [constants.visit(node) for node in body]
     names: dict[str, Any] = {
         "__builtins__": {"len": len, "range": range},
         "math": SimpleNamespace(**_SHARED, **_OF_FLOATS),
         "np": SimpleNamespace(**_SHARED, **_OF_ARRAYS),
         **constants.values,
+        **besides,
     }
+    module = ast.fix_missing_locations(ast.Module(list(body), []))
     exec(compile(module, "<generated>", "exec"), names)  # noqa: S102 - definitions only, each of them checked
     return {node.name: names[node.name] for node in body}
 
@@ -76,7 +111,7 @@ class LongEvaluation(Evaluation):
 
         def function(*given: Any) -> tuple[float, ...]:
             with mp.workdps(2 * DIGITS):
-                found = self.text[name](*map(_exactly, given))
+                found = self.text[name](*map(exactly, given))
             return tuple(_rounded(found if isinstance(found, tuple) else (found,)))
 
         return function
@@ -166,7 +201,7 @@ def loops(
         return tuple(row.tolist() for row in table)
 
     def given() -> tuple[Any, ...]:
-        return *(_to_objects(values) for values in along), *(_exactly(place[a]) for a in ("x", "lam", "p"))
+        return *(_to_objects(values) for values in along), *(exactly(place[a]) for a in ("x", "lam", "p"))
 
     def forward(count: int) -> Sides:
         with mp.workdps(count):
@@ -197,7 +232,7 @@ def loops(
     return {name: loop for name, loop in found.items() if name in text}
 
 
-def _exactly(value: Any) -> Any:
+def exactly(value: Any) -> Any:
     """A number, or several, of mpmath."""
     return tuple(map(mp.mpf, value)) if isinstance(value, tuple) else mp.mpf(value)
 
@@ -231,6 +266,41 @@ class _Constants(ast.NodeTransformer):
             with mp.workdps(2 * MOST):
                 self.values[name] = self.written.get(node.value, mp.mpf(repr(node.value)))
         return ast.copy_location(ast.Name(name, ast.Load()), node)
+
+
+class _Watched(ast.NodeTransformer):
+    """Has the left side of each condition pass through a function that takes note of the difference of both sides."""
+
+    NOTE = "_note_condition"
+    CHOICES = frozenset({"np.minimum", "np.maximum"})
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def visit_For(self, node: ast.For) -> ast.AST:
+        """Nothing in an iteration is watched."""
+        return node
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        """Watch a comparison of numbers."""
+        self.generic_visit(node)
+        if not isinstance(node.ops[0], ast.Is):
+            node.left = self._noted(node.left, node.comparators[0])
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        """Watch a step, or a choice of the smaller or larger number."""
+        self.generic_visit(node)
+        function = ast.unparse(node.func)
+        if function == "np.heaviside":
+            node.args[0] = self._noted(node.args[0], ast.Constant(0))
+        elif function in self.CHOICES:
+            node.args[0] = self._noted(*node.args)
+        return node
+
+    def _noted(self, left: ast.expr, right: ast.expr) -> ast.expr:
+        self.count += 1
+        return ast.Call(ast.Name(self.NOTE, ast.Load()), [ast.Constant(self.count - 1), left, right], [])
 
 
 def _real(function: Function) -> Function:

@@ -9,6 +9,12 @@ import sympy as sp
 
 from satsym.symbolic.decimals import with_letters
 
+HIGHEST_DEGREE = 200
+"""Degree of a polynomial in exponentials above which each of them counts as independent.
+
+To sympy exp(-6.537 x) is the power 6537 of exp(-x/1000), and FLINT looks for factors of that degree.
+"""
+
 
 def as_factors(expression: sp.Expr) -> sp.Expr:
     """As by sympy's factor; what has decimals is factored by FLINT, for their letters are many symbols."""
@@ -73,6 +79,11 @@ def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]
         poly = sp.Poly(polynomial)
     except sp.GeneratorsNeeded:  # all but a number cancels
         return sp.expand(polynomial), []
+    if max(poly.degree_list()) > HIGHEST_DEGREE and (exponentials := sorted(polynomial.atoms(sp.exp), key=str)):
+        letters = {e: sp.Symbol(f"exponential_{k}", positive=True) for k, e in enumerate(exponentials)}
+        back = {letter: e for e, letter in letters.items()}
+        content, found = _factors(polynomial.xreplace(letters))
+        return content, [(factor.xreplace(back), times) for factor, times in found]
     if not (poly.domain.is_ZZ or poly.domain.is_QQ):
         content, found = sp.factor_list(polynomial)
         return content, found

@@ -97,3 +97,26 @@ def test_a_slip_is_seen_that_only_bounds_beyond_all_controls_show_or_vanishing_c
     changed = f"{head}def control_law(t{law.replace(right, wrong, 1)}"
     with pytest.raises(DerivationError, match="generated control_law deviates"):
         verify.verify(derivation, kernels.from_text(changed, "law.py"))
+
+
+def refuse(derivation: Derivation, text: str, function: str, right: str, wrong: str) -> None:
+    """Accept a text as it is, and refuse it for that function with one part of it changed."""
+    head, name, tail = text.partition(f"def {function}(")
+    assert right in tail.split("\ndef ", 1)[0]
+    verify.verify(derivation, kernels.from_text(text, "task.py"))
+    with pytest.raises(DerivationError, match=f"generated {function} deviates"):
+        verify.verify(derivation, kernels.from_text(head + name + tail.replace(right, wrong, 1), "task.py"))
+
+
+@pytest.mark.parametrize("share", [1e-6, -1e-6, 1e-3])
+@pytest.mark.parametrize("step", ["(w_3 - u_min, 1.0)", "(u_max - w_3, 1.0)"])
+def test_a_threshold_that_is_wrong_by_little_is_seen(step: str, share: float) -> None:
+    refuse(*case(), "canonical_jacobian_batch", step, step.replace("u_m", f"{1.0 + share!r}*u_m"))
+
+
+def test_a_slip_that_acts_on_the_result_by_its_square_is_seen() -> None:
+    """The control minimises the Hamiltonian, which does not change to first order where the control is wrong."""
+    derivation = derive(problem(u / 1250 - 3 * x, u * sp.sqrt(1 + x**2) * y**2 / 6131 + 10**9))
+    right = "w_3 = -1.0/1250.0*lambda_y - w_2\n"
+    text = module.render(derivation, "task.py")
+    refuse(derivation, text, "boundary", right, right.replace("w_2", "1.000001*w_2"))

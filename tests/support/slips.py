@@ -26,6 +26,7 @@ from satsym.codegen import verify
 from satsym.codegen.naming import code_of
 from satsym.kernels import loading
 from satsym.kernels.digest import sealed
+from satsym.kernels.many_digits import exactly, functions_of
 from satsym.status import BadInput
 from satsym.symbolic import Derivation, DerivationError, pipeline
 from satsym.symbolic.checks import drawn_from, numeric, points
@@ -36,6 +37,9 @@ LEAST, MOST = 1e-6, 1e-1
 
 SHARE = 1e-9
 """Of its sum, that a term must be."""
+
+SIZE = (40, 40)
+"""Shape of an array that has room for what any function of a random model fills."""
 
 ATTEMPTS = 40
 """To find a term that large."""
@@ -243,6 +247,8 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
         caught = _verified(derivation, wrong)
         nested = total is not getattr(statement, "value", None)
         effect = not _alone_in_a_condition(statement, total, term)
+        if effect and not caught and _iterated(function, statement):
+            effect = _changes(text, wrong, function.name, places)
         return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught, effect), wrong
     return None
 
@@ -295,6 +301,31 @@ def _alone_in_a_condition(statement: ast.stmt, total: ast.expr, term: ast.expr) 
     ]
     zeros = [isinstance(other, ast.Constant) and not other.value for other in _flat(total) if other is not term]
     return any(total is condition for condition in conditions) and all(zeros)
+
+
+def _iterated(function: ast.FunctionDef, statement: ast.stmt) -> bool:
+    """Whether a statement belongs to an iteration, whose limit may be the same whichever way it is approached."""
+    return any(isinstance(node, ast.For) and statement in node.body for node in ast.walk(function))
+
+
+def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]]) -> bool:
+    """Whether two texts of a function have other numbers at some places, however many digits these have."""
+    for place in places:
+        found = []
+        for one in (text, wrong):
+            with mp.workdps(2 * DIGITS):
+                function = functions_of(one, {})[name]
+                names = function.__code__.co_varnames[: function.__code__.co_argcount]
+                if "times" in names:
+                    return True
+                given = [exactly(place[a]) for a in names if a != "out"]
+                if "out" in names:
+                    given.append(np.empty(SIZE, dtype=object))
+                value = function(*given)
+                found.append(np.ravel(np.asarray(value, dtype=object)).tolist())
+        if any(abs(a - b) > mp.mpf(10) ** -DIGITS * abs(b) for a, b in zip(*found, strict=True) if a is not None):
+            return True
+    return False
 
 
 def _is_sum(node: ast.AST) -> bool:

@@ -55,7 +55,7 @@ def test_numbers_are_compared_one_by_one_however_small_beside_others() -> None:
 
 
 def test_rounding_that_was_small_by_chance_is_no_mistake() -> None:
-    rounding = {30: 1.3e-55, 60: -1.6e-55, 120: 1e-115}
+    rounding = {60: 1.3e-55, 120: -1.6e-55, 240: 1e-205}
     assert equal(lambda digits: ([mp.mpf(rounding[digits]), 1], [0, 1]))
     assert equal(lambda digits: ([0, 1], [mp.mpf(rounding[digits]), 1]))
     assert not equal(lambda digits: ([mp.mpf(rounding[digits]) + 1e-50, 1], [0, 1]))

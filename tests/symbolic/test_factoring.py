@@ -64,3 +64,10 @@ def test_decimals_are_letters_in_what_is_factored(monkeypatch: pytest.MonkeyPatc
             assert found.as_coeff_Mul()[1] == factors
             assert sp.expand(found) == expression
     assert not asked
+
+
+def test_exponentials_of_decimal_exponents_are_no_polynomials_of_a_huge_degree() -> None:
+    slow, fast = sp.exp(-sp.Rational(564783, 86400) * k), sp.exp(-2 * k)
+    product = (slow + 3 * x) * (fast - y) * (x + 2)
+    assert sp.expand(factored(sp.expand(product)) - product) == 0
+    assert len(sp.Mul.make_args(factored(sp.expand(product)))) >= 3

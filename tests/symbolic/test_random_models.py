@@ -14,11 +14,11 @@ from satsym.symbolic.convention import is_minimum
 from tests.support import slips
 from tests.support.random_models import random_model
 
-QUICK = (0, 4, 6, 7, 9, 13, 19, 20)
+QUICK = (0, 4, 6, 7, 9, 13, 19, 20, 998, 1012, 1713)
 """Models that take a second or two each, of several kinds."""
 
 
-HARD = (481, 543, 555, 580, 623, 625, 628, 973, 1011, 1265)
+HARD = (481, 543, 555, 580, 623, 625, 628, 666, 973, 1011, 1265)
 """Models of which floats keep no digits, and such as sympy would simplify for hours."""
 
 

@@ -15,8 +15,10 @@ from weakref import WeakValueDictionary
 import mpmath as mp
 import sympy as sp
 
-MOST = 400
-"""Steps with 30 digits."""
+STEPS_PER_BIT = 4
+"""Most steps of the search for a root, for each bit of the working precision: halving takes one."""
+POLYNOMIAL_STEPS = 400
+"""Most steps of the iteration for all roots of a polynomial."""
 
 _classes: WeakValueDictionary[tuple[sp.Expr, tuple[sp.Symbol, ...]], type[Root]] = WeakValueDictionary()
 """Classes of roots, by the slope that vanishes there and its letters.
@@ -191,7 +193,7 @@ def minimum_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: A
             if mp.isfinite(end) and not mp.im(slope := slopes(end)[0]) and outwards * slope <= 0:
                 return end
     at, last = max(low, min(mp.mpf(0), high)), mp.inf
-    for _ in range(MOST):
+    for _ in range(STEPS_PER_BIT * mp.mp.prec):
         slope, curvature = slopes(at)
         if slope == 0 or low == high:
             return at
@@ -238,7 +240,7 @@ def _argmin(lower: Any, upper: Any, *coefficients: Any) -> Any:
     slope = [k * c for k, c in enumerate(coefficients, 1)]
     while slope and not slope[-1]:
         slope.pop()
-    found = mp.polyroots(slope[::-1], maxsteps=MOST, extraprec=10 * mp.mp.prec) if slope[1:] else []
+    found = mp.polyroots(slope[::-1], maxsteps=POLYNOMIAL_STEPS, extraprec=10 * mp.mp.prec) if slope[1:] else []
     places = [end for end in (lower, upper) if not mp.isinf(end)]
     places += [max(lower, min(mp.re(root), upper)) for root in found]
     return min(places, key=lambda u: mp.polyval([*coefficients[::-1], 0], u), default=mp.nan)

@@ -1,0 +1,128 @@
+"""Places just before and just behind the thresholds of a generated function, where its value or its derivative jumps.
+
+A condition that is wrong by little is met, or not met, as it should be almost everywhere: at random places a wrong
+threshold shows only by chance. It always shows right beside the threshold itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+
+from satsym.kernels.core import Function as GeneratedFunction
+from satsym.kernels.many_digits import NO_NUMBERS, exactly
+
+MOVED = ("lam", "bounds", "x")
+"""Arguments of which one number is moved to a threshold: first costates, which decide about controls."""
+STEPS = 12
+"""Most steps of the secant method; the conditions of laws are polynomials of low degree in one number."""
+FIRST = 1e-3
+"""First step of the secant method, relative to the number that is moved."""
+CLOSE = 1e-40
+"""Distance from a threshold, relative to the number that is moved, from which on it counts as found."""
+BESIDE = 1e-20
+"""Distance from the threshold of the places, relative to the number that is moved."""
+
+Place = dict[str, Any]
+
+
+def beside_thresholds(
+    watched: tuple[GeneratedFunction, dict[int, Any]],
+    arguments: Sequence[str],
+    out: tuple[int, ...] | None,
+    places: Iterable[Place],
+    digits: int,
+) -> Iterator[Place]:
+    """Pairs of places between which one condition in the text of a function changes.
+
+    Parameters
+    ----------
+    watched
+        The function, and what it notes of its conditions (:func:`satsym.kernels.many_digits.watched`).
+    arguments
+        Their names, in the function's order.
+    out
+        Shape of the array that the function fills; ``None`` for a function on numbers.
+    places
+        Where the search begins, as arguments by name.
+    digits
+        Precision of the search.
+    """
+    search = _Search(*watched, arguments, out)
+    found: set[tuple[int, str]] = set()
+    with mp.workdps(digits):
+        for begin in places:
+            first = search.conditions(begin)
+            for argument in (a for a in MOVED if a in arguments):
+                for component in range(len(begin[argument])):
+                    missing = [c for c in first if (c, argument) not in found]
+                    for condition, pair in search.pairs(begin, first, (argument, component), missing):
+                        found.add((condition, argument))
+                        yield from pair
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A function and its conditions."""
+
+    function: GeneratedFunction
+    seen: dict[int, Any]
+    arguments: Sequence[str]
+    out: tuple[int, ...] | None
+
+    def conditions(self, place: Place) -> dict[int, Any]:
+        """The differences of both sides of all conditions that are met at a place."""
+        self.seen.clear()
+        given = [exactly(place[a]) for a in self.arguments]
+        with suppress(*NO_NUMBERS):
+            self.function(*given, *(() if self.out is None else (np.empty(self.out, dtype=object),)))
+        return dict(self.seen)
+
+    def pairs(
+        self, begin: Place, first: Mapping[int, Any], moved: tuple[str, int], wanted: Iterable[int]
+    ) -> Iterator[tuple[int, list[Place]]]:
+        """Conditions, and places on both sides of their thresholds, where one number is another than it is."""
+        number = mp.mpf(begin[moved[0]][moved[1]])
+        other = number * (1 + mp.mpf(FIRST))
+        second = self.conditions(_moved(begin, *moved, other))
+        for condition in wanted:
+            ends = (number, first[condition]), (other, second.get(condition, mp.nan))
+            there = _root(partial(self._difference, begin, moved, condition), *ends)
+            if there is None:
+                continue
+            aside = BESIDE * (abs(there) if abs(there) > CLOSE * abs(number) else abs(number))
+            pair = [_moved(begin, *moved, there + side * aside) for side in (-1, 1)]
+            low, high = (self.conditions(place).get(condition, mp.nan) for place in pair)
+            if low * high < 0:
+                yield condition, pair
+
+    def _difference(self, begin: Place, moved: tuple[str, int], condition: int, to: Any) -> Any:
+        return self.conditions(_moved(begin, *moved, to)).get(condition, mp.nan)
+
+
+def _root(value: Callable[[Any], Any], one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
+    """Where a function of one number vanishes, by the secant method; ``None`` where that finds nothing."""
+    (a, f), (b, g) = one, other
+    scale = abs(a)
+    for _ in range(STEPS):
+        if g == 0:
+            return b
+        if not mp.isfinite(g) or not mp.isfinite(f) or g == f:
+            return None
+        a, f, b = b, g, b - g * (b - a) / (g - f)
+        if abs(b - a) <= CLOSE * max(scale, abs(b)):
+            return b
+        g = value(b)
+    return None
+
+
+def _moved(place: Place, argument: str, component: int, to: Any) -> Place:
+    """A place with another number as one component of an argument."""
+    values = place[argument]
+    return {**place, argument: tuple(to if i == component else v for i, v in enumerate(values))}
