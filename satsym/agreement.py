@@ -6,8 +6,8 @@ does not. Numbers that agree to 40 of 60 digits are equal. Any others are comput
 
 - they differ if their difference stays what it was;
 - they are equal as soon as they agree to 40 digits, or both vanish as the digits grow;
-- as long as neither is the case, the digits are doubled, up to :data:`MOST`: the distance shrinks, or rounding made it
-  small by chance the time before.
+- as long as neither is the case, the digits are doubled, up to :data:`MOST_DIGITS`: the distance shrinks, or rounding
+  made it small by chance the time before.
 
 A mistake is seen if it changes the result by more than 1e-40 of it. That many digits are needed: a term may be 1e-9 of
 its sum, be wrong by 1e-6 of itself, and act on the result by the square of that, as a control does on the Hamiltonian
@@ -23,25 +23,25 @@ from typing import Any, TypeAlias
 DIGITS = 60
 """Decimal digits with which numbers are computed first."""
 
-MOST = 4 * DIGITS
+MOST_DIGITS = 4 * DIGITS
 """Most decimal digits with which numbers are computed."""
 
 LIMIT = 1e-40
 """Largest distance of equal numbers, relative to the larger one: two thirds of the digits."""
 
-FAINT, TINY = 1e-60, 1e-240
+NEGLIGIBLE_SHARE, NEGLIGIBLE_SIZE = 1e-60, 1e-240
 """Numbers below the first, times the largest number beside them, or below the second count as zero.
 
 Differences do not resolve the one, and decimals that cancel leave the other.
 """
 
-NEARLY, SURELY = 0.4, 1.0 / 6.0
+SIZE_DECAY, DIFFERENCE_DECAY = 0.4, 1.0 / 6.0
 """Least powers of ten, as shares of the digits, by which rounding shrinks when the digits have been doubled.
 
 They are half of them in arithmetic, and a third of that in routes that lose digits as they gain some.
 """
 
-SETTLED = 1e-2
+SETTLED_CHANGE = 1e-2
 """Largest share of itself by which a difference that is no rounding changes when the digits are doubled."""
 
 LARGEST_SIZE = 3000
@@ -66,7 +66,7 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
     before: dict[int, tuple[Any, Any]] | None = None  # difference and size
     while True:
         pairs = list(zip(*sides(digits), strict=True))
-        faint = max(FAINT * max((_size(*pair) for pair in pairs), default=0), TINY)
+        faint = max(NEGLIGIBLE_SHARE * max((_size(*pair) for pair in pairs), default=0), NEGLIGIBLE_SIZE)
         still: dict[int, tuple[Any, Any]] = {}
         for k in range(len(pairs)) if before is None else before:
             difference, size = pairs[k][0] - pairs[k][1], _size(*pairs[k])
@@ -79,13 +79,13 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
                 worst = max(worst, float(gap / size))
             elif before is None:
                 still[k] = difference, size
-            elif gap > abs(before[k][0]) * 10.0 ** (-SURELY * digits):
-                if digits >= MOST or abs(difference - before[k][0]) <= SETTLED * gap:
+            elif gap > abs(before[k][0]) * 10.0 ** (-DIFFERENCE_DECAY * digits):
+                if digits >= MOST_DIGITS or abs(difference - before[k][0]) <= SETTLED_CHANGE * gap:
                     return float(gap / size)
                 still[k] = difference, size
-            elif size > before[k][1] * 10.0 ** (-NEARLY * digits):
+            elif size > before[k][1] * 10.0 ** (-SIZE_DECAY * digits):
                 still[k] = difference, size
-        if not still or digits >= MOST:
+        if not still or digits >= MOST_DIGITS:
             return worst
         before, digits = still, 2 * digits
 

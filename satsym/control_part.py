@@ -12,7 +12,7 @@ direction, whatever it is; along one if that is worth more than the norm of the 
 elsewhere; or, of a single control on which H depends linearly, at the bound to which it falls."""
 DIRECTED = ("direction", "throttled", "switched")
 SWITCHED = ("throttled", "switched")
-"""Those in which something switches between two levels: a norm, or the control itself."""
+"""Laws by which something switches between two levels: a norm, or the control itself."""
 
 
 @dataclass(frozen=True)

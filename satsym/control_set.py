@@ -45,15 +45,15 @@ class ControlSet:
     """Which of the following count; ``None`` for a model without a cost, whose controls are free."""
     lower: Row = ()
     upper: Row = ()
-    """Of a box: bounds in the model's order, infinite where there is none."""
+    """Lower and upper bounds of a box in the model's order, infinite where there is none."""
     radius: float = math.inf
-    """Of a ball or an annulus: the largest norm, infinite where there is none. Of an angle: one, or more where a
+    """Largest norm of a ball or an annulus, infinite where there is none. For an angle it is one, or more where a
     regularised problem is relaxed."""
     smoothing: float = 0.0
     """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
     cost over that of the squared control; zero where controls neither switch nor are directions."""
     fraction: float = 1.0
-    """Of the weight of |u| that counts there, 0 to 1."""
+    """Share of the weight of |u| that counts in a regularised problem, 0 to 1."""
     inner: float = 0.0
     """The least norm of an annulus, or of a vector in a ball that is kept at it."""
     directed: bool = False
@@ -61,13 +61,13 @@ class ControlSet:
     throttled: bool = False
     """Whether something of it switches between two levels: its norm, which counts as well, or a single control."""
     turned_by: int | None = None
-    """Of a magnitude: the place of the angle that turns what it multiplies."""
+    """Place of the angle that turns what a magnitude multiplies; ``None`` where the set is no such magnitude."""
     parts: tuple[tuple[tuple[int, ...], ControlSet], ...] = ()
-    """Of a product: the sets, each with the places of its controls in the model's order."""
+    """Sets of a product, each with the places of its controls in the model's order."""
 
     @classmethod
     def of(cls, spec: ProblemSpec, lower: Row, upper: Row, radius: float, norms: Norms | None = None) -> ControlSet:
-        """That of a problem with these bounds, nothing regularised."""
+        """Return the control set of a problem with these bounds, nothing regularised."""
         smoothing = UNSMOOTHED if spec.regularising else 0.0
         if not spec.control_parts:
             kind = spec.control_set
@@ -149,15 +149,15 @@ class ControlSet:
 
     @cached_property
     def without_bounds(self) -> ControlSet:
-        """The same for an unlimited control."""
+        """Return the control set for an unlimited control."""
         return self.relaxed(math.inf)
 
     def regularised(self, smoothing: float, fraction: float) -> ControlSet:
-        """The same of a regularised problem."""
+        """Return the control set of a regularised problem."""
         return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
-        """That in which only this control is admissible; of a product, in which what switches has these levels."""
+        """Return the set in which only this control is admissible; parts of a product that switch keep these levels."""
         if self.kind == "product":
             levels = iter(u)
 

@@ -33,7 +33,7 @@ class Grid:
     nodes: Array
     """Shape (N+1,), strictly increasing, in the model's unit of time."""
     corners: tuple[float, ...] = ()
-    """Those nodes, by their times, that stand for a corner and therefore must not move."""
+    """Times of the nodes that stand for a corner of the trajectory and therefore must not move."""
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)

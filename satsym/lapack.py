@@ -18,7 +18,7 @@ def lapack() -> Any:
 
 
 def blas() -> Any:
-    """The same of :mod:`scipy.linalg.blas`: ``daxpy`` and others."""
+    """Return the compiled functions of :mod:`scipy.linalg.blas`, such as ``daxpy``, without the rest of SciPy."""
     return _wrapper("blas")
 
 

@@ -20,7 +20,7 @@ AUTO = "auto"
 
 
 class Model(Protocol):
-    """Of an instance."""
+    """Model of an instance, as far as the choice of a method asks about it."""
 
     @property
     def spec(self) -> ProblemSpec:

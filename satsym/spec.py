@@ -20,7 +20,8 @@ FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
 
 MOST_LETTERS = 24
-"""Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
+"""Most letters of an exact analysis, times the number of states: polynomials of a high degree in many letters fill
+pages and say nothing."""
 
 ControlSetKind = Literal["free", "box", "ball"]
 NAMES = "a small letter, then small letters, digits and underscores"

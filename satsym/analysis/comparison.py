@@ -18,8 +18,8 @@ from satsym.solvers import solve
 from satsym.status import BadInput
 
 SAMPLES = 2000
-"""Of the linear motion of a range."""
-LONG = 16.0
+"""Number of times at which the linear motion is given from which its range is read."""
+RANGE_DURATION = 16.0
 """Time over which a range follows it, in units of 1 over the damping."""
 
 
@@ -205,7 +205,7 @@ class Range:
     """Shapes (K,) and (L,)."""
     control_peak: Array
     impulse: Array
-    """Of the control: largest magnitude after the step, and integral at the step; shape (K, L)."""
+    """Largest magnitude of the control after the step, and its integral at the step; shape (K, L)."""
     peaks: Mapping[str, Array]
     """Name of a state -> its largest magnitude, shape (K, L)."""
 
@@ -228,7 +228,7 @@ def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[flo
     peaks = {name: np.empty(shape) for name in spec.state_names}
     initial = np.array(instance.initial)
     for i, damping in enumerate(dampings):
-        times = np.linspace(0.0, LONG / damping, SAMPLES)
+        times = np.linspace(0.0, RANGE_DURATION / damping, SAMPLES)
         for j, command in enumerate(commands):
             case = replace(instance, classical=replace(options, damping=damping, command=command))
             loop = classical.loop(case)

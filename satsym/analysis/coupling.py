@@ -19,7 +19,7 @@ Progress: TypeAlias = Callable[[float], None]
 
 TOLERANCE = 1e-7
 SAMPLES = 400
-"""Of the control in each part over which it is smooth, joined by straight lines."""
+"""Values of the control, joined by straight lines, in each part over which it is smooth."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,11 +20,11 @@ from satsym.status import Status
 COLUMNS, STEPS = 4096, 10
 """Motions at once, and steps between two looks at the clock."""
 
-LENGTH, ASIDE = 1e-4, 1e-3
-"""Of a step, in the unit of time; and how far starts are apart."""
+STEP_LENGTH, START_DISTANCE = 1e-4, 1e-3
+"""Length of a step, in the unit of time, and distance between neighbouring starts."""
 
 RUNS = 3
-"""Of which the fastest counts: what else the machine does makes others slower."""
+"""Runs of which the fastest counts: what else the machine does makes the others slower."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Solved:
 
 
 def cores() -> int:
-    """That this process may use."""
+    """Number of processor cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -84,7 +84,7 @@ def speeds(subject: Instance | Kernels, seconds: float) -> Iterator[Speed]:
 
     model = subject if isinstance(subject, Kernels) else subject.model
     x, p = _columns(subject)
-    until = [0.0, LENGTH * STEPS]
+    until = [0.0, STEP_LENGTH * STEPS]
     yield Speed("numpy", 1, _rate(lambda: simulate(model, until, x, list(p), STEPS), seconds))
     if not able():
         return
@@ -97,7 +97,9 @@ def speeds(subject: Instance | Kernels, seconds: float) -> Iterator[Speed]:
         with ThreadPoolExecutor(count) as pool:
 
             def run(pool: ThreadPoolExecutor = pool, parts: list[tuple[Array, ...]] = parts) -> None:
-                list(pool.map(lambda part: advance(0.0, LENGTH, STEPS * REPEATED, part[0].copy(), *part[1:]), parts))
+                list(
+                    pool.map(lambda part: advance(0.0, STEP_LENGTH, STEPS * REPEATED, part[0].copy(), *part[1:]), parts)
+                )
 
             yield Speed("numba", count, REPEATED * _rate(run, seconds))
 
@@ -114,7 +116,7 @@ def _columns(subject: Instance | Kernels) -> tuple[Array, Array]:
     else:
         start, parameters = list(subject.initial), list(subject.parameters)
     rng, x = np.random.default_rng(0), np.array(start)[:, None]
-    apart = ASIDE * np.maximum(np.abs(x), 1.0) * rng.uniform(-1.0, 1.0, (len(x), COLUMNS))
+    apart = START_DISTANCE * np.maximum(np.abs(x), 1.0) * rng.uniform(-1.0, 1.0, (len(x), COLUMNS))
     return x + apart, np.repeat(np.array(parameters).reshape(-1, 1), COLUMNS, axis=1)
 
 

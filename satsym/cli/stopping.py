@@ -21,7 +21,7 @@ INTERRUPTED = 130
 TERMINATED = 143
 """As the shell reports programs that SIGINT or SIGTERM ended."""
 
-AGAIN = 0.05
+STOP_INTERVAL = 0.05
 """Seconds after which a stop is repeated that nobody is answering."""
 
 _NO_MORE = 0
@@ -83,7 +83,7 @@ def terminable() -> Iterator[None]:
 def _insist(thread: int | None, heard: SimpleQueue[int], over: threading.Event) -> None:
     """Repeat a stop that is lost: Python ignores some, and C code that looks for something may forget any error."""
     sign = heard.get()
-    while not over.wait(AGAIN):
+    while not over.wait(STOP_INTERVAL):
         if not _answers(thread):
             os.kill(os.getpid(), sign)
 

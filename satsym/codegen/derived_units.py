@@ -22,7 +22,7 @@ from satsym.symbolic.dimensions import declared, of_unit
 from satsym.symbolic.model import variables_of
 
 UNKNOWN = ""
-ALIKE = 1e-9
+SIZE_TOLERANCE = 1e-9
 """Relative difference of the sizes of two units that are the same."""
 
 
@@ -71,7 +71,7 @@ def unit_of(dimension: Dimension | None, names: Sequence[str]) -> str:
             if all(e.is_Integer for e in exponents) and all(exponents):
                 candidates.append({name: int(e) for name, e in zip(chosen, exponents, strict=True)})
     sizes = [math.prod(units.in_base_units(name) ** e for name, e in one.items()) for one in candidates]
-    if not candidates or max(sizes) > (1.0 + ALIKE) * min(sizes):
+    if not candidates or max(sizes) > (1.0 + SIZE_TOLERANCE) * min(sizes):
         return UNKNOWN
     shortest = min(candidates, key=lambda one: sum(map(abs, one.values())))
     # such as N*m*s: what is made of most comes first, time last

@@ -16,7 +16,7 @@ from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle import product, set_laws
 
-LONG = 250
+MOST_OPERATIONS = 250
 """Operations of the laws of a problem above which they are named: thrust on equinoctial elements has 600, and the
 Jacobian of its canonical equations in one piece a million."""
 
@@ -62,4 +62,4 @@ def _long_laws(derivation: Derivation) -> dict[sp.Symbol, sp.Expr]:
     }
     every = set_laws.regularised_law(derivation)
     closed = {u: law for u, law in every.items() if u not in without}
-    return without | closed if sum(map(sp.count_ops, closed.values())) > LONG else without
+    return without | closed if sum(map(sp.count_ops, closed.values())) > MOST_OPERATIONS else without

@@ -18,7 +18,7 @@ from satsym.symbolic.functions.roots import Argmin
 STEPS, POLISHED = 60, 2
 """Halvings of an interval, and steps of Newton's method at the best place."""
 
-SMALLEST = 1e-200
+SMALLEST_SQUARE = 1e-200
 """By what has a smaller square nothing is divided."""
 
 _AT = sp.Symbol("at", real=True)
@@ -96,7 +96,7 @@ def _within_reach(low: str, high: str, ends: Ends, coefficients: list[sp.Symbol]
     absolute = "np.abs" if by.name == "np" else "math.fabs"
     *others, last = coefficients
     sizes = " + ".join(f"{float(k)!r}*{absolute}({c})" for k, c in enumerate(others, 1))
-    bound = f"1.0 + ({sizes})/({float(len(coefficients))!r}*{absolute}({last}) + {SMALLEST!r})"
+    bound = f"1.0 + ({sizes})/({float(len(coefficients))!r}*{absolute}({last}) + {SMALLEST_SQUARE!r})"
     return [f"{high} = {bound}", f"{low} = -{high}", *by.within(low, ends), *by.within(high, ends)]
 
 
@@ -123,7 +123,7 @@ def _divided(place: str, above: str, below: str, spare: str, by: _Form) -> list[
     """A quotient; something finite where nothing is divided by."""
     square = f"{below}*{below}"
     return [
-        f"{spare} = {by.chosen(square, repr(SMALLEST), '1.0', below)}",
+        f"{spare} = {by.chosen(square, repr(SMALLEST_SQUARE), '1.0', below)}",
         f"{place} = {above}/{spare}",
     ]
 

@@ -15,10 +15,10 @@ from satsym.symbolic.functions.roots import Root
 STEPS, POLISHED = 60, 3
 """Steps between ends, and steps of Newton's method after that."""
 
-FAR, SMALLEST = 1e150, 1e-100
+FARTHEST_ROOT, SMALLEST_CURVATURE = 1e150, 1e-100
 """Beyond this nothing is looked for; a curvature below the other counts as that."""
 
-CLOSE = 1e-9
+LAST_STEP = 1e-9
 """The last step, relative to one plus the size of the root, at most."""
 
 
@@ -53,13 +53,13 @@ def lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str]) -> l
     )
     evaluated = [f"{s.name} = {code(e)}" for s, e in shared]
     evaluated += [f"{value} = {code(first)}", f"{curved} = {code(second)}"]
-    evaluated += [f"{curved} = {chosen(curved, repr(SMALLEST), repr(SMALLEST), curved)}"]
+    evaluated += [f"{curved} = {chosen(curved, repr(SMALLEST_CURVATURE), repr(SMALLEST_CURVATURE), curved)}"]
     return [
-        f"{low} = {chosen(lower, repr(-FAR), repr(-FAR), lower)}",
-        f"{high} = {chosen(repr(FAR), upper, repr(FAR), upper)}",
+        f"{low} = {chosen(lower, repr(-FARTHEST_ROOT), repr(-FARTHEST_ROOT), lower)}",
+        f"{high} = {chosen(repr(FARTHEST_ROOT), upper, repr(FARTHEST_ROOT), upper)}",
         f"{name} = {chosen('0.0', low, low, '0.0')}",
         f"{name} = {chosen(high, name, high, name)}",
-        f"{last} = {FAR!r}",
+        f"{last} = {FARTHEST_ROOT!r}",
         f"for _ in range({STEPS}):",
         *(f"    {line}" for line in evaluated),
         f"    {low} = {chosen(value, '0.0', name, low)}",
@@ -82,10 +82,10 @@ def lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str]) -> l
         f"    {name} = {name} - {value}/{curved}",
         f"    {name} = {chosen(name, lower, lower, name)}",
         f"    {name} = {chosen(upper, name, upper, name)}",
-        f"{last} = {CLOSE!r}*(1.0 + {absolute}({name})) - {absolute}({name} - {last})",
+        f"{last} = {LAST_STEP!r}*(1.0 + {absolute}({name})) - {absolute}({name} - {last})",
         f"{name} = {name} + 0.0*{form}.sqrt({last})",
     ]
 
 
 def _end(end: sp.Expr, code: Callable[[sp.Expr], str]) -> str:
-    return repr(FAR if end is sp.oo else -FAR) if end.is_infinite else code(end)
+    return repr(FARTHEST_ROOT if end is sp.oo else -FARTHEST_ROOT) if end.is_infinite else code(end)

@@ -19,7 +19,7 @@ from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching.functions import parts, written_out
-from satsym.symbolic.switching.notation import BEYOND, ON_CURVE, SIDE, TRANSITION
+from satsym.symbolic.switching.notation import BEYOND_CURVE, ON_CURVE, SIDE, TRANSITION
 
 STEP = "switching_function"
 """The step that only derivations of such problems have."""
@@ -67,7 +67,7 @@ def curve(derivation: Derivation) -> list[Entry]:
     arguments, (control,) = "t x p bounds final", names(derivation.model.controls)
     stated = {e.name: e.rhs for e in derivation.step(switching_curve.STEP).equations}
     beyond = stated["beyond"].xreplace({ON_CURVE: stated["curve"]})
-    law = stated[control].xreplace({SIDE: stated["side"]}).xreplace({BEYOND: beyond})
+    law = stated[control].xreplace({SIDE: stated["side"]}).xreplace({BEYOND_CURVE: beyond})
     first = stated["first"].xreplace({TRANSITION: stated["duration"]})
     return [
         Entry(

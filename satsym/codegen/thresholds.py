@@ -18,15 +18,15 @@ import numpy as np
 from satsym.kernels.core import Function as GeneratedFunction
 from satsym.kernels.many_digits import NO_NUMBERS, exactly
 
-MOVED = ("lam", "bounds", "x")
+MOVED_ARGUMENTS = ("lam", "bounds", "x")
 """Arguments of which one number is moved to a threshold: first costates, which decide about controls."""
-STEPS = 12
+MOST_STEPS = 12
 """Most steps of the secant method; the conditions of laws are polynomials of low degree in one number."""
-FIRST = 1e-3
+FIRST_STEP = 1e-3
 """First step of the secant method, relative to the number that is moved."""
-CLOSE = 1e-40
+TOLERANCE = 1e-40
 """Distance from a threshold, relative to the number that is moved, from which on it counts as found."""
-BESIDE = 1e-20
+DISTANCE = 1e-20
 """Distance from the threshold of the places, relative to the number that is moved."""
 
 Place = dict[str, Any]
@@ -59,7 +59,7 @@ def beside_thresholds(
     with mp.workdps(digits):
         for begin in places:
             first = search.conditions(begin)
-            for argument in (a for a in MOVED if a in arguments):
+            for argument in (a for a in MOVED_ARGUMENTS if a in arguments):
                 for component in range(len(begin[argument])):
                     missing = [c for c in first if (c, argument) not in found]
                     for condition, pair in search.pairs(begin, first, (argument, component), missing):
@@ -89,14 +89,14 @@ class _Search:
     ) -> Iterator[tuple[int, list[Place]]]:
         """Conditions, and places on both sides of their thresholds, where one number is another than it is."""
         number = mp.mpf(begin[moved[0]][moved[1]])
-        other = number * (1 + mp.mpf(FIRST))
+        other = number * (1 + mp.mpf(FIRST_STEP))
         second = self.conditions(_moved(begin, *moved, other))
         for condition in wanted:
             ends = (number, first[condition]), (other, second.get(condition, mp.nan))
             there = _root(partial(self._difference, begin, moved, condition), *ends)
             if there is None:
                 continue
-            aside = BESIDE * (abs(there) if abs(there) > CLOSE * abs(number) else abs(number))
+            aside = DISTANCE * (abs(there) if abs(there) > TOLERANCE * abs(number) else abs(number))
             pair = [_moved(begin, *moved, there + side * aside) for side in (-1, 1)]
             low, high = (self.conditions(place).get(condition, mp.nan) for place in pair)
             if low * high < 0:
@@ -110,13 +110,13 @@ def _root(value: Callable[[Any], Any], one: tuple[Any, Any], other: tuple[Any, A
     """Where a function of one number vanishes, by the secant method; ``None`` where that finds nothing."""
     (a, f), (b, g) = one, other
     scale = abs(a)
-    for _ in range(STEPS):
+    for _ in range(MOST_STEPS):
         if g == 0:
             return b
         if not mp.isfinite(g) or not mp.isfinite(f) or g == f:
             return None
         a, f, b = b, g, b - g * (b - a) / (g - f)
-        if abs(b - a) <= CLOSE * max(scale, abs(b)):
+        if abs(b - a) <= TOLERANCE * max(scale, abs(b)):
             return b
         g = value(b)
     return None

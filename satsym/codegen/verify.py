@@ -36,9 +36,9 @@ from satsym.symbolic.checks import drawn_from, numeric_along, random_number
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
-POINTS, FEW = 12, 2
+POINTS, MANY_DIGIT_POINTS = 12, 2
 """Places at which floats are compared, and those of them with more digits."""
-HUGE = 1e150
+LARGEST_NUMBER = 1e150
 """Largest numbers that are compared: floats have their squares."""
 LIMIT = 1e-12
 """Deviation of floats, relative to one plus the size of the number, from which on more digits decide."""
@@ -74,7 +74,7 @@ STEPS = (0.3, 0.02, 0.03, 0.01)
 """Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
 LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
 
-FAR = 1e9
+FAR_FACTOR = 1e9
 """How many times as large, or as small, as at random what regularises is; bounds are so by the square of it."""
 
 Arguments: TypeAlias = dict[str, Any]
@@ -106,14 +106,14 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     watched = many_digits.watched(kernels.text or "", WRITTEN)
     for k, function in enumerate(found):
         of = _Of(derivation.name, function, exact[k], known)
-        for place, values in zip(places[:FEW], expected, strict=False):
+        for place, values in zip(places[:MANY_DIGIT_POINTS], expected, strict=False):
             _same_text(of, text, place, values[k])
         for place in limiting(kernels.spec, function, places[0]):
             if (there := _moderate_values(of, place)) is not None:
                 _same_text(of, text, place, there)
         for form in (form for form in ("", BATCH) if function.name + form in watched):
             out = _shape(function) if form else None
-            begin = [*places[:FEW], *limiting(kernels.spec, function, places[0])]
+            begin = [*places[:MANY_DIGIT_POINTS], *limiting(kernels.spec, function, places[0])]
             for place in beside_thresholds(watched[function.name + form], function.arguments, out, begin, DIGITS):
                 if _ordered(kernels.spec, place) and (there := _moderate_values(of, place)) is not None:
                     _same_text(of, text, place, there, (form,))
@@ -199,7 +199,7 @@ def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterato
     regular = range(len(bounds) - spec.regularising, len(bounds))
     for outer, least, smoothed in [(2, -2, -1), (-2, -2, -1), *([(2, 2, 1)] if inner or regular else [])]:
         powers = [least if i in inner else smoothed if i in regular else outer for i in range(len(bounds))]
-        yield {**place, "bounds": tuple(b * FAR**power for b, power in zip(bounds, powers, strict=True))}
+        yield {**place, "bounds": tuple(b * FAR_FACTOR**power for b, power in zip(bounds, powers, strict=True))}
     if function.name == "control_law":
         yield {**place, "lam": (0.0,) * len(place["lam"])}
 
@@ -380,7 +380,7 @@ def _same_loops(
 
 def moderate(values: Iterable[Any]) -> bool:
     """Whether floats have these, and what they are made of."""
-    return all(abs(value) <= HUGE for value in values)
+    return all(abs(value) <= LARGEST_NUMBER for value in values)
 
 
 def _refuse(model: str, what: str, error: float) -> None:

@@ -43,7 +43,7 @@ class _Said(ABC):
         return dict(self._object)
 
     def to_json(self) -> str:
-        """The same as text."""
+        """Return the analysis as JSON text."""
         return to_json(self._object)
 
     def __getitem__(self, key: str) -> Any:

@@ -54,7 +54,7 @@ class Audit:
         return objects.audit_object(self.rows)
 
     def to_json(self) -> str:
-        """The same as text."""
+        """Return the audit as JSON text."""
         return to_json(self.to_dict())
 
     def latex(self, language: str = "en") -> str:

@@ -20,11 +20,11 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
-"""Of values (k, M) at times (M,), each in the interval behind the node of that number."""
+"""Functions from times (M,) and values (k, M) there to rates (k, M); each column lies behind the node of its number."""
 
 FRACTION = 0.1
-"""Of the instance's tolerance: what the integration between nodes may add."""
-MOST = 64
+"""Share of the instance's tolerance that the integration between nodes may add to the error."""
+MOST_STEPS = 64
 """Steps between two nodes."""
 ROUNDING = 1e-13
 GAINED = 15.0
@@ -76,7 +76,7 @@ class Motion:
         steps, found, enough = 1, self._run(node, interval, t, 1), FRACTION * self.tolerance
         size = np.abs(self.values).max(axis=1, keepdims=True)
         before = np.inf
-        while steps < MOST:
+        while steps < MOST_STEPS:
             steps *= 2
             finer = self._run(node, interval, t, steps)
             off = np.abs(finer - found) / GAINED
@@ -172,7 +172,7 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
 def bounded(
     case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[tuple[int, ...]]
 ) -> tuple[Motion, Pieces | None]:
-    """The same where arcs run on boundaries of constraints, those of each by their numbers."""
+    """Motion between nodes of an extremal whose arcs run on boundaries of constraints, which each arc has by number."""
     from satsym.solvers.constrained.active import field
 
     edges = np.flatnonzero(np.diff(times) == 0.0) + 1

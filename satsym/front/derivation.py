@@ -11,24 +11,20 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from satsym import symbolic
 from satsym.front.refusals import in_one_line
 from satsym.kernels.digest import sealed
 from satsym.records import record
-from satsym.report import artefacts
 from satsym.status import BadInput
-from satsym.symbolic import Model, Problem, loader
-from satsym.symbolic.convention import in_convention, is_minimum
-from satsym.symbolic.latex.typeset import Typesetter, matrices
-from satsym.symbolic.lookup import addresses
-from satsym.symbolic.model import Convention
-from satsym.symbolic.time_limit import within
 from satsym.wording import counted, shown
 
 if TYPE_CHECKING:
     import sympy as sp
 
+    from satsym import symbolic
     from satsym.kernels import Kernels
+    from satsym.symbolic import Model, Problem
+    from satsym.symbolic.latex.typeset import Typesetter
+    from satsym.symbolic.model import Convention
 
 SHOWN = ("first_order", "hamiltonian", "control_law", "costate_equations")
 """Steps of which a derivation consists for those who see it as one formula."""
@@ -88,7 +84,7 @@ class Derivation:
 
     @property
     def name(self) -> str:
-        """Of the problem, or of the model without a cost."""
+        """Name of the problem, or of the model where there is no cost."""
         return self.derived.name
 
     @property
@@ -103,6 +99,11 @@ class Derivation:
 
     @cached_property
     def _generated(self) -> tuple[str, Kernels]:
+        from satsym.report import artefacts
+        from satsym.symbolic import loader
+        from satsym.symbolic.convention import is_minimum
+        from satsym.symbolic.time_limit import within
+
         if not is_minimum(self.derived):
             return derive(self, "minimum")._generated
         with loader.explained(), within(artefacts.MAX_SECONDS, self.name):
@@ -110,6 +111,8 @@ class Derivation:
 
     @cached_property
     def _typeset(self) -> Typesetter:
+        from satsym.symbolic.latex.typeset import Typesetter
+
         return Typesetter(self.derived)
 
     def __getitem__(self, address: str) -> Equation | sp.Expr | sp.Matrix | dict[str, Equation]:
@@ -126,18 +129,23 @@ class Derivation:
         BadInput
             If there is none, with what comes near.
         """
+        from satsym.symbolic import Equation as DerivedEquation
+        from satsym.symbolic.lookup import addresses
+
         model, _, rest = address.rpartition(":") if isinstance(address, str) else ("", "", "")
         if model not in ("", self.name) or not rest:
             raise BadInput(f'{shown(address)}: not in the derivation of {self.name}; write "step.equation"')
         if "." not in rest and rest in self.derived:
             return {e.name: self._equation(rest, e) for e in self.derived.step(rest).equations}
         found = addresses.resolve(self.derived, f"{self.name}:{rest}")
-        if isinstance(found, symbolic.Equation):
+        if isinstance(found, DerivedEquation):
             return self._equation(rest.partition(".")[0], found)
         return found.matrix if isinstance(found, addresses.Family) else found
 
     def __iter__(self) -> Any:
         """Addresses of all equations."""
+        from satsym.symbolic.lookup import addresses
+
         return iter(addresses.addresses(self.derived))
 
     def __contains__(self, address: object) -> bool:
@@ -168,6 +176,7 @@ class Derivation:
         BadInput
             If the folder cannot be written to.
         """
+        from satsym.report import artefacts
         from satsym.report.results.files import check_writable
 
         check_writable(Path(folder))
@@ -203,6 +212,8 @@ class Derivation:
 
     def _lines(self, name: str) -> list[str]:
         """The equations of a step; matrices whose entries they are come first, in place of these."""
+        from satsym.symbolic.latex.typeset import matrices
+
         step, tex = self.derived.step(name), self._typeset.tex
         named = matrices(self.derived, step)
         entries = [e for one in named for e in one.equations]
@@ -240,6 +251,10 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
     BadInput
         If there is no such thing, or it cannot be derived from: with one line that says why.
     """
+    from satsym.report import artefacts
+    from satsym.symbolic import Model, Problem, loader
+    from satsym.symbolic.convention import in_convention
+
     source, path = "", None
     stating: Mapping[Path, str] = {}
     if isinstance(subject, Derivation):
@@ -260,6 +275,11 @@ _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
 
 
 def _kept(subject: Problem | Model, source: str, path: Path | None, stating: Mapping[Path, str]) -> Derivation:
+    from satsym import symbolic
+    from satsym.report import artefacts
+    from satsym.symbolic import loader
+    from satsym.symbolic.time_limit import within
+
     key = pickle.dumps((subject, source, stating))
     if key not in _KEPT:
         with loader.explained(path, subject), within(artefacts.MAX_SECONDS, subject.name):

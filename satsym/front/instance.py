@@ -121,7 +121,7 @@ class Instance:
 
     @in_one_line
     def with_(self, **changes: Any) -> Instance:
-        """The same with changes, checked anew.
+        """Return the instance with changes, checked anew.
 
         Parameters
         ----------

@@ -129,7 +129,7 @@ class Result(ABC, Generic[Found]):
         """What the command line prints with ``--json``."""
 
     def to_json(self) -> str:
-        """The same as text."""
+        """Return the result as JSON text."""
         return to_json(self.to_dict())
 
     @property

@@ -39,7 +39,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def method(self) -> str:
-        """Of solving."""
+        """Name of the method that solved the instance."""
         return self.found.method
 
     @property
@@ -59,7 +59,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def iterations(self) -> int:
-        """Of the method."""
+        """Number of iterations of the method."""
         return self.found.iterations
 
     @property

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 DRAWN = 8
 """States at which an inequality is looked at: a derivative that vanishes at all of these vanishes everywhere."""
 
-ITERATIONS, SETTLED = 60, 1e-14
+ITERATIONS, LAST_STEP = 60, 1e-14
 """Steps of Newton's method, and the last one's size, relative to the time it leads to."""
 
-SAME = 1e-12
+TIME_TOLERANCE = 1e-12
 """Relative difference of final times that are one."""
 
 
@@ -47,7 +47,7 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
     found = instance.tf
     for name in met:
         root = _root(instance, name)
-        if root is None or (found is not None and abs(root - found) > SAME * max(abs(root), abs(found))):
+        if root is None or (found is not None and abs(root - found) > TIME_TOLERANCE * max(abs(root), abs(found))):
             when = "after the start" if found is None else f"{found:.6g} that is given"
             raise BadInput(f"{instance.called}: terminal inequality {name}: it is met at no final time {when}")
         found = root
@@ -66,7 +66,7 @@ def _root(instance: Instance, name: str) -> float | None:
         if not np.isfinite(step):
             return None
         t -= step
-        if abs(step) <= SETTLED * max(abs(t), 1.0):
+        if abs(step) <= LAST_STEP * max(abs(t), 1.0):
             return t if t > instance.t0 else None
     return None
 

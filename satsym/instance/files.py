@@ -88,7 +88,7 @@ def parsed(found: str) -> dict[str, Any]:
 
 
 def finite(tree: dict[str, Any]) -> dict[str, Any]:
-    """The same tree, whose numbers are all finite.
+    """Return the tree of an instance file once all its numbers are known to be finite.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Written:
     tree: Mapping[str, Any]
     """Tables as TOML has them."""
     name: str
-    """Of the instance."""
+    """Name of the instance."""
     path: Path
     """Its file; models are looked for beside it."""
     given: str = ""

@@ -32,10 +32,10 @@ class Table(str, Enum):
 
 
 GUESS = "tf_guess"
-"""Of a free final time: may be set where none is given."""
+"""Key of the guess of a free final time, which may be set where the file has none."""
 
 SIDES = ("lower", "upper")
-"""Of bounds on one control, as ``control.u1.lower``."""
+"""Last parts of keys of bounds on one control, as in ``control.u1.lower``."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class Key:
 
     @property
     def side(self) -> str:
-        """Of a bound of one control, ``lower`` or ``upper``."""
+        """Side of the control's interval that is bounded, ``lower`` or ``upper``."""
         return self.name.rpartition(".")[2]
 
     def _control(self, spec: ProblemSpec) -> int:

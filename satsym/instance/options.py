@@ -103,7 +103,7 @@ def _no_repetition(names: Sequence[str], key: str) -> None:
 MOST_BYTES = 2**31
 
 _BYTES = 8
-"""Of a number."""
+"""Bytes of a floating-point number."""
 
 
 def needed_memory(options: SolverOptions, spec: ProblemSpec) -> int:

@@ -15,7 +15,7 @@ from satsym.wording import shown, suggestion
 FRAMES = ("EME2000", "ICRF", "GCRF")
 """Axes that do not rotate, by the names of CCSDS: mean equator and equinox of J2000, and the celestial frames."""
 YEARS = range(1900, 2200)
-"""Of an epoch."""
+"""Calendar years in which an epoch may lie."""
 SPACE = 3
 """Components of a position that needs no plane."""
 

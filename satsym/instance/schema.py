@@ -91,11 +91,11 @@ class Key:
 
     meaning: str
     commands: tuple[str, ...] = ALL
-    """Those that use it."""
+    """Commands that use the key."""
     unit: str = ""
-    """Of a number that stands without one; empty for what is no quantity."""
+    """Unit of a number that stands without one; empty for what is no quantity."""
     names: str = ""
-    """Of a table whose keys are the model's: what these are."""
+    """Kind of the names that are the keys of a table, such as states; empty where the keys are fixed."""
 
 
 class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -30,7 +30,7 @@ class BoundedNorm:
     """Controls whose norm is bounded."""
 
     name: str
-    """Of their set, empty where they are all."""
+    """Name of the set that these controls form; empty where it holds all controls of the model."""
     places: tuple[int, ...]
     """In the model's order."""
     lower: float

@@ -80,7 +80,7 @@ def entry(options: LqrOptions | None, name: str, states: Sequence[str]) -> float
 
 
 def placed(options: LqrOptions | None, name: str, value: float, states: Sequence[str]) -> LqrOptions | None:
-    """The same with another value of one of these, which nothing checks."""
+    """Return the options of a regulator with another value of one weight, which nothing checks."""
     if options is None or (place := _place(options, name, states)) is None:
         return options
     letter, i, j = place
@@ -159,7 +159,7 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
 
 
 def smallest_eigenvalue(matrix: Sequence[Sequence[float]]) -> float:
-    """Of the matrix with its diagonal scaled to 1, which keeps the sign and does not depend on units."""
+    """Smallest eigenvalue of the matrix with its diagonal scaled to 1, which keeps its sign whatever the units."""
     import numpy as np
 
     values = np.array(matrix)

@@ -19,8 +19,8 @@ from satsym.kernels.contract import BATCH, LINEAR, Signature, loops, missing, po
 from satsym.spec import PRODUCT, ProblemSpec
 
 _IMPORTS = ("import math", "import numpy as np")
-_LARGEST = 10**6
-_LONGEST = 1000
+_LARGEST_INTEGER = 10**6
+_LONGEST_NAME = 1000
 _MOST_WORDS = 200_000
 """Names, numbers and signs, ends of lines among them; shipped modules have a tenth of that. What Python makes of a text
 takes thousandfold its memory."""
@@ -99,9 +99,9 @@ def _literal(node: ast.AST) -> None:
                 _literal(value)
         case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=float() | int())):
             pass
-        case ast.Constant(value=str() as text) if len(text) <= _LONGEST and text.isprintable():
+        case ast.Constant(value=str() as text) if len(text) <= _LONGEST_NAME and text.isprintable():
             pass
-        case ast.Constant(value=int() as number) if abs(number) <= _LARGEST:
+        case ast.Constant(value=int() as number) if abs(number) <= _LARGEST_INTEGER:
             pass
         case ast.Constant(value=float() as number) if isfinite(number):
             pass

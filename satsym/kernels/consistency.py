@@ -37,8 +37,8 @@ PLACES = 24
 STEPS, FRACTION = 3, 0.1
 """Nodes over which loops are followed, and by which share of themselves states change in a step."""
 
-FAR = 1e9
-NEAR = ((float("nan"), -0.2, 0.1, -0.5), (float("nan"), 0.2, 0.5, -0.1))
+FAR_FACTOR = 1e9
+BOUNDS_ASIDE = ((float("nan"), -0.2, 0.1, -0.5), (float("nan"), 0.2, 0.5, -0.1))
 """Lower and upper bounds aside of a control, relative to it: in turn any, around it, above it and below it."""
 
 SEED = 20
@@ -171,12 +171,12 @@ def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
     """Bounds of a box of which most lie near the control without any: around it, above it or below."""
     m = len(kernels.spec.controls)
     with np.errstate(all="ignore"):
-        unlimited = ControlSet("box", (-FAR,) * m, (FAR,) * m).arguments
+        unlimited = ControlSet("box", (-FAR_FACTOR,) * m, (FAR_FACTOR,) * m).arguments
         law = kernels.control_law_batch(at["t"], at["x"], at["lam"], at["p"], unlimited)
     kinds = np.arange(law.shape[-1])[None, :] + np.arange(m)[:, None]  # no two controls alike
     found = []
     drawn = ControlSet.from_arguments(kernels.spec, at["bounds"])
-    for shifts, bounds in zip(NEAR, (drawn.lower, drawn.upper), strict=True):
+    for shifts, bounds in zip(BOUNDS_ASIDE, (drawn.lower, drawn.upper), strict=True):
         near = law + np.array(shifts)[kinds % len(shifts)] * np.abs(law)
         found += list(np.where(np.isfinite(near), near, np.array(bounds)))
     return tuple(found)

@@ -18,7 +18,7 @@ from satsym.source_files import digest_of
 _LINE = re.compile(r"^Digest: ([0-9a-f]{64})\n", re.MULTILINE)
 _SOURCE = re.compile(r"^Source: ([^\n\0]{1,400}\.py) ([0-9a-f]{32})\n", re.MULTILINE)
 _PLACE = "    satsym derive "
-_LARGEST = 10_000_000
+_MOST_BYTES = 10_000_000
 """Bytes of a derivation file, at most."""
 
 
@@ -78,7 +78,7 @@ def _source_line(path: Path, digest: str, folder: Path) -> str:
 def _now(path: Path) -> str:
     """The digest of a derivation file; empty where there is none that could be one."""
     try:
-        small = path.is_file() and path.stat().st_size <= _LARGEST
+        small = path.is_file() and path.stat().st_size <= _MOST_BYTES
     except (OSError, ValueError):
         return ""
     return digest_of(path) if small else ""

@@ -16,10 +16,10 @@ from satsym.kernels.contract import BATCH, TUPLES, Signature, pointwise, sizes
 from satsym.kernels.core import Function, Kernels
 
 COMPLEX_STEP = 1e-30
-COPIES, ASIDE = 2, 1e-4
+COPIES, COPY_DISTANCE = 2, 1e-4
 """Copies of each place, and how far aside of it they are, relative to each argument."""
 
-FAINT = 1e-4
+SMALLEST_SHARE = 1e-4
 """Share of what a row of derivatives comes to at most, at which something smaller in it counts: terms may cancel."""
 
 TOGETHER = {
@@ -128,12 +128,12 @@ class Evaluation:
         return found
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
-        """How small derivatives may be before what they are made of is lost: see :data:`FAINT`."""
+        """How small derivatives may be before what they are made of is lost: see :data:`SMALLEST_SHARE`."""
         if instead:
             unit, value = size(self._table(by, instead)), size(self(name, **instead))
         else:
             unit, value = self._sizes["", by], self._sizes[name, ""]
-        return np.asarray(FAINT * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
+        return np.asarray(SMALLEST_SHARE * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
 
     @cached_property
     def _sizes(self) -> dict[tuple[str, str], Array]:
@@ -172,7 +172,7 @@ def _aside(seed: int, count: int) -> Array:
     """Factors by which arguments are moved."""
     rng = random.Random(seed)
     drawn = np.array([rng.random() - 0.5 for _ in range(count)])
-    return np.asarray(1.0 + ASIDE * (drawn + np.copysign(0.5, drawn)))
+    return np.asarray(1.0 + COPY_DISTANCE * (drawn + np.copysign(0.5, drawn)))
 
 
 def size(values: Array) -> Array:
@@ -183,5 +183,5 @@ def size(values: Array) -> Array:
     if not np.isfinite(values).all():
         values = np.where(np.isfinite(values), values, 0.0)
     groups = values.reshape(*values.shape[:-1], 1 + COPIES, -1)
-    moved = np.abs(groups[..., 1:, :] - groups[..., :1, :]).max(axis=-2) / ASIDE
+    moved = np.abs(groups[..., 1:, :] - groups[..., :1, :]).max(axis=-2) / COPY_DISTANCE
     return np.asarray(np.maximum(np.abs(groups).max(axis=-2), moved).max(axis=-1, initial=0.0)[..., None])

@@ -30,7 +30,7 @@ from satsym.spec import NAMES, ProblemSpec, is_name
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
-LARGEST = 1_000_000
+MOST_BYTES = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
 
 _DECLARING = "satsym.symbolic"
@@ -191,9 +191,9 @@ def _read(model: str, path: Path) -> str:
     """The text of the file, read once: what is checked is what runs."""
     try:
         with path.open("rb") as stream:
-            data = stream.read(LARGEST + 1)
-        if len(data) > LARGEST:
-            raise BadInput(f"{shown(model)}: larger than {LARGEST} bytes; name a module that `satsym derive` wrote")
+            data = stream.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise BadInput(f"{shown(model)}: larger than {MOST_BYTES} bytes; name a module that `satsym derive` wrote")
         return data.decode("utf-8")
     except OSError as error:
         raise BadInput(f"{shown(model)}: cannot be read ({error.strerror}); check its permissions") from None

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
-from satsym.kernels.evaluation import FAINT, Evaluation, size
+from satsym.kernels.evaluation import SMALLEST_SHARE, Evaluation, size
 from satsym.kernels.path_constraints import of_path_constraints
 from satsym.kernels.relations import Relation, derivative
 
@@ -42,7 +42,7 @@ def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:
     f, lam = of("dynamics"), of.at["lam"]
     work = lam * f
     cost, terms = of("hamiltonian") - work.sum(axis=0), np.abs(work).sum(axis=0)
-    yield Relation("running_cost", "H - lambda' f", of("running_cost"), cost, FAINT * terms)
+    yield Relation("running_cost", "H - lambda' f", of("running_cost"), cost, SMALLEST_SHARE * terms)
     yield from derivative(of, "dynamics", "hamiltonian", ("lam",))
     yield from derivative(of, "costate_rate", "hamiltonian", ("x",), -1.0)
     yield from derivative(of, "terminal_gradient", "terminal_cost", ("x",))
@@ -79,7 +79,9 @@ def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Re
     rates = (_under_law(of, name, control) for name in ("dynamics", "costate_rate"))
     expected = np.concatenate([*rates]) + surplus
     terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
-    yield Relation("canonical", "rates of states and costates under the law", of("canonical"), expected, FAINT * terms)
+    yield Relation(
+        "canonical", "rates of states and costates under the law", of("canonical"), expected, SMALLEST_SHARE * terms
+    )
     yield from derivative(of, "canonical_jacobian", "canonical", ("x", "lam"))
     yield from derivative(of, "canonical_drift", "canonical", ("t",))
 
@@ -103,12 +105,12 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
     slope = of.slope("terminal_cost", "x") + np.einsum("ck,cnk->nk", weights, by_state)
     ends = given * (x - target) + on_reference * (x - curve) + (1.0 - given - on_reference) * (lam - slope)
     terms = np.abs(given * x) + np.abs(on_reference * x) + np.abs(lam) + np.abs(slope)
-    yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, FAINT * terms)
+    yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, SMALLEST_SHARE * terms)
     h = _under_law(of, "hamiltonian", control) + _smoothing(of, control)
     parts = [h, of.slope("terminal_cost", "t")[0], *(weights * by_time[:, 0]), *((slope - lam) * on_reference * pace)]
     size_of_parts = np.sum(np.abs(parts), axis=0)
     yield Relation(
-        "boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * FAINT
+        "boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * SMALLEST_SHARE
     )
     yield from derivative(of, "boundary_jacobian", "boundary", ("x", "lam", "nu", "t"))
 
@@ -134,7 +136,7 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
     alone = u[:, None, :] * np.eye(len(u))[:, :, None]
     idle = of("hamiltonian", u=np.zeros_like(u))
     gained = np.array([of("hamiltonian", u=each) - idle for each in alone.swapaxes(0, 1)])
-    terms = FAINT * np.abs(idle)
+    terms = SMALLEST_SHARE * np.abs(idle)
     yield Relation(
         "switching_function", "contribution of each control to H", sigma * u + weight * np.abs(u), gained, terms
     )

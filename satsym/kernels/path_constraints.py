@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.evaluation import FAINT, Evaluation, size
+from satsym.kernels.evaluation import SMALLEST_SHARE, Evaluation, size
 from satsym.kernels.relations import Relation, along, derivative
 
 
@@ -27,11 +27,11 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     yield Relation("path_rates", "second rates of the constraints", rates[:, 1], wanted, terms[:, 0])
     vanishing, last, own = of("path_vanishing", u=law), of("path_rates", u=law), of("path_constraints", u=law)
     wanted = np.where(second[:, None], last[:, 1], np.where(derived[:, None], last[:, 0], own))
-    faint = FAINT * max(size(last).max(), size(own).max())
+    faint = SMALLEST_SHARE * max(size(last).max(), size(own).max())
     if of.kernels.spec.switching:
         wanted, moved = own.copy(), np.abs(_effect(of)).argmax(axis=1)
         wanted[derived] = np.take_along_axis(of("switching_function"), moved, axis=0)[derived]
-        faint = FAINT * max(size(vanishing).max(), size(wanted).max())
+        faint = SMALLEST_SHARE * max(size(vanishing).max(), size(wanted).max())
     yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, faint)
     for k, order in enumerate(orders):
         if order:

@@ -31,7 +31,7 @@ LIBRARIES = ("numpy", "scipy", "numba")
 """Whose versions may change the last digits."""
 
 PLACES = ("name", "path", "title", "model")
-"""Of an instance, what no result depends on, and the model, of which there is a digest."""
+"""Keys of an instance that its digest leaves out: no result depends on them, and the model has a digest of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,12 +118,12 @@ class Study:
 
     @cached_property
     def digest(self) -> str:
-        """Of all that."""
+        """Digest of the whole study: its instance, its model and all that varies."""
         return _digest(self.identity)
 
     @property
     def row_digest(self) -> str:
-        """Of what the result of a row depends on besides its own numbers."""
+        """Digest of what the result of a row depends on besides its own numbers."""
         varied = {*self.design.stated(), "rows", "chunk", "table"}
         return _digest({k: v for k, v in self.identity.items() if k not in varied and not k.startswith("instance ")})
 

@@ -36,20 +36,20 @@ from satsym.studies import chunks, rows
 from satsym.studies.asked import Study, Task
 from satsym.studies.design import Grid
 from satsym.studies.rows import Column, Row
-from satsym.studies.solving import ALONE, certified, drawn_for_competitors
+from satsym.studies.solving import SINGLE_ORIGIN, certified, drawn_for_competitors
 from satsym.studies.together import CLOSED, plain
 
-FEWEST, MOST = 4, 100_000
+LEAST_ROWS_OF_JUMP, MOST_ROWS = 4, 100_000
 """Rows on a line in which one may jump against the trend, and rows of a study that is looked through."""
 
 JUMP, ROUNDING = 4.0, 1e-6
 """How many times what rows nearby change by is a jump, and the share of the largest value that is none."""
 
-SAME = 1e-6
+RELATIVE_GAP = 1e-6
 """Relative difference of costs and of costates of one extremal."""
 
 SAMPLES, ACCURACY = 61, 1e-8
-"""Of a neighbour's motion, and its error: it is only where one starts."""
+"""Nodes, and largest error, of a neighbour's trajectory from which a row starts: it is only an initial guess."""
 
 ORIGIN = "neighbour's branch"
 """The origin of answers that were found from a neighbour's, because they cost less."""
@@ -61,7 +61,7 @@ class Known:
 
     number: int
     values: tuple[float, ...]
-    """Of what varies."""
+    """Values of what the study varies."""
     key: str
     cost: float
     """As it is minimised."""
@@ -98,7 +98,11 @@ class Compared:
 
 def looked_for(study: Study) -> bool:
     """Whether rows have neighbours, and can be solved from these: smooth problems on a grid with enough rows."""
-    grid = isinstance(study.design, Grid) and max(study.design.shape) >= FEWEST and study.design.count <= MOST
+    grid = (
+        isinstance(study.design, Grid)
+        and max(study.design.shape) >= LEAST_ROWS_OF_JUMP
+        and study.design.count <= MOST_ROWS
+    )
     return grid and study.command is Command.SOLVE and plain(study.task)
 
 
@@ -122,7 +126,7 @@ class Branches:
 
     @classmethod
     def of(cls, study: Study, found: Iterator[tuple[int, list[float], Row]]) -> Branches:
-        """Of rows as they were computed: number, values, and what came of it."""
+        """Collect the branches of a study from rows as they were computed: number, values, and result."""
         known, closed = dict[int, Known](), set[int]()
         for number, values, row in found:
             if one := _known(study, number, values, row):
@@ -157,7 +161,7 @@ class Branches:
         self.take([each for two in both for each in two])
 
     def take(self, answers: Sequence[tuple[Known, Row | None]]) -> None:
-        """Of several other answers of a row the cheapest, of equal ones the first."""
+        """Keep the cheapest of several other answers of a row, of equally cheap ones the first."""
         better: dict[int, tuple[Known, Row]] = {}
         for own, row in answers:
             new = None if row is None else _known(self.study, own.number, list(own.values), row)
@@ -230,7 +234,7 @@ def jumping(places: Array, values: Array) -> NDArray[np.bool_]:
     values
         Shape (rows, quantities).
     """
-    if len(places) < FEWEST:
+    if len(places) < LEAST_ROWS_OF_JUMP:
         return np.zeros(max(len(places) - 1, 0), dtype=bool)
     slopes = np.abs(np.diff(values, axis=0)) / np.diff(places)[:, None]
     apart = np.full((2, slopes.shape[1]), np.nan)
@@ -294,9 +298,9 @@ def scouted(packed: bytes, group: Some[Scout]) -> Row | None:
     """What a worker does with a scout: the answer from a cold start, if that is a minimum and costs less."""
     task, own = chunks.unpacked(packed), group.of[0].own
     found = tried(partial(solvers.solve, keys.at(task.instance, task.keys, own.values)))
-    if found is None or not found.status.answered or not own.cost - found.objective > SAME * abs(own.cost):
+    if found is None or not found.status.answered or not own.cost - found.objective > RELATIVE_GAP * abs(own.cost):
         return None
-    return _row(task, own, found.instance, found, ALONE)
+    return _row(task, own, found.instance, found, SINGLE_ORIGIN)
 
 
 def _result(future: Future[Result]) -> Result | None:
@@ -329,8 +333,15 @@ def _again(task: Task, own: Known, instance: Instance, other: Known, theirs: Ins
     if found is None or not found.status.answered:
         return False
     apart = found.objective - own.cost
-    if abs(apart) <= SAME * abs(own.cost):
-        return bool(np.allclose(found.lam[:, 0], own.costates, rtol=SAME, atol=SAME * np.abs(found.lam[:, 0]).max()))
+    if abs(apart) <= RELATIVE_GAP * abs(own.cost):
+        return bool(
+            np.allclose(
+                found.lam[:, 0],
+                own.costates,
+                rtol=RELATIVE_GAP,
+                atol=RELATIVE_GAP * np.abs(found.lam[:, 0]).max(),
+            )
+        )
     return False if apart > 0.0 else _row(task, own, instance, found, ORIGIN) or False
 
 

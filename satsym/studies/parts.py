@@ -37,7 +37,7 @@ class Place:
 
     line: int
     size: int
-    """Of its arrays, in bytes."""
+    """Size of the arrays of the part in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +141,7 @@ class Parts:
         return self.done[number].size
 
     def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
-        """Of a chunk, by the place of the row in it."""
+        """Trajectories of a chunk by the place of their row in it, each as arrays by name."""
         self._lines.seek(self.done[number].line)
         found = _decoded(self._lines.readline())
         if found is None or not found["arrays"][1]:

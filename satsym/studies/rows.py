@@ -114,7 +114,7 @@ def failed(key: str, failure: Failure, message: str) -> Row:
 
 
 def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
-    """Of an optimum, or of there being none."""
+    """Make the row of an optimum, or of an instance that has none."""
     spec = solution.instance.model.spec
     numbers: dict[str, Scalar] = {}
     if solution.status.answered:
@@ -158,7 +158,7 @@ class Found:
 
 
 def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:
-    """Of the k-th of many optima that were solved together."""
+    """Make the row of the k-th of many optima that were solved together."""
     names = spec.state_names
     numbers: dict[str, Scalar] = {
         Column.OBJECTIVE: _plain(spec.objective(found.costs[k])),
@@ -175,12 +175,12 @@ def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str 
 
 
 def infeasible(key: str, message: str) -> Row:
-    """Of an end that cannot be reached."""
+    """Make the row of an end that cannot be reached."""
     return Row(key, Status.INFEASIBLE.value, Status.INFEASIBLE.explain(message))
 
 
 def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:
-    """Of a motion."""
+    """Make the row of a simulated motion."""
     spec = simulation.instance.model.spec
     numbers: dict[str, Scalar] = {}
     if simulation.status.answered:
@@ -200,7 +200,7 @@ def of_regulator(
     residual: float,
     cost: float | None,
 ) -> Row:
-    """Of a linear feedback, with the names of its inputs and of the states."""
+    """Make the row of a linear feedback, with the names of its inputs and of the states."""
     numbers: dict[str, Scalar] = {Column.COST_FROM_INITIAL: None if cost is None else _plain(cost)}
     for name, row in zip(names[0], K.tolist(), strict=True):
         numbers |= {f"K.{name}.{state}": _plain(k) for state, k in zip(names[1], row, strict=True)}

@@ -20,10 +20,10 @@ from satsym.studies.asked import Checked, Task
 from satsym.studies.rows import Cases, Row, Work
 from satsym.studies.together import plain, rows_together, together
 
-EACH = 100
-"""Of so many rows about one is compared with competitors where a sample of them is."""
+ROWS_PER_COMPARISON = 100
+"""Number of rows of which about one is compared with competitors, where only a sample of them is."""
 
-ALONE = "single solver"
+SINGLE_ORIGIN = "single solver"
 """The origin of answers that were found without their neighbours."""
 
 
@@ -56,7 +56,7 @@ def _sampled(task: Task, cases: Cases) -> list[Row]:
 
 def drawn_for_competitors(checked: Checked, key: str) -> bool:
     """Whether a row is compared with competitors: all are, a sample of them, or none."""
-    return checked is Checked.FULL or (checked is Checked.SAMPLE and int(key, 16) % EACH == 0)
+    return checked is Checked.FULL or (checked is Checked.SAMPLE and int(key, 16) % ROWS_PER_COMPARISON == 0)
 
 
 @lru_cache(maxsize=8)
@@ -67,7 +67,7 @@ def _less(task: Task, checked: Checked) -> Task:
 
 def _single(task: Task) -> Callable[[str, Instance], Row]:
     """A row by itself."""
-    return lambda key, instance: rows.of_solution(key, alone(instance, task.checked), ALONE, task.trajectories)
+    return lambda key, instance: rows.of_solution(key, alone(instance, task.checked), SINGLE_ORIGIN, task.trajectories)
 
 
 def warm(task: Task) -> bool:

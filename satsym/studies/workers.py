@@ -25,7 +25,8 @@ ONE_THREAD = dict.fromkeys(LIBRARIES, "1")
 """Read by libraries when they are loaded: on matrices as small as ours, threads cost several times what they save."""
 
 QUIETLY = {"PYTHONWARNINGS": "ignore:resource_tracker"}
-"""Of the process that outlives this one if it is killed: it removes the semaphores that are left, and would warn."""
+"""Environment of the process that outlives this one if it is killed: it removes the semaphores that are left, and would
+warn of them."""
 
 
 @dataclass(frozen=True, eq=False)

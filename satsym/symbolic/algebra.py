@@ -19,7 +19,7 @@ from satsym.symbolic.model import Model, symbols_of, t
 
 Simplified = TypeVar("Simplified", sp.Expr, sp.Matrix)
 
-LARGEST = 400
+MOST_TERMS_SIMPLIFIED = 400
 """Terms, were it multiplied out, of what is simplified; what would have more stays as it was derived."""
 
 LENGTHY = 1000
@@ -34,7 +34,7 @@ TURNING = 300
 PROVABLE = 4000
 """Terms of a sum that is multiplied out."""
 
-LONG = 150
+MOST_OPERATIONS = 150
 GROWTH = 2
 """Terms of what is multiplied out, and how many times as many operations as before, beyond which it stays as it was."""
 
@@ -47,7 +47,7 @@ MINUTE = 1e-30
 ONE_POINT = 20
 """Seed of the point at which expressions are looked at first."""
 
-STEEP = 20
+LARGEST_EXPONENT = 20
 """Largest number in an exponent that is multiplied out."""
 
 
@@ -111,7 +111,7 @@ def simplify(expression: Simplified) -> Simplified:
 def shortened(expression: sp.Expr) -> sp.Expr:
     """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
     operations, turned = expression.count_ops(), len(expression.atoms(TrigonometricFunction))
-    if terms_of(expression) > LARGEST or operations > LENGTHY:
+    if terms_of(expression) > MOST_TERMS_SIMPLIFIED or operations > LENGTHY:
         return expression
     if operations * turned > TURNING and differs_from_zero(expression):
         return expression
@@ -268,7 +268,7 @@ def _multiplied_out(expression: sp.Expr) -> sp.Expr | None:
     if terms_of(expression) > PROVABLE:
         return None
     expanded = _expand(expression)
-    long = terms_of(expanded) > LONG
+    long = terms_of(expanded) > MOST_OPERATIONS
     return None if long and expanded.count_ops() > GROWTH * expression.count_ops() else expanded
 
 
@@ -322,7 +322,7 @@ def _named(expression: sp.Expr, exponentials: Iterable[sp.Expr]) -> tuple[sp.Exp
     for exponent, factors in families.items():
         common = reduce(sp.gcd, factors.values())
         least = min(factors, key=lambda e: abs(factors[e]))
-        if max(abs(f) for f in factors.values()) > STEEP * common:
+        if max(abs(f) for f in factors.values()) > LARGEST_EXPONENT * common:
             powers = [({e: sp.Integer(1)}, e) for e in factors]
         elif abs(factors[least]) == common:  # written as it is
             powers = [({e: factor / factors[least] for e, factor in factors.items()}, least)]
@@ -342,7 +342,7 @@ def _divides_by_a_sum(exponential: sp.exp) -> bool:
 
 def _is_steep(coefficient: sp.Expr) -> bool:
     """Whether a coefficient in an exponent makes a high power, or none that sympy sees."""
-    return abs(coefficient.p if coefficient.is_Rational else coefficient) > STEEP
+    return abs(coefficient.p if coefficient.is_Rational else coefficient) > LARGEST_EXPONENT
 
 
 def _scales_a_difference(exponential: sp.exp) -> bool:

@@ -13,19 +13,19 @@ from typing import Any, TypeVar
 
 import sympy as sp
 
-from satsym.agreement import MOST
+from satsym.agreement import MOST_DIGITS
 from satsym.spec import Variable
 from satsym.symbolic.model import Model
 
 T = TypeVar("T")
 
-DIGITS = 2 * MOST
+DIGITS = 2 * MOST_DIGITS
 """Twice as many as numbers have in checks at most."""
 
 CERTAIN = 400
 """Digits of a long decimal that are right after a few multiplications."""
 
-SMALL = 20
+LARGEST_RATIO_NUMBER = 20
 """Numbers in the ratio of two decimals that are multiples of one."""
 
 
@@ -97,8 +97,8 @@ def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], di
 def _small_ratio(quotient: sp.Float) -> sp.Rational | None:
     """The fraction of small numbers that a quotient of decimals is, but for rounding."""
     exact = Fraction(*map(int, sp.Rational(quotient).as_numer_denom()))
-    near = exact.limit_denominator(SMALL)
-    close = 0 < abs(near.numerator) <= SMALL and abs(exact - near) <= abs(exact) / 10**CERTAIN
+    near = exact.limit_denominator(LARGEST_RATIO_NUMBER)
+    close = 0 < abs(near.numerator) <= LARGEST_RATIO_NUMBER and abs(exact - near) <= abs(exact) / 10**CERTAIN
     return sp.Rational(near.numerator, near.denominator) if close else None
 
 

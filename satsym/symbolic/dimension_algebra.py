@@ -17,7 +17,7 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 """Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
-_SAME = (sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink)
+_PRESERVING = (sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink)
 """What needs arguments of one dimension and returns it."""
 
 
@@ -64,7 +64,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return known[e.name]
     if e.is_number:
         return None if e == 0 else PLAIN
-    if isinstance(e, _SAME):
+    if isinstance(e, _PRESERVING):
         return _common(e.args, known)
     if e.is_Mul:
         return product(dimension_of(a, known) for a in e.args)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sympy as sp
 from sympy.core import exprtools
 
-LARGEST = 2**64
+LARGEST_COEFFICIENT = 2**64
 """Coefficient of a polynomial, in whole numbers, whose roots are asked for."""
 
 _sign = exprtools._monotonic_sign
@@ -37,4 +37,4 @@ def _has_long_coefficients(expression: sp.Expr) -> bool:
     if polynomial.degree() < 3 or expression.has(sp.Float):
         return polynomial.degree() >= 3
     exact = polynomial.domain.is_ZZ or polynomial.domain.is_QQ
-    return exact and polynomial.clear_denoms(convert=True)[1].max_norm() > LARGEST
+    return exact and polynomial.clear_denoms(convert=True)[1].max_norm() > LARGEST_COEFFICIENT

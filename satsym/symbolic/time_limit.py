@@ -11,7 +11,7 @@ from types import FrameType
 
 from satsym.symbolic.derivation import DerivationError
 
-AGAIN = 0.5
+SIGNAL_INTERVAL = 0.5
 """Seconds between repetitions of the signal, for code that swallowed it."""
 
 _at: list[tuple[str, str]] = []
@@ -71,7 +71,7 @@ def _timer(seconds: float) -> Iterator[None]:
         yield
         return
     signal.signal(signal.SIGALRM, _over)
-    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
+    signal.setitimer(signal.ITIMER_REAL, seconds, SIGNAL_INTERVAL)
     try:
         yield
     finally:

@@ -16,7 +16,7 @@ __all__ = ["run"]
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bench, "QUICK", 0.01)
+    monkeypatch.setattr(bench, "QUICK_SECONDS", 0.01)
 
 
 def test_an_instance_is_measured_by_steps_and_by_its_solution(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

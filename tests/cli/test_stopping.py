@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from satsym.cli.stopping import AGAIN, Terminated, terminable
+from satsym.cli.stopping import STOP_INTERVAL, Terminated, terminable
 from tests.cli.test_cli import INSTANCE, Run, case, one_line, program, run
 
 __all__ = ["case", "run"]
@@ -142,7 +142,7 @@ def test_cleaning_up_after_a_stop_is_not_stopped() -> None:
     def tidy() -> None:
         with suppress(OSError):
             raise OSError
-        time.sleep(4 * AGAIN)
+        time.sleep(4 * STOP_INTERVAL)
         cleaned.append(True)
 
     def working() -> None:

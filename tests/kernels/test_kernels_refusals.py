@@ -11,7 +11,7 @@ import pytest
 from satsym.kernels import load
 from satsym.kernels.checking import check
 from satsym.kernels.digest import sealed
-from satsym.kernels.loading import LARGEST
+from satsym.kernels.loading import MOST_BYTES
 from satsym.status import BadInput
 
 
@@ -291,7 +291,7 @@ def test_deep_blocks_are_refused_without_a_crash(legal: str, tmp_path: Path, tra
         b"# coding: utf-7\n+AAo-import os\n",
         b"\x1b[2J = 1",
         b"(" * 10**6,
-        b"x = 1\n" * (LARGEST // 6 + 1),
+        b"x = 1\n" * (MOST_BYTES // 6 + 1),
         b"\\" * 10**5,
         b"'''" + b"\\d" * 10**5 + b"'''",
         b"9" * 10**5,

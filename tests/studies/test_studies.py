@@ -62,7 +62,7 @@ def test_each_row_is_what_solving_it_alone_gives(tmp_path: Path) -> None:
 def test_some_rows_are_compared_with_competitors_and_the_others_stay_as_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(solving, "EACH", 4)
+    monkeypatch.setattr(solving, "ROWS_PER_COMPARISON", 4)
     vary = {"initial.r": (1.0, 1.1, 48)}
     some, none = (
         study(NAME, tmp_path / kind, vary=vary, certificate=kind, executor=here, workers=1)

@@ -19,7 +19,7 @@ from satsym.solvers.switching.linear.by_reach import separating
 from satsym.status import BadInput
 from satsym.studies import chunks, solving
 from satsym.studies.asked import Study, Task
-from satsym.studies.asking import MANY
+from satsym.studies.asking import LEAST_ROWS_COMPILED
 from satsym.studies.asking import asked as asking
 from satsym.studies.rows import Found, Row
 from satsym.studies.together import rows_together, together
@@ -80,7 +80,10 @@ def test_without_certificates_rows_are_minima_all_the_same() -> None:
 
 def test_many_rows_are_compiled_where_that_is_possible() -> None:
     pytest.importorskip("numba")
-    few, many = (asked(sample=count, uniform={"initial.r": "0.9,1.1"}) for count in (MANY - 1, MANY))
+    few, many = (
+        asked(sample=count, uniform={"initial.r": "0.9,1.1"})
+        for count in (LEAST_ROWS_COMPILED - 1, LEAST_ROWS_COMPILED)
+    )
     assert not few.compiled
     assert many.compiled
     assert many.identity["backend"] == "numba"

@@ -14,7 +14,7 @@ import pytest
 from satsym.cli import main
 from satsym.symbolic import time_limit
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.time_limit import AGAIN, entering, within
+from satsym.symbolic.time_limit import SIGNAL_INTERVAL, entering, within
 
 SLOW = """
 import sympy as sp
@@ -82,7 +82,7 @@ def test_a_signal_that_comes_while_the_timer_is_stopped_leaves_no_timer_behind(m
     monkeypatch.setattr(time_limit, "_disarm", late)
     with pytest.raises(DerivationError), within(0.05, "mine"):
         time.sleep(5.0)
-    time.sleep(2.0 * AGAIN)
+    time.sleep(2.0 * SIGNAL_INTERVAL)
     assert signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 

@@ -17,7 +17,7 @@ from satsym.solvers.simulation.balances import balances
 from satsym.status import BadInput, Status
 
 TOLERANCE = 1e-13
-"""Of each step of the integration, relative to the size of each state."""
+"""Largest error of a step of the integration, relative to the size of each state."""
 MOST_ARCS = 1000
 STEPS_PER_SCALE = 20.0
 
@@ -181,7 +181,7 @@ def simulation_of(
 
 
 def within_already(plant: Plant) -> BadInput:
-    """That there is nothing to simulate."""
+    """Return the refusal of an instance that begins within the deadband of its target and states no final time."""
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
         f"{case.called}: [initial] {name} lies within the deadband of its target already; state another one, or a "

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolution
 
 TOLERANCE = 1e-13
-"""Of each step of the integration, relative to the size of each state."""
+"""Largest error of a step of the integration, relative to the size of each state."""
 MOST_STEPS = 10_000
 """As many times as the fastest motion of the loop may decay to 1/e in the time that is simulated."""
 
@@ -41,7 +41,7 @@ class Loop:
     rate: int
     """Places of the state that follows the command and of its rate of change."""
     gains: tuple[float, float]
-    """Of the rate and of the state."""
+    """Gains of the rate and of the state."""
     compensation: float
     """Control for each unit of the state that follows."""
     command: float

@@ -9,7 +9,7 @@ import numpy as np
 
 from satsym.arrays import Array
 
-SETTLED = 0.02
+SETTLING_BAND = 0.02
 """Share of the step that the error keeps below once the motion counts as settled."""
 
 
@@ -43,7 +43,7 @@ def performance(
         return float(fraction(np.array([t]))[0])
 
     at = fraction(times)
-    reached, off = np.flatnonzero(at >= 1.0), np.flatnonzero(np.abs(at - 1.0) > SETTLED)
+    reached, off = np.flatnonzero(at >= 1.0), np.flatnonzero(np.abs(at - 1.0) > SETTLING_BAND)
     top, after = int(at.argmax()), int(off[-1]) + 1 if len(off) else 0
     highest = float(at.max())
     if 0 < top < len(at) - 1:
@@ -51,7 +51,7 @@ def performance(
         found = minimize_scalar(lambda t: -at_time(t), bounds=near, method="bounded", options={"xatol": 1e-9 * near[1]})
         highest = max(highest, -float(found.fun))
     first = _crossing(times, lambda t: at_time(t) - 1.0, int(reached[0])) if len(reached) else math.nan
-    settled = _crossing(times, lambda t: abs(at_time(t) - 1.0) - SETTLED, after) if after < len(at) else math.nan
+    settled = _crossing(times, lambda t: abs(at_time(t) - 1.0) - SETTLING_BAND, after) if after < len(at) else math.nan
     return {"first_reached": first, "settling_time": settled, "overshoot": max(highest - 1.0, 0.0)}
 
 

@@ -14,7 +14,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 POINTS = 6
-"""Of Gauss in each interval between nodes."""
+"""Gauss points in each interval between nodes."""
 
 
 @dataclass(frozen=True, eq=False)

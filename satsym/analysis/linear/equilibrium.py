@@ -22,7 +22,7 @@ AT_REST = 1e-9
 """Rates below this, relative to what they are made of, are zero."""
 POLISHING = 3
 """Steps of Newton's method after the search."""
-SAME = 1e-9
+ENTRY_TOLERANCE = 1e-9
 """Entries of A and B, in units that suit them, that differ by less than this are the same."""
 LOOKED_AT = (0.0, 0.37, 1.21, 2.9)
 """Times at which coefficients are compared, in units of 1/|A|."""
@@ -69,7 +69,7 @@ class Linearisation:
 
     @property
     def rates_batch(self) -> Function:
-        """The same on arrays whose last axis counts states."""
+        """Rates of change for arrays of states and controls whose last axis counts instances."""
         return self.model.functions[_exact(self.model) + BATCH]
 
 
@@ -153,13 +153,13 @@ def _same(unit: Scaled, found: Linearisation, t: float, x: Array) -> bool:
     """Whether A and B there are those of the linearisation."""
     A, B = jacobians(found.model, found.parameters, t, x)
     change = np.hstack([(A - found.system.A) * unit.states, (B - found.system.B) * unit.inputs])
-    return bool((np.abs(change) / unit.states[:, None] <= SAME * unit.rate * unit.size).all())
+    return bool((np.abs(change) / unit.states[:, None] <= ENTRY_TOLERANCE * unit.rate * unit.size).all())
 
 
 def _rests(model: Kernels, p: Sequence[float], unit: Scaled, t: float, x: Array) -> bool:
     """Whether nothing moves there at that time."""
     rates = np.array(model.dynamics(t, x.tolist(), (0.0,) * len(model.spec.controls), p))
-    return bool((np.abs(rates) <= SAME * unit.rate * unit.size * (unit.states + np.abs(x))).all())
+    return bool((np.abs(rates) <= ENTRY_TOLERANCE * unit.rate * unit.size * (unit.states + np.abs(x))).all())
 
 
 def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0, where: str = "") -> Array:

@@ -21,7 +21,8 @@ from satsym.kernels import Kernels
 SIMPLE = 10_000
 """Largest denominator of a simple fraction: of floats that are none, one in a hundred million looks like one."""
 DIGITS_OF_PARAMETERS, DIGITS_OF_FORMULAS = 15, 12
-"""Of a decimal at most, for what users wrote and for what a formula has: a float that was computed usually has more."""
+"""Most digits of a number that is read as the decimal it prints as: of a parameter that a user wrote, and of a value of
+a formula. A float that was computed usually has more."""
 
 SAME_AS_FLOATS = (0, 1)
 """Numbers at which functions have exact values, as sin(0) and log(1), or one of too many digits."""

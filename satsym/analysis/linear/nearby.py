@@ -78,7 +78,7 @@ class Group:
         return tuple(sum(count > i for count in added) for i in range(added[0]))
 
     def _weyr(self, change: float, known: bool = False) -> list[int]:
-        """These numbers, as far as the null space grows, or where there is `known` to be a single eigenvalue.
+        """Weyr characteristic: by how much each power of the shifted matrix enlarges the null space, while it grows.
 
         They are found by deflation, never by forming powers (G. H. Golub and J. H. Wilkinson, SIAM Review 18, 1976).
         """
@@ -102,7 +102,7 @@ class Group:
         return self._solved(len(self.values))
 
     def _solved(self, highest: int) -> float:
-        """The same by the coefficients up to this one alone."""
+        """Relative change of the matrix with which its characteristic polynomial agrees up to this coefficient."""
         rows, wanted = self._equations(highest)
         if not wanted.any():
             return 0.0

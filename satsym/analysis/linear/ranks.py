@@ -27,7 +27,7 @@ from satsym.arrays import Array
 TOLERANCE = 1e-10
 
 ROUNDING = 1e-15
-"""Of the staircase: entries below this for each state, relative to the size of the matrix, say nothing."""
+"""Entries of the staircase form below this for each state, relative to the size of the matrix, count as zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Reach:
     lost: tuple[Eigenvalue, ...]
     """The modes that are not moved, or do not show."""
     alone: Mapping[str, Reach]
-    """The same for each input or output by itself, by name; empty in these."""
+    """Reach of each input or output by itself, by name; empty where this is already the reach of a single one."""
 
     @property
     def complete(self) -> bool:

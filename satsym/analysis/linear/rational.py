@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from flint import acb, fmpq, fmpq_mat, fmpz_poly
 
 BITS = 192
-"""Of roots, at least."""
+"""Fewest bits to which roots of a polynomial are enclosed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +151,7 @@ def _on_axis(polynomial: fmpz_poly) -> int:
 
 
 def _complex_roots(polynomial: Any) -> list[acb]:
-    """Of a polynomial that has none twice."""
+    """Enclose the complex roots of a polynomial without multiple roots."""
     return [value for value, _ in polynomial.complex_roots()]
 
 

@@ -18,8 +18,8 @@ from satsym.arrays import Array
 TOO_SMALL = 0.1
 """What it costs that an entry comes out too small, relative to one too large: nothing that is near zero, or is so but
 for rounding, shall be blown up to match the rest."""
-MOST_ROUNDS, SETTLED = 50, 0.05
-"""Of reweighting, and the change of an exponent that needs no more."""
+MOST_ROUNDS, LAST_EXPONENT_CHANGE = 50, 0.05
+"""Most rounds of reweighting, and the change of an exponent of two below which the weights have settled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def _fit(system: LinearSystem, n: int, m: int, k: int) -> Array:
     for _ in range(MOST_ROUNDS):
         root, before = np.sqrt(weights), found
         found = np.linalg.lstsq(coefficients * root[:, None], target * root, rcond=None)[0]
-        if np.abs(found - before).max() < SETTLED:
+        if np.abs(found - before).max() < LAST_EXPONENT_CHANGE:
             break
         exponents = coefficients @ found - target
         weights = np.where(exponents < 0.0, TOO_SMALL, 1.0) / np.maximum(1.0, np.abs(exponents))

@@ -26,14 +26,14 @@ from satsym.arrays import Array
 ROUNDING, KNOWN = 2e-15, 1e-12
 """Relative changes of all entries together: below the first they come from rounding, above the second they do not."""
 
-FAINT = 1e-15
+SMALLEST_ENTRY = 1e-15
 """An entry that is smaller than this, relative to the largest in suitable units, may be what rounding has left of
 zero."""
 
 DISTANT = 1e-4
 """The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
 
-NEARLY, MOST_MIXED = 1e-5, 7
+LARGEST_CHANGE, MOST_MIXED = 1e-5, 7
 """Up to this relative change, and so many at most, numbers nearly are one, so that parts of them are tried, too."""
 
 Values = NDArray[np.complexfloating]
@@ -87,7 +87,7 @@ def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, 
     with ctx.workprec(BITS):
         known = _Tried(A, np.maximum(size, errors / ROUNDING))
         possible = [one for change in (KNOWN, ROUNDING) for one in known.within(change, fitted.rate)]
-        faint = (size <= FAINT * size.max()) & (size > 0.0)
+        faint = (size <= SMALLEST_ENTRY * size.max()) & (size > 0.0)
         if faint.any():
             doubtful = _Tried(A, np.where(faint, size / (ROUNDING / 2), known.entries), known)
             more = [one for change in (KNOWN, ROUNDING) for one in doubtful.within(change, fitted.rate)]
@@ -176,7 +176,7 @@ class _Tried:
         """
         if not 2 < len(members) <= MOST_MIXED or not self._plausible(members):
             return ()
-        if self._tried(members)[0].apart > NEARLY:
+        if self._tried(members)[0].apart > LARGEST_CHANGE:
             return ()
         for count in range(len(members) - 1, 1, -1):
             parts = [part for part in combinations(members, count) if self._single(part, change)]

@@ -32,7 +32,7 @@ class Analysis:
     polynomial: Array
     routh: Routh
     stability: Stability
-    """Of A; the polynomial is monic, highest power first."""
+    """Stability of A, with its characteristic polynomial: monic, highest power first."""
     controllability: Reach | None
     observability: Reach | None
     """``None`` where there are no inputs, or no outputs."""

@@ -91,6 +91,6 @@ def _halves(a: Any) -> Pair:
 
 
 def _joined(head: Any, tail: Any) -> Pair:
-    """The same sum, of a larger and a smaller part."""
+    """Join a larger and a smaller part to a pair with the same sum, whose parts do not overlap."""
     found = head + tail
     return found, tail - (found - head)

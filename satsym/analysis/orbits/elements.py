@@ -89,7 +89,7 @@ class Elements:
 
     @property
     def distance(self) -> float:
-        """Of the start from the centre."""
+        """Distance of the start from the centre of attraction."""
         return float(np.linalg.norm(self.position))
 
     @property

@@ -54,7 +54,7 @@ class Floquet:
 
     @property
     def verdict(self) -> str | None:
-        """Of a closed orbit, computed or not, for it follows from the closed form."""
+        """Stability verdict of a closed orbit: it follows from the closed form, without computed multipliers."""
         return None if self.orbit.period is None else VERDICT
 
     @property

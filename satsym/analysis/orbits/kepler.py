@@ -28,10 +28,10 @@ BLOCK = 4096
 
 SERIES = tuple(1.0 / factorial(2 * k + 3) for k in range(11))
 SERIES_REACH = 4.0
-"""Of (w s)^2, up to which the series is used: the next term is below 1e-17 of the first."""
+"""Largest (w s)^2 for which the power series is used: its next term is below 1e-17 of the first."""
 
 MOST_ITERATIONS = 60
-SETTLED = 1e-7
+LAST_CHANGE = 1e-7
 """Relative change after which the next one, being of third order, is below rounding."""
 SLACK = 1.0 + 1e-9
 """Upper bounds are raised by this much, for they are computed with rounding."""
@@ -237,7 +237,7 @@ def _anomaly(start: _Motion, rate: Array, w: Array, waves: Waves) -> Array:
         low, high = np.where(excess < 0.0, s, low), np.where(excess > 0.0, s, high)
         moved = s - step
         safe = (moved >= low) & (moved <= high)
-        settled = np.abs(step) <= SETTLED * s
+        settled = np.abs(step) <= LAST_CHANGE * s
         s = np.where(safe | settled, moved, 0.5 * (low + high))
         if settled.all():
             break

@@ -39,7 +39,7 @@ class Monodromy:
     exact: Array
     """What the formula gives for it."""
     units: Array
-    """Of the three positions and the three velocities, powers of two, shape (6,)."""
+    """Units of the three positions and the three velocities, powers of two, shape (6,)."""
 
     @property
     def original(self) -> Array:

@@ -33,15 +33,16 @@ class Point:
     distance: float
     """From the centre."""
     eigenvalues: Complex
-    """Of the generated Jacobian in Cartesian coordinates, computed, shape (6,)."""
+    """Computed eigenvalues of the generated Jacobian in Cartesian coordinates, shape (6,)."""
     closed_form: Complex
-    """The same exactly, up to rounding: sqrt(2 mu/r^3), minus that, and sqrt(-mu/r^3) of either sign, twice."""
+    """Eigenvalues by the closed form, exact up to rounding: sqrt(2 mu/r^3), minus that, and sqrt(-mu/r^3) of either
+    sign, twice."""
     own: Complex | None
     """Eigenvalues of the model's Jacobian in its own coordinates, where they are not Cartesian; else ``None``."""
 
     @property
     def deviation(self) -> float:
-        """Of the computed eigenvalues from the closed form, relative to the largest."""
+        """Largest distance of the computed eigenvalues from the closed form, relative to the largest eigenvalue."""
         return float(np.abs(self.eigenvalues - self.closed_form).max() / np.abs(self.closed_form).max())
 
     @property
@@ -51,7 +52,7 @@ class Point:
 
     @property
     def conclusion_verdict(self) -> str | None:
-        """The same by the paper's conclusion, ``None`` where it decides nothing."""
+        """Stability verdict by the conclusion that the paper draws, ``None`` where it decides nothing."""
         return rule_of_the_conclusion(self.eigenvalues)
 
     @property

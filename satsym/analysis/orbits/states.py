@@ -23,7 +23,7 @@ class States:
     duration: Array
     """Shape (N,)."""
     shape: tuple[int, ...]
-    """That the caller's arrays have behind their first axis, once broadcast."""
+    """Shape of the caller's arrays behind their first axis, once they are broadcast."""
 
     def part(self, chosen: Any) -> States:
         """Some of the columns."""
@@ -31,7 +31,7 @@ class States:
         return States(*arrays, self.shape)
 
     def scaled(self) -> tuple[States, Array, Array]:
-        """The same in units of length and speed that are powers of two, which is exact; and those units.
+        """Return the states in units of length and speed that are powers of two, which is exact, and those units.
 
         Positions are then of size one, and so is mu, save for a factor of four.
         """

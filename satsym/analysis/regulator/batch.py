@@ -17,7 +17,7 @@ from satsym.arrays import Array
 BLOCK = 2048
 """Problems at a time, so that a handful of matrices stay in the cache."""
 MOST_DOUBLINGS = 60
-SETTLED = 1e-10
+LAST_CHANGE = 1e-10
 """Relative change after which nothing is left to gain: the next one would be its square."""
 WANTED = 5e-13
 """Residual above which a problem is solved anew."""
@@ -93,7 +93,7 @@ def _doubled(A: Array, G: Array, Q: Array, shift: Array) -> Array:
         onward = _product(W, E)
         gained = _symmetric(_product(_turned(E), _product(T, onward)))
         T = T + gained
-        if not (np.abs(_diagonal(gained)) > SETTLED * np.abs(_diagonal(T))).any():
+        if not (np.abs(_diagonal(gained)) > LAST_CHANGE * np.abs(_diagonal(T))).any():
             break
         S = S + _symmetric(_product(_product(E, _product(W, S)), _turned(E)))
         E = _product(E, onward)

@@ -19,7 +19,7 @@ import numpy as np
 from satsym.analysis.regulator.riccati import balancing, hamiltonian
 from satsym.arrays import Array
 
-SHORT = 0.5
+FIRST_STEP = 0.5
 """The first step times the size of the Hamiltonian matrix."""
 
 
@@ -74,7 +74,7 @@ def flow(A: Array, G: Array, Q: Array, length: float) -> Flow:
     n, units = len(A), balancing(hamiltonian(A, G, Q))
     weight = np.outer(units, units)
     matrix = hamiltonian(A * (units / units[:, None]), G / weight, Q * weight)
-    doublings = max(0, int(np.ceil(np.log2(length * np.linalg.norm(matrix, 1) / SHORT))))
+    doublings = max(0, int(np.ceil(np.log2(length * np.linalg.norm(matrix, 1) / FIRST_STEP))))
     step = expm(matrix * (length / 2.0**doublings))
     # x(h) and lambda(h) from x(0) and lambda(0), solved for what is wanted
     last = np.linalg.inv(step[n:, n:])

@@ -32,7 +32,7 @@ class Design:
     about: Linearisation
     """The linearisation."""
     regulator: Regulator
-    """Of it."""
+    """Regulator that closes the loop."""
     instance: Instance | None
     """``None`` for the design of a model as such."""
 
@@ -167,7 +167,7 @@ def running_cost(found: Regulator, x: Array, u: Array) -> Array:
 
 
 def _integral(times: Array, values: Array) -> float:
-    """Of values on a fine grid, by a spline of order six; NaN where one of them is."""
+    """Integral over time of values on a fine grid, by a spline of order six; NaN where a value is NaN."""
     from scipy.interpolate import make_interp_spline
 
     if not np.isfinite(values).all():

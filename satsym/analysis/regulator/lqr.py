@@ -48,9 +48,9 @@ class Regulator:
     P: Array
     """Shapes (m, n) and (n, n); x'Px is the cost to go."""
     eigenvalues: NDArray[np.complexfloating]
-    """Of A - B K, the largest real part first, shape (n,)."""
+    """Eigenvalues of A - B K, the largest real part first, shape (n,)."""
     residual: float
-    """Of the Riccati equation, relative to its terms; of the differential one where the horizon is finite."""
+    """Residual of the Riccati equation, relative to its terms; of the differential one where the horizon is finite."""
     error: float | None = None
     """Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
     change, with residuals in twice the precision. ``None`` where the horizon is finite."""

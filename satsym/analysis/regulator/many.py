@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.analysis.linear.equilibrium import LOOKED_AT, SAME, linearise
+from satsym.analysis.linear.equilibrium import ENTRY_TOLERANCE, LOOKED_AT, linearise
 from satsym.analysis.linear.scaling import Scaled, scaled
 from satsym.analysis.regulator import batch, riccati
 from satsym.analysis.regulator.lqr import DOUBTFUL
@@ -28,16 +28,16 @@ eigenvalue, that is none: coefficients, for eigenvalues that coincide are half a
 
 @dataclass(frozen=True, eq=False)
 class Regulators:
-    """Of M instances."""
+    """Regulators of M instances."""
 
     clear: NDArray[np.bool_]
     """Which are sure, shape (M,)."""
     K: Array
     """Gains, shape (M, m, n)."""
     eigenvalues: NDArray[np.complexfloating]
-    """Of the closed loops, the largest real part first, shape (M, n)."""
+    """Eigenvalues of the closed loops, the largest real part first, shape (M, n)."""
     residual: Array
-    """Of the Riccati equation, relative to its terms."""
+    """Residuals of the Riccati equations, relative to their terms."""
     cost: Array
     """From the initial states on, shapes (M,)."""
 
@@ -98,7 +98,7 @@ def _coefficients(instances: Sequence[Instance], unit: Scaled) -> tuple[Array, A
     for ahead in LOOKED_AT:
         _, later, pushing = there(t0 + ahead / (unit.rate * unit.size))
         change = np.concatenate([(later - A) * unit.states, (pushing - B) * unit.inputs], axis=2)
-        within = SAME * unit.rate * unit.size
+        within = ENTRY_TOLERANCE * unit.rate * unit.size
         constant &= (np.abs(change) / unit.states[:, None] <= within).all(axis=(1, 2))
     return points, A.copy(), B, constant
 
@@ -106,7 +106,7 @@ def _coefficients(instances: Sequence[Instance], unit: Scaled) -> tuple[Array, A
 def _eigenvalues(
     a: Array, b: Array, q: Array, r: Array, K: Array
 ) -> tuple[NDArray[np.bool_], NDArray[np.complexfloating]]:
-    """Those of the closed loops, sorted, and whether they decay and are those of the Hamiltonian matrices."""
+    """Sorted eigenvalues of the closed loops, and whether they decay and are those of the Hamiltonian matrices."""
     count, n = a.shape[:2]
     g = b @ np.linalg.solve(r, b.swapaxes(1, 2))
     weights = np.broadcast_to(q, a.shape)

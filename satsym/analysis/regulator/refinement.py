@@ -25,11 +25,11 @@ from satsym.lapack import lapack
 ACCURATE = 1e-13
 """A correction below this, found without more precision, shows that none is needed."""
 
-SETTLED = 2e-16
+LAST_CORRECTION = 2e-16
 """A correction below this changes nothing."""
 
 MOST_STEPS = 12
-"""Of Newton's method, which needs three or four from a P with some right digits."""
+"""Most steps of Newton's method, which needs three or four from a P with some right digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Refined:
     """Estimate of the error of P, relative to it, in units of :func:`units_of`; infinite where
     corrections do not become smaller."""
     eigenvalues: NDArray[np.complexfloating]
-    """Of the closed loop, shape (n,); not numbers where there is no correction of P."""
+    """Eigenvalues of the closed loop, shape (n,); NaN where there is no correction of P."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,17 +66,17 @@ def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> Refined:
     """
     left = _correction(A, B, Q, R, P, rounded)
     if left.size <= ACCURATE:  # its own rounding included
-        return Refined(P, max(left.size, SETTLED), left.eigenvalues)
+        return Refined(P, max(left.size, LAST_CORRECTION), left.eigenvalues)
     left = _correction(A, B, Q, R, P, residual)
     for _ in range(MOST_STEPS):
-        if not SETTLED < left.size < np.inf:
+        if not LAST_CORRECTION < left.size < np.inf:
             break
         better = P + left.step
         again = _correction(A, B, Q, R, better, residual)
         if not again.size < left.size and left.size < 1e-2:  # far away a first step may be a detour
             break
         P, left = better, again
-    return Refined(P, max(left.size, SETTLED), left.eigenvalues)
+    return Refined(P, max(left.size, LAST_CORRECTION), left.eigenvalues)
 
 
 def _correction(
@@ -147,7 +147,7 @@ def residual(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, A
 
 
 def rounded(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, Array]:
-    """The same in one precision."""
+    """Residual of the Riccati equation and gain R^-1 B'P, computed in double precision alone."""
     gain = np.linalg.solve(R, B.T @ P)
     once = A.T @ P
     return once + once.T - P @ B @ gain + Q, gain

@@ -22,11 +22,11 @@ SIZES = np.geomspace(1e-4, 1e2, 25)
 REFINED = 10
 """Deviations between the last one that returns and the first one that does not, twice."""
 RETURNED = 1e-6
-"""Of the cost to go x'Px at the start, what may be left."""
+"""Largest share of the cost to go x'Px at the start that may be left where a motion counts as returned."""
 PATIENCE = 25.0
 """Time to return, relative to that in which the closed loop's slowest motion decays to 1/e."""
 STEP = 0.1
-"""Of RK4, relative to the time constant of the fastest."""
+"""Step of RK4, relative to the time constant of the fastest motion."""
 MOST_STEPS = 20000
 
 

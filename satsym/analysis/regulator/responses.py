@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.solvers.simulation import closed_loop
 
 STEPS = 1000
-"""Of the grid on which responses are given."""
+"""Intervals of the time grid on which responses are given."""
 TOLERANCE = 1e-9
 
 
@@ -35,7 +35,7 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """The same disturbance, four times."""
+    """Responses to one disturbance: of the linear and of the whole equations, with and without feedback."""
 
     times: Array
     """Shape (N+1,)."""

@@ -10,7 +10,7 @@ from satsym.cli.options import json_option
 from satsym.cli.output import answer, live
 from satsym.status import ExitCode
 
-QUICK, THOROUGH = 0.5, 5.0
+QUICK_SECONDS, THOROUGH_SECONDS = 0.5, 5.0
 """Seconds for which each kind of step is measured."""
 
 EXAMPLES = """\b
@@ -43,7 +43,7 @@ def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
     model = given if isinstance(given, Kernels) else given.model
     with live() as line:
         line.show(say("measuring <what> ...", what=backend_name("numpy")))
-        for one in speeds(given, QUICK if quick else THOROUGH):
+        for one in speeds(given, QUICK_SECONDS if quick else THOROUGH_SECONDS):
             found.append(one)
             line.show(say("measuring <what> ...", what=backend_name("numba")))
         solution = None

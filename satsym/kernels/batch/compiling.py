@@ -24,7 +24,7 @@ from satsym.status import BadInput
 HEAD = ('"""Written by satsym; it may be removed at any time."""', "", "import math", "", "inf = math.inf")
 """With which such texts begin."""
 
-FAST = {"contract", "nsz", "arcp"}
+FAST_MATH_FLAGS = {"contract", "nsz", "arcp"}
 """What compilers may do to sums and products; never assume that numbers are finite, for whether they are is asked."""
 
 
@@ -83,7 +83,7 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     names = [key for key, value in vars(module).items() if isinstance(value, FunctionType)]
     for key in names:
         function = numba.njit(
-            vars(module)[key], error_model="numpy", fastmath=FAST, nogil=True, cache=keeps and key in ENTRIES
+            vars(module)[key], error_model="numpy", fastmath=FAST_MATH_FLAGS, nogil=True, cache=keeps and key in ENTRIES
         )
         setattr(module, key, function)
     return {key: vars(module)[key] for key in names}

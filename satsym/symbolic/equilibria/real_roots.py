@@ -24,7 +24,7 @@ Monomial: TypeAlias = tuple[int, ...]
 REAL = 1e-6
 """Imaginary parts below this are rounding."""
 POLISHING = 8
-SAME = 1e-7
+ROOT_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +187,7 @@ def _newton(equations: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Calla
                 jacobian = np.array(slopes(*point, *given), float)[:, : len(unknowns)]
                 left = np.array(values(*point, *given), float)
                 point = point - np.linalg.lstsq(jacobian, left, rcond=None)[0]
-            if all(np.abs(point - other).max() > SAME for other in kept):
+            if all(np.abs(point - other).max() > ROOT_TOLERANCE for other in kept):
                 kept.append(point)
         return np.array(kept).reshape(-1, points.shape[1])
 

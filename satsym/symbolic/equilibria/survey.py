@@ -12,7 +12,7 @@ from satsym.symbolic.equilibria.attitude import Equilibrium, all_of
 from satsym.symbolic.equilibria.continuum import Continuum, continuum
 from satsym.symbolic.equilibria.momenta import Followed, follow
 
-BEYOND = 2.0
+REACH_FACTOR = 2.0
 """Equilibria are followed up to so many times the parameter at which it outweighs every other torque."""
 
 
@@ -64,5 +64,5 @@ def survey(derivation: Derivation, numbers: Mapping[str, float]) -> Attitudes:
         complex=found.complex,
         equilibria=(whole.circles or ()) if whole else equilibria,
         continuum=whole,
-        followed=follow(rest, {s: v for s, v in known.items() if s != rest.varied}, BEYOND),
+        followed=follow(rest, {s: v for s, v in known.items() if s != rest.varied}, REACH_FACTOR),
     )

@@ -12,7 +12,7 @@ from satsym.symbolic.factoring import as_factors
 
 HUNDREDTHS = (100, 1000, 10000)
 """Whole numbers below a fraction line that are better read as a decimal number."""
-MANY = 12
+MOST_TERMS = 12
 """Terms of a sum below a fraction line that is looked at as a product, at most."""
 
 
@@ -179,7 +179,7 @@ def exponent(factor: sp.Expr) -> sp.Expr:
 @lru_cache(maxsize=4096)
 def _as_product(total: sp.Expr) -> sp.Expr:
     """A sum below a fraction line as a product, if that is shorter."""
-    if len(total.args) > MANY or total.has(sp.Float):
+    if len(total.args) > MOST_TERMS or total.has(sp.Float):
         return total
     return min(total, as_factors(total), key=sp.count_ops)
 

@@ -20,7 +20,7 @@ _OURS = Path(__file__).parents[2]
 
 _UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'")
 _MISSING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")
-_MANY = re.compile(r"(\w+)\.__init__\(\) takes (?:from \d+ to )?(\d+) positional arguments?")
+_TOO_MANY_ARGUMENTS = re.compile(r"(\w+)\.__init__\(\) takes (?:from \d+ to )?(\d+) positional arguments?")
 
 _POWER = re.compile(r"unsupported operand type\(s\) for \^")
 
@@ -44,7 +44,7 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
             return at, f"{found[1]} has no field {found[2]!r}; {suggestion(found[2], known)}"
         if (found := _MISSING.match(text)) and (known := _fields(found[1], names)):
             return line, f"{found[1]} needs {found[2]}; its fields are {', '.join(known)}"
-        if (found := _MANY.match(text)) and (known := _fields(found[1], names)):
+        if (found := _TOO_MANY_ARGUMENTS.match(text)) and (known := _fields(found[1], names)):
             ordered = ", ".join(name for name, keyword in known.items() if not keyword)
             instead = f"without a name it takes {ordered}" if ordered else "name its fields, such as name=..."
             return line, f"{found[1]} got more values than fields; {instead}"

@@ -17,7 +17,7 @@ from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
 from satsym.symbolic.motion.picture import Arrow, Picture, Place
 
-TIME, ANGLE, BEYOND = 0.6, 0.75, 1.3
+TIME, ANGLE, FACTOR_OFF_REFERENCE = 0.6, 0.75, 1.3
 """When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
 CURVE = tuple(2 * pi * k / 48 for k in range(49))
 """Times at which the path of the reference is drawn."""
@@ -25,7 +25,7 @@ TURNED = 0.25
 """What each angle of a body in space is drawn as."""
 OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))
 """Where axes that are forward, towards the reader and down lie on the page."""
-ASIDE = ((-0.35, -0.5), (1.0, 0.0), (0.0, 1.0))
+AXES_ON_PAGE = ((-0.35, -0.5), (1.0, 0.0), (0.0, 1.0))
 """Where inertial axes lie on the page: towards the reader, to the right and up."""
 SPREAD = (0.7, 1.7, 1.3)
 """What components of a position in space are drawn as, where they are coordinates."""
@@ -81,7 +81,7 @@ def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | No
         return None
     values = _values(model)
     moving = symbols_of(v for v in model.states if v.positive)
-    values |= {s: values[s] * BEYOND for s in moving}
+    values |= {s: values[s] * FACTOR_OFF_REFERENCE for s in moving}
     values |= {
         s: far for s, far in zip(model.position, SPREAD, strict=False) if len(model.position) == 3 and s.is_Symbol
     }
@@ -101,7 +101,7 @@ def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | No
     if flat:
         return Picture("motion", _path(model), tuple(arrows), _angle(model, values, place))
     below = _at([*model.position[:2], 0], values)
-    return Picture("motion", _path(model), tuple(arrows), axes=ASIDE, guides=((place, below), (below, (0, 0))))
+    return Picture("motion", _path(model), tuple(arrows), axes=AXES_ON_PAGE, guides=((place, below), (below, (0, 0))))
 
 
 def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[tuple[Any, str]]:
@@ -183,5 +183,5 @@ def _at(vector: Any, values: Mapping[sp.Symbol, Any]) -> Place:
 
 
 def _from_aside(parts: Iterable[float]) -> Place:
-    x, y = (sum(part * towards[i] for part, towards in zip(parts, ASIDE, strict=True)) for i in range(2))
+    x, y = (sum(part * towards[i] for part, towards in zip(parts, AXES_ON_PAGE, strict=True)) for i in range(2))
     return x, y

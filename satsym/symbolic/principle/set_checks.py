@@ -22,7 +22,7 @@ from satsym.symbolic.principle.set_laws import bare, found, problem_of
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point."""
 
-NEAR = 4
+NEARBY_CONTROLS = 4
 """Admissible controls beside the law of each set that it is held against."""
 
 TRIES = 60
@@ -116,7 +116,7 @@ def _beside(so_far: Derivation, value: Any, chosen: Any, here: Point, rng: rando
         law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
         best = value({**here, **law})[0]
         for one in found(so_far):
-            for _ in range(NEAR):
+            for _ in range(NEARBY_CONTROLS):
                 other = {**law, **near(one, here, law, step, rng)}
                 margin.append(sign(problem) * (value({**here, **other})[0] - best) / step)
     return margin

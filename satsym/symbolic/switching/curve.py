@@ -44,7 +44,7 @@ def switching_curve(so_far: Derivation) -> Step | None:
     slower = (v + v_f) * ((1 / high + 1 / low) * (v - v_f) - (1 / high - 1 / low) * sp.Abs(v - v_f))
     curve = chain.slope / (4 * chain.gain) * slower
     assert simplify(mean + half * sp.sign(v - v_f) - curve.replace(sp.Abs, lambda e: e * sp.sign(e))) == 0
-    side = sp.sign(s.BEYOND) + (1 - sp.sign(s.BEYOND) ** 2) * sp.sign(v - v_f)
+    side = sp.sign(s.BEYOND_CURVE) + (1 - sp.sign(s.BEYOND_CURVE) ** 2) * sp.sign(v - v_f)
     stated = Switch(s.SIDE, sp.Integer(0), low, high)
     law = stated.xreplace({s.SIDE: side})
     duration, first = _between_rests(chain)
@@ -52,7 +52,7 @@ def switching_curve(so_far: Derivation) -> Step | None:
         Equation("rising", q - q_f, rising),
         Equation("falling", q - q_f, falling),
         Equation("curve", s.ON_CURVE, q_f + curve),
-        Equation("beyond", s.BEYOND, q - s.ON_CURVE),
+        Equation("beyond", s.BEYOND_CURVE, q - s.ON_CURVE),
         Equation("side", s.SIDE, side),
         Equation(chain.control.name, n.optimal(chain.control), stated),
         Equation("duration", s.TRANSITION, duration),

@@ -33,7 +33,7 @@ SMOOTHED = sp.Symbol("H_smoothed", real=True)
 ON_CURVE = sp.Symbol("position_on_switching_curve", real=True)
 """The position of the switching curve at the rate of a state."""
 
-BEYOND = sp.Symbol("beyond_switching_curve", real=True)
+BEYOND_CURVE = sp.Symbol("beyond_switching_curve", real=True)
 """How far the position lies beyond the switching curve."""
 
 SIDE = sp.Symbol("side_of_switching_curve", real=True)
@@ -119,7 +119,7 @@ def names(problem: Problem) -> dict[str, str]:
     sigma = {u: rf"\sigma_{{{tex}}}" if len(controls) > 1 else r"\sigma" for u, tex in latex.items()}
     weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
     found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in REGULARISED}
-    found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND.name: r"\Delta", SIDE.name: "s"}
+    found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND_CURVE.name: r"\Delta", SIDE.name: "s"}
     found |= {TRANSITION.name: "D", FIRST_ARC.name: "D_1"}
     marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
     for u in controls:

@@ -25,7 +25,7 @@ from satsym.symbolic.switching.functions import flow, parts
 SIDES = {"_positive": 1, "_negative": -1}
 """Sign of a control with a weight on its magnitude, on the two kinds of singular arcs."""
 
-LONGEST = 2000
+MOST_OPERATIONS = 2000
 """Operations in a derivative, as it is or on the surface, beyond which the search is given up."""
 
 
@@ -148,7 +148,7 @@ def _search(
     while len(derivatives) < 2 * len(states):
         total = tidy(total_derivative(last, rates), (*controls, *lam))
         derivatives.append(total)
-        if max(e.count_ops() for e in (total, total.xreplace(surface.solved))) > LONGEST:
+        if max(e.count_ops() for e in (total, total.xreplace(surface.solved))) > MOST_OPERATIONS:
             break
         slope, rest = surface.reduced(sp.diff(total, u)), total.xreplace({u: sp.Integer(0)})
         condition = surface.reduced(rest)

@@ -1,0 +1,91 @@
+"""Each docstring is a sentence that can be understood out of its place, also where others quote it alone."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+UNFINISHED = {"auditing", "formula", "proof", "report", "solvers"}
+"""Rooms of satsym/ in which such docstrings are left. The list may only become shorter."""
+
+UNNAMED = {"auditing", "formula", "proof", "records", "report", "solvers"}
+"""Rooms of satsym/ in which constants have such names. The list may only become shorter."""
+
+DANGLING = re.compile(r"(The same|Of|That|Those|These)\b")
+"""Beginnings of docstrings that speak of something which only their surroundings name."""
+
+BARE = frozenset(
+    "AGAIN ALIKE ALONE APART ASIDE BEYOND CLEAR CLOSE EACH ENOUGH FAINT FAR FAST FEW HUGE LARGEST LEAST LONG LONGEST "
+    "MANY MOST NEAR NEARLY SAME SETTLED SHORT SMALL SMALLEST STEEP SURELY TINY".split()
+)
+"""Names of constants that do not say what they limit, and therefore mean something else in each file."""
+
+
+def docstrings(source: str) -> Iterator[tuple[int, str]]:
+    """Line and text of the docstrings of modules, classes, functions, constants and fields."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            for part in node.body:
+                text = part.value if isinstance(part, ast.Expr) else None
+                if isinstance(text, ast.Constant) and isinstance(text.value, str):
+                    yield part.lineno, text.value.strip()
+
+
+def dangling(source: str) -> list[int]:
+    """Lines of docstrings that cannot be understood out of their place."""
+    return [line for line, text in docstrings(source) if DANGLING.match(text)]
+
+
+def bare(source: str) -> list[str]:
+    """Constants of a module whose names do not say what they limit."""
+    assigned = [node for node in ast.parse(source).body if isinstance(node, ast.Assign)]
+    names = [n for node in assigned for target in node.targets for n in ast.walk(target) if isinstance(n, ast.Name)]
+    return [name.id for name in names if name.id.strip("_") in BARE]
+
+
+def room(path: Path) -> str:
+    """The folder of satsym/ that a file is in, or the file's own name without its ending."""
+    return path.relative_to(next(p for p in path.parents if p.name == "satsym")).parts[0].removesuffix(".py")
+
+
+def test_docstrings_can_be_understood_out_of_their_place(repository: Path) -> None:
+    found = {path: dangling(path.read_text("utf-8")) for path in sorted((repository / "satsym").rglob("*.py"))}
+    left = {path: lines for path, lines in found.items() if lines}
+    assert [f"{path}:{line}" for path, lines in left.items() if room(path) not in UNFINISHED for line in lines] == []
+    assert {room(path) for path in left} == UNFINISHED, "take the rooms from the list in which none is left"
+
+
+def test_names_of_constants_say_what_they_limit(repository: Path) -> None:
+    found = {path: bare(path.read_text("utf-8")) for path in sorted((repository / "satsym").rglob("*.py"))}
+    left = {path: names for path, names in found.items() if names}
+    assert [f"{path}: {name}" for path, names in left.items() if room(path) not in UNNAMED for name in names] == []
+    assert {room(path) for path in left} == UNNAMED, "take the rooms from the list in which none is left"
+
+
+def test_a_bare_name_would_be_seen() -> None:
+    assert bare("MOST = 3\nMOST_STEPS = 3\n_FAR, SAME_SIGN = 1, 2\n") == ["MOST", "_FAR"]
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        '"""Of a model."""',
+        'class A:\n    """The same as text."""',
+        'def f():\n    """That of a problem."""',
+        'MOST = 3\n"""Of steps."""',
+        'class A:\n    """A motion."""\n\n    x: int\n    """Those at the start."""',
+    ],
+)
+def test_a_docstring_that_needs_its_surroundings_would_be_seen(source: str) -> None:
+    assert len(dangling(source)) == 1
+
+
+@pytest.mark.parametrize(
+    "source", ['"""Office hours."""', 'x = "Of it"', '"""Thatched roofs."""', '"""Steps of RK4."""']
+)
+def test_other_texts_are_left_alone(source: str) -> None:
+    assert dangling(source) == []
