@@ -67,7 +67,10 @@ COMMANDS = (
     "doctor",
     "bench",
 )
-"""In the order of the help."""
+"""Names of the commands in the order of the help."""
+
+ABOUT_THE_MACHINE = frozenset({"bench", "completion", "doctor"})
+"""Names of the commands in the room ``machine``; the others are in ``commands``."""
 
 
 class Commands(Mapping[str, click.Command]):
@@ -90,7 +93,8 @@ class Commands(Mapping[str, click.Command]):
 
 @cache
 def _loaded(name: str) -> click.Command:
-    command: Any = getattr(import_module(f"satsym.cli.commands.{name}"), name)
+    room = "machine" if name in ABOUT_THE_MACHINE else "commands"
+    command: Any = getattr(import_module(f"satsym.cli.{room}.{name}"), name)
     return shared_options(command)
 
 

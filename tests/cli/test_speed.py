@@ -7,7 +7,7 @@ import json
 import pytest
 
 from satsym.analysis import speed
-from satsym.cli.commands import bench
+from satsym.cli.machine import bench
 from satsym.status import Status
 from tests.cli.test_cli import Run, run
 

@@ -1,1 +1,1 @@
-"""The commands, one file each."""
+"""Commands about models, instances, results and documents, one file each."""

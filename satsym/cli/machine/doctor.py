@@ -22,7 +22,7 @@ def doctor(as_json: bool) -> ExitCode:
 
     Checks versions, extras, programs and shipped files, and solves a small problem.
     """
-    from satsym.cli.examination import examine
+    from satsym.cli.machine.examination import examine
     from satsym.report.terminal.table import table
 
     with live() as line:
