@@ -1,4 +1,7 @@
-"""The Kernels object: a model's description and functions, and the trajectory loops on arrays."""
+"""The Kernels object: a model's description and functions, and the trajectory loops on arrays.
+
+Its scalar functions and loops may be compiled with numba, from the code that Python runs.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from satsym import activity
 from satsym.arrays import Array
-from satsym.kernels.contract import LOOPS
+from satsym.kernels.contract import BATCH, LOOPS
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 
@@ -21,6 +26,47 @@ if TYPE_CHECKING:
     from satsym.kernels.functions import Functions
 else:
     Functions = object
+
+
+def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str, Any]:
+    """The functions with their scalar forms and loops as numba dispatchers, which compile at the first call.
+
+    Parameters
+    ----------
+    functions
+        Those of one module, by name.
+    cache
+        Whether machine code is kept beside the module's file. numba reads such a cache with pickle, so a
+        folder that is not trusted must not offer one.
+
+    Raises
+    ------
+    BadInput
+        If numba is not installed.
+    """
+    try:
+        import numba
+    except ImportError:
+        raise BadInput(
+            "backend 'numba': numba is not installed; install the extra: pip install 'satsym[fast]'"
+        ) from None
+    result = dict(functions)
+    if not functions:
+        return result
+    activity.tell("compiling; the first time this may take half a minute ...")
+    # The copies share fresh globals, in which a function finds the compiled form of another.
+    scope = dict(next(iter(functions.values())).__globals__)
+    for name, function in functions.items():
+        if name.endswith(BATCH):
+            continue
+        copy = FunctionType(function.__code__, scope, name, function.__defaults__)
+        try:
+            result[name] = numba.njit(copy, error_model="numpy", cache=cache)
+        except RuntimeError:  # nowhere to keep a cache
+            result[name] = numba.njit(copy, error_model="numpy")
+        scope[name] = result[name]
+    return result
+
 
 Backend = Literal["python", "numba"]
 Function = Callable[..., Any]
@@ -198,7 +244,6 @@ class Kernels(Functions):
 
     @cached_property
     def _compiled(self) -> Kernels:
-        from satsym.kernels.compiling import compile_functions
 
         shipped = self.origin is not None and self.origin[1] is None
         return replace(self, functions=compile_functions(self.functions, cache=shipped), backend="numba")

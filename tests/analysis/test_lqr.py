@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from satsym import instance
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.system import LinearSystem, system
-from satsym.analysis.regulator import batch, riccati
+from satsym.analysis.regulator import many, riccati
 from satsym.analysis.regulator.doubling import flow
 from satsym.analysis.regulator.feedback import designed, simulate
 from satsym.analysis.regulator.lqr import lqr, regulator
@@ -136,7 +136,7 @@ def test_a_negative_weight_has_a_regulator_where_the_riccati_equation_has_a_stab
     assert found.P[0, 0] == pytest.approx(np.sqrt(0.5) - 1.0, rel=1e-15)
     assert found.eigenvalues == pytest.approx(-np.sqrt(0.5), rel=1e-15)
     assert found.residual < 1e-15
-    K, P, _ = batch.solve(LAG.A, LAG.B, [[-0.5]], [[1.0]])
+    K, P, _ = many.solve(LAG.A, LAG.B, [[-0.5]], [[1.0]])
     np.testing.assert_allclose([K, P], [found.K, found.P], rtol=1e-9)
     for Q in ([1.0, 1.0, 1.0, -1.0], [[1, 2, 0, 0], [2, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]):
         weight = np.diag(Q) if np.ndim(Q) == 1 else np.array(Q)
@@ -156,7 +156,7 @@ def test_cross_weights_agree_with_scipy_and_python_control(n, m, seed):
     assert np.linalg.norm(found.P - P) <= 1e-6 * np.linalg.norm(P)
     assert np.linalg.norm(found.K - control.lqr(A, B, Q, R, N)[0]) <= 1e-6 * np.linalg.norm(found.K)
     assert np.sort(found.eigenvalues.real) == pytest.approx(np.sort(np.linalg.eigvals(A - B @ found.K).real), rel=1e-6)
-    K, again, _ = batch.solve(A, B, Q, R, N)
+    K, again, _ = many.solve(A, B, Q, R, N)
     assert np.linalg.norm(K - found.K) <= 1e-6 * np.linalg.norm(found.K)
     assert np.linalg.norm(again - found.P) <= 1e-6 * np.linalg.norm(P)
 
@@ -309,7 +309,7 @@ def satellites(rng: np.random.Generator, count: int) -> np.ndarray:
 def test_many_regulators_at_once_are_those_one_by_one():
     rng = np.random.default_rng(1)
     A, Q, R = satellites(rng, 200), weights(rng, 200, 4), weights(rng, 200, 2)
-    K, P, residual = batch.solve(A, satellite().B, Q, R)
+    K, P, residual = many.solve(A, satellite().B, Q, R)
     assert residual.max() < 1e-12
     for i in range(0, 200, 10):
         one = lqr(system(A[i], satellite().B), Q[i], R[i])
@@ -321,7 +321,7 @@ def test_many_regulators_at_once_are_those_one_by_one():
 
 def test_ten_thousand_regulators_keep_their_residual():
     rng = np.random.default_rng(2)
-    K, P, residual = batch.solve(satellites(rng, 10_000), THESIS.B, weights(rng, 10_000, 4), weights(rng, 10_000, 1))
+    K, P, residual = many.solve(satellites(rng, 10_000), THESIS.B, weights(rng, 10_000, 4), weights(rng, 10_000, 1))
     assert (K.shape, P.shape) == ((10_000, 1, 4), (10_000, 4, 4))
     assert residual.max() < 1e-12
 
@@ -332,7 +332,7 @@ def test_batches_of_any_matrices_keep_their_residual_where_single_ones_do(n, m, 
     rng = np.random.default_rng(seed)
     A, B = rng.normal(size=(40, n, n)), rng.normal(size=(40, n, m))
     Q = np.array([spd(rng, n) for _ in A])
-    _, P, residual = batch.solve(A, B, Q, np.eye(m))
+    _, P, residual = many.solve(A, B, Q, np.eye(m))
     singles = [lqr(system(a, b), q, np.eye(m)) for a, b, q in zip(A, B, Q, strict=True)]
     assert all(mine < max(1e-12, 10.0 * one.residual) for mine, one in zip(residual, singles, strict=True))
     for mine, one in zip(P, singles, strict=True):
@@ -342,14 +342,14 @@ def test_batches_of_any_matrices_keep_their_residual_where_single_ones_do(n, m, 
 def test_problems_of_a_batch_without_a_solution_are_marked_and_harm_no_others():
     A = np.array([satellite().A, np.diag([1.0, -1.0, -2.0, -3.0])])
     B = np.array([THESIS.B, [[0.0], [1.0], [1.0], [1.0]]])
-    K, P, residual = batch.solve(A, B, np.eye(4), np.eye(1))
+    K, P, residual = many.solve(A, B, np.eye(4), np.eye(1))
     assert np.isnan([K[1].sum(), P[1].sum(), residual[1]]).all()
     assert np.allclose(K[0], lqr(THESIS, np.eye(4), [1.0]).K, rtol=1e-12)
 
 
 def test_leading_axes_are_broadcast():
     rng = np.random.default_rng(3)
-    K, P, residual = batch.solve(satellites(rng, 3)[:, None], THESIS.B, weights(rng, 5, 4), np.eye(1))
+    K, P, residual = many.solve(satellites(rng, 3)[:, None], THESIS.B, weights(rng, 5, 4), np.eye(1))
     assert (K.shape, P.shape, residual.shape) == ((3, 5, 1, 4), (3, 5, 4, 4), (3, 5))
 
 
@@ -358,7 +358,7 @@ def test_batches_do_not_depend_on_units():
     A = satellites(rng, 50) * OMEGA
     A[:, [0, 2], [1, 3]] = 1.0
     A[:, 1, 0] *= OMEGA
-    _, _, residual = batch.solve(A, satellite().B, weights(rng, 50, 4) * [1.0, 1e8, 1.0, 1e8], 1e14 * np.eye(2))
+    _, _, residual = many.solve(A, satellite().B, weights(rng, 50, 4) * [1.0, 1e8, 1.0, 1e8], 1e14 * np.eye(2))
     assert residual.max() < 1e-12
 
 

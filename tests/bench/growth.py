@@ -25,11 +25,11 @@ Works = dict[str, tuple[Sequence[int], Callable[[int], Callable[[], object]], fl
 
 def regulators(states: int) -> Callable[[], object]:
     """Riccati equations of random systems with half as many inputs."""
-    from satsym.analysis.regulator import batch
+    from satsym.analysis.regulator import many
 
     rng, inputs = np.random.default_rng(0), states // 2
     A, B = rng.normal(size=(CHUNK, states, states)) / states**0.5, rng.normal(size=(CHUNK, states, inputs))
-    return lambda: batch.solve(A, B, np.eye(states), np.eye(inputs))
+    return lambda: many.solve(A, B, np.eye(states), np.eye(inputs))
 
 
 def segments(times: int) -> Callable[[], object]:

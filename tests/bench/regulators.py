@@ -60,14 +60,14 @@ def one(rounds: int = 15) -> Table:
 
 def many(rounds: int = 3) -> Table:
     """Ten thousand: gains, Riccati solutions and residuals."""
-    from satsym.analysis.regulator import batch
+    from satsym.analysis.regulator import many
 
     given = problems(COUNT)
     A, Q, R = given
     found: dict[str, np.ndarray] = {}
 
     def ours() -> None:
-        _, found[BATCH], _ = batch.solve(A, INPUT, Q, R)
+        _, found[BATCH], _ = many.solve(A, INPUT, Q, R)
 
     def loop() -> None:
         found[LOOP] = np.array([_scipy(A[i], Q[i], R[i]) for i in range(LOOPED)])

@@ -135,11 +135,11 @@ def test_lost_rows_are_printed_as_lost(bench):
 
 
 def test_everyone_solves_the_same_riccati_equations(bench):
-    from satsym.analysis.regulator import batch
+    from satsym.analysis.regulator import many
 
     regulators = bench["regulators"]
     A, Q, R = given = regulators.problems(5)
-    _, ours, _ = batch.solve(A, regulators.INPUT, Q, R)
+    _, ours, _ = many.solve(A, regulators.INPUT, Q, R)
     theirs = np.array([regulators._scipy(*each) for each in zip(A, Q, R, strict=True)])
     assert np.abs(ours / theirs - 1.0).max() < 1e-9
     assert max(regulators.largest_residual(P, given) for P in (ours, theirs)) < regulators.WITHIN

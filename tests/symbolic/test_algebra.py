@@ -11,7 +11,7 @@ from satsym.analysis.linear.routh import routh
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.analysis.linear.stability import ASYMPTOTIC, MARGINAL, UNSTABLE, stability
 from satsym.analysis.linear.system import system
-from satsym.analysis.regulator import batch
+from satsym.analysis.regulator import many
 from satsym.analysis.regulator.lqr import lqr
 from satsym.status import BadInput
 
@@ -154,5 +154,5 @@ def test_no_extreme_regulator_is_refused():
 def test_extreme_regulators_in_a_batch_are_those_one_by_one():
     for seed in (26, 61, 171):
         A, B, Q, R = extreme(seed, weights_in_new_units=False)
-        _, P, _ = batch.solve(A[None], B, Q, R)
+        _, P, _ = many.solve(A[None], B, Q, R)
         assert np.allclose(P[0], lqr(system(A, B), Q, R).P, rtol=1e-9, atol=0.0)

@@ -18,7 +18,7 @@ from satsym.spec import names
 from satsym.symbolic import Derivation, DerivationError, Newton, derive, loader, symbols_of, t
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Step
-from satsym.symbolic.kepler import central_force, conic
+from satsym.symbolic.kepler import central_force, points
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.lookup import library
 from tests.support.derived import derived
@@ -248,7 +248,7 @@ def test_a_wrong_entry_of_the_jacobian_is_noticed(derivation: Derivation, entry:
     _refused(before, central_force.gravity_gradient, tampered(before, "linearisation", entry, sp.Rational(101, 100)))
 
 
-@pytest.mark.parametrize("take", [point_steps.no_equilibrium, conic.conic], ids=lambda f: f.__name__)
+@pytest.mark.parametrize("take", [point_steps.no_equilibrium, points.conic], ids=lambda f: f.__name__)
 def test_a_wrong_law_is_noticed_by_what_builds_on_it(
     derivation: Derivation, take: Callable[[Derivation], Step | None]
 ) -> None:
@@ -258,7 +258,7 @@ def test_a_wrong_law_is_noticed_by_what_builds_on_it(
 
 def test_a_wrong_energy_is_noticed_by_the_conic(derivation: Derivation) -> None:
     before = without(derivation, "conic")
-    _refused(before, conic.conic, tampered(before, "conserved", "energy", 2))
+    _refused(before, points.conic, tampered(before, "conserved", "energy", 2))
 
 
 def test_a_wrong_strength_is_noticed(derivation: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:

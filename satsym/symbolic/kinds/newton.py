@@ -14,7 +14,7 @@ from satsym.symbolic.algebra import constants_of, simplified, tidy, total_deriva
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
-from satsym.symbolic.kepler import central_force, conic
+from satsym.symbolic.kepler import central_force, points
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
@@ -45,7 +45,7 @@ class Newton(Particle):
             central_force.central_force,
             motion.reference,
             motion.conserved,
-            conic.conic,
+            points.conic,
             motion.linearisation,
             central_force.gravity_gradient,
             point_steps.no_equilibrium,
