@@ -42,3 +42,8 @@ def test_what_the_page_names_is_there(repository: Path) -> None:
     assert len(places) > 20
     there = [one for one in places if not re.search(r"KEY|XX|NAME", one)]
     assert [one for one in there if not (repository / one).exists()] == []
+
+
+@pytest.mark.parametrize(("name", "most"), [("CONTRIBUTING.md", 150), ("CHANGELOG.md", 200)])
+def test_what_people_read_first_is_short(name: str, most: int, repository: Path) -> None:
+    assert len((repository / name).read_text("utf-8").splitlines()) <= most
