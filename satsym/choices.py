@@ -10,7 +10,7 @@ class Choice(str, Enum):
 
     @classmethod
     def names(cls) -> tuple[str, ...]:
-        """All of them."""
+        """Names of all choices."""
         return tuple(each.value for each in cls)
 
 
@@ -39,7 +39,7 @@ class TableFormat(Choice):
 
     @property
     def file(self) -> str:
-        """Its name."""
+        """Name of the file of a table in this form."""
         return f"table.{self.value}"
 
 

@@ -24,7 +24,7 @@ class Model(Protocol):
 
     @property
     def spec(self) -> ProblemSpec:
-        """Its names and traits."""
+        """Names and traits of the model."""
 
 
 class Asked(Protocol):

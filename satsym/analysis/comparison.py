@@ -25,7 +25,7 @@ RANGE_DURATION = 16.0
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One of them."""
+    """One of the cases that are compared."""
 
     instance: Instance
     how: str
@@ -42,7 +42,7 @@ class Case:
     switching_times: tuple[float, ...]
     """Times at which controls jump."""
     metrics: dict[str, float]
-    """By name; empty where there is no answer."""
+    """Metrics by name; empty where there is no answer."""
 
     def signal(self, name: str) -> Array:
         """A state, a control or a derived quantity over the nodes, by name."""

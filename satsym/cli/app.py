@@ -102,7 +102,7 @@ class Program(Explained, click.Group):
     """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Its options, and its commands."""
+        """Write the options of the program, and its commands."""
         super().format_options(ctx, formatter)
         with formatter.section(explained("Commands")):
             widest = max(map(len, self.commands))

@@ -77,7 +77,7 @@ class Explained(click.Command):
         _write(formatter, self.help)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Its options."""
+        """Write the options of a command."""
         records = []
         for option in self.get_params(ctx):
             if isinstance(option, click.Option) and (record := option.get_help_record(ctx)) is not None:

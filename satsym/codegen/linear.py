@@ -78,7 +78,7 @@ def _constant(derivation: Derivation) -> list[Function]:
 
 
 def _feedback(derivation: Derivation) -> list[Function]:
-    """For u = -K x and for Riccati's equation."""
+    """Functions for a linear feedback u = -K x and for its Riccati equation."""
     system, s = system_of(derivation), symbols(derivation)
     n, m = system.b.shape
     coefficients = _coefficients(system.a - system.b * matrix_symbols("K", m, n))

@@ -42,7 +42,7 @@ def text() -> str:
 
 
 def _stated(name: str, signature: Signature) -> list[str]:
-    """Both forms of a function."""
+    """Lines that state the types of both forms of a function."""
     of_point = ", ".join(f"{a}: {'float' if a == 't' else 'Row'}" for a in signature.arguments)
     of_many = ", ".join(f"{a}: {_of_many(a)}" for a in signature.arguments)
     value = "tuple[float, ...]" if signature.shape else "float"

@@ -32,7 +32,7 @@ class Loop:
     """Whether it runs from the last node to the first."""
     time: sp.Symbol
     parameters: tuple[sp.Symbol, ...]
-    """Their symbols."""
+    """Symbols of the time and of the parameters."""
     integrated: tuple[sp.Symbol, ...]
     """Symbols of what is integrated, under the names of the arguments that give its start, its nodes and its
     midpoints."""

@@ -35,7 +35,7 @@ class Audit:
 
     @property
     def rows(self) -> list[Judged]:
-        """All of them."""
+        """Judged rows of all documents."""
         return list(chain.from_iterable(self.judged.values()))
 
     @property

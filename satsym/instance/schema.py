@@ -61,7 +61,7 @@ class OneOf:
 
     @property
     def description(self) -> str:
-        """As of ``Meta``."""
+        """Description of the key in the JSON schema, as ``Meta`` has it."""
         return "one of " + ", ".join(f'"{name}"' for name in self.names())
 
 

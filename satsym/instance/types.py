@@ -32,7 +32,7 @@ class BoundedNorm:
     name: str
     """Name of the set that these controls form; empty where it holds all controls of the model."""
     places: tuple[int, ...]
-    """In the model's order."""
+    """Places of the controls among those of the model."""
     lower: float
     upper: float
     unit: str

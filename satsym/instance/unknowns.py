@@ -45,11 +45,11 @@ class Unknown:
 
     @property
     def key(self) -> str:
-        """As messages name it."""
+        """Key of the unknown number, as messages name it."""
         return f"[{self.place.value}] {self.name}"
 
     def of(self, instance: Instance) -> float:
-        """Its value in an instance."""
+        """Value of the unknown number in an instance."""
         if self.place is Place.TIME:
             return instance.t0
         return (instance.initial if self.place is Place.INITIAL else instance.parameters)[self.index]

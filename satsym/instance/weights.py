@@ -91,7 +91,7 @@ def placed(options: LqrOptions | None, name: str, value: float, states: Sequence
 
 
 def _place(options: LqrOptions, name: str, states: Sequence[str]) -> tuple[str, int, int] | None:
-    """Which matrix, row and column."""
+    """Matrix, row and column of a weight."""
     letter, first, *second = name.split(".")
     rows = options.inputs if letter == "R" else states
     columns, last = (options.inputs, second[0]) if second else (rows, first)

@@ -20,7 +20,7 @@ class Active(Kernels):
     """Kernels with some of a model's inequalities at the end as constraints."""
 
     whole: Kernels | None = None
-    """With all of them as they were stated."""
+    """Kernels with all inequalities as they were stated."""
     names: frozenset[str] = frozenset()
     """Names of the constraints that are active."""
 

@@ -55,7 +55,7 @@ class Contradiction:
 
     function: str
     claim: str
-    """Which, and what it must be."""
+    """Name of the function, and what it must be."""
     deviation: float
     """Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
 

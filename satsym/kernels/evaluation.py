@@ -40,7 +40,7 @@ class Evaluation:
     """The functions of a model at places, and at copies a little aside of them."""
 
     kernels: Kernels
-    """Whose."""
+    """Kernels whose functions are evaluated."""
     at: Mapping[str, Any]
     """By name of the argument: times (K,), tables of K columns; for those in :data:`TUPLES` tuples of numbers or of
     arrays (K,). The first K/(1 + COPIES) columns are the places, then come the copies."""
@@ -110,7 +110,7 @@ class Evaluation:
         return found
 
     def _slopes(self, name: str, by: Sequence[str], instead: Mapping[str, Any]) -> dict[str, Array]:
-        """By several arguments in one call."""
+        """Derivatives of a function by several arguments, computed in one call."""
         tables = {a: self._table(a, instead) for a in by}
         count, columns, first = sum(map(len, tables.values())), len(self.at["t"]), 0
         steps = 1j * COMPLEX_STEP * np.eye(count)[:, :, None]

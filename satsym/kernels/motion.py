@@ -102,7 +102,7 @@ def _of_polynomials(of: Evaluation, a: Array, b: Array) -> Iterator[Relation]:
 
 
 def _routh_column(coefficients: Array) -> Array:
-    """Without special cases."""
+    """First column of the Routh array of a polynomial, without special cases."""
     above, row = list(coefficients[0::2]), list(coefficients[1::2])
     found = [above[0]]
     while row:

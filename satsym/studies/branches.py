@@ -64,9 +64,9 @@ class Known:
     """Values of what the study varies."""
     key: str
     cost: float
-    """As it is minimised."""
+    """Cost of the answer, as it is minimised."""
     costates: tuple[float, ...]
-    """At the start."""
+    """Initial costates of the answer."""
     t_final: float
 
 

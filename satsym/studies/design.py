@@ -27,7 +27,7 @@ class Axis:
 
     @cached_property
     def values(self) -> Array:
-        """In order; the ends exactly."""
+        """Values of the number that varies, in order; the ends exactly."""
         if self.logarithmic:
             found = np.exp(np.linspace(math.log(self.low), math.log(self.high), self.count))
         else:
@@ -63,7 +63,7 @@ class Grid:
         return np.stack([axis.values[place] for axis, place in zip(self.axes, places, strict=True)], axis=-1)
 
     def stated(self) -> dict[str, str]:
-        """By key, as the command line has it."""
+        """Values that vary, by key, as the command line has them."""
         return {
             f"vary {axis.key.text}": f"{'log:' if axis.logarithmic else ''}{axis.low!r}:{axis.high!r}:{axis.count}"
             for axis in self.axes
@@ -127,7 +127,7 @@ class Sample:
         return np.stack([one.quantiles(shares[:, k]) for k, one in enumerate(self.distributions)], axis=-1)
 
     def stated(self) -> dict[str, str]:
-        """By key, as the command line has it."""
+        """Values that vary, by key, as the command line has them."""
         found = {
             f"{'normal' if one.normal else 'uniform'} {one.key.text}": f"{one.first!r},{one.second!r}"
             for one in self.distributions

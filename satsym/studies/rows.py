@@ -146,7 +146,7 @@ class Found:
     method: str
     origins: Sequence[str]
     costs: Array
-    """As they are minimised, shape (M,)."""
+    """Costs of the optima, as they are minimised, shape (M,)."""
     t_final: Array
     x_final: Array
     costates: Array

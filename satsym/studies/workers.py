@@ -1,4 +1,7 @@
-"""Processes that compute chunks, in the shape of ``concurrent.futures``: one that dies takes no other with it."""
+"""Processes that compute chunks, in the shape of ``concurrent.futures``: one that dies takes no other with it.
+
+The workers of a Dask cluster that is there already have the same shape.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +12,19 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.resource_tracker import ensure_running
 from queue import SimpleQueue
+from socket import create_connection
 from threading import Lock, Thread
 from types import ModuleType
 from typing import Any
+from urllib.parse import urlsplit
 
 from satsym.status import BadInput
-from satsym.wording import shown
+from satsym.wording import printable, shown
 
 LIBRARIES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 ONE_THREAD = dict.fromkeys(LIBRARIES, "1")
@@ -61,7 +67,7 @@ class Workers(Executor):
             self._idle.put(k)
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """As of ``Executor``, in an idle process."""
+        """Compute a call in an idle process, as ``Executor.submit`` does."""
         k = self._idle.get()
         with _inherited(ONE_THREAD), _main_hidden():
             try:
@@ -151,3 +157,55 @@ def _main_hidden() -> Iterator[None]:
         yield
     finally:
         sys.modules["__main__"] = main
+
+
+PATIENCE = 10.0
+"""Seconds in which a scheduler has to answer."""
+
+AHEAD = 2
+"""Chunks for each thread of a worker, so that none waits for the next."""
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    """An executor, and how many chunks to give it at a time.
+
+    Workers need satsym and share no disk: what is solved is sent to them, and rows come back.
+
+    Parameters
+    ----------
+    address
+        Of the scheduler, such as ``tcp://192.168.0.1:8786``.
+
+    Raises
+    ------
+    BadInput
+        If Dask is not installed, or no scheduler with workers answers there.
+    """
+    try:
+        distributed: Any = import_module("distributed")
+    except ImportError:
+        raise BadInput("Dask is not installed; install the extra: pip install 'satsym[cluster]'") from None
+    silent = BadInput(f"{printable(address)}: no Dask scheduler answers there; write tcp://HOST:PORT")
+    if not _listens(address):  # a client that waits in vain complains once more when it is removed
+        raise silent
+    try:
+        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError):
+        raise silent from None
+    with client:
+        threads = sum(client.nthreads().values())
+        if not threads:
+            raise BadInput(f"{printable(address)}: that scheduler has no workers; start some")
+        yield client.get_executor(pure=False), AHEAD * threads
+
+
+def _listens(address: str) -> bool:
+    """Whether anything listens there; of other protocols than TCP it is not known."""
+    try:
+        parts = urlsplit(address if "://" in address else f"tcp://{address}")
+        if parts.scheme in ("tcp", "tls"):
+            create_connection((parts.hostname or "", parts.port or 0), PATIENCE).close()
+    except (OSError, ValueError, OverflowError):
+        return False
+    return True

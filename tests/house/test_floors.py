@@ -64,3 +64,8 @@ def test_rooms_and_files_can_be_taken_in_at_a_look(repository: Path) -> None:
     assert {path.name: count for path in files if (count := len(path.read_text("utf-8").splitlines())) > 400} == {}
     crowded = Counter(path.parent.relative_to(repository) for path in files)
     assert {str(room): count for room, count in crowded.items() if count > 20} == {}
+
+
+def test_the_front_loads_sympy_only_when_something_is_derived(tmp_path: Path) -> None:
+    loaded = imported_by("import satsym.front.derivation, satsym.front.solution, satsym.front.instance", tmp_path)
+    assert not loaded & {"sympy", "matplotlib", "numba"}

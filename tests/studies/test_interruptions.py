@@ -27,7 +27,7 @@ from satsym.report import study as reports
 from satsym.report.results import set_list, sets, studies
 from satsym.report.results.files import text
 from satsym.status import BadInput
-from satsym.studies import cluster, parts, running
+from satsym.studies import parts, running, workers
 from satsym.studies.asked import Study
 from satsym.studies.asking import asked as asking
 from satsym.studies.parts import Parts
@@ -377,8 +377,8 @@ def test_a_scheduler_is_asked_for_only_where_something_listens() -> None:
     """For the client of Dask that waits in vain complains again when it is removed."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        assert all(cluster._listens(one) for one in (f"tcp://127.0.0.1:{port}", f"127.0.0.1:{port}"))
-    assert not cluster._listens(f"tcp://127.0.0.1:{port}")
+        assert all(workers._listens(one) for one in (f"tcp://127.0.0.1:{port}", f"127.0.0.1:{port}"))
+    assert not workers._listens(f"tcp://127.0.0.1:{port}")
 
 
 @pytest.mark.parametrize(
@@ -399,7 +399,7 @@ def test_no_cluster_is_one_line_and_writes_nothing(
             raise ImportError
         return SimpleNamespace(Client=Client)
 
-    monkeypatch.setattr(cluster, "import_module", imported)
+    monkeypatch.setattr(workers, "import_module", imported)
     out = tmp_path / "out"
     wanted = ["study", NAME, "--vary", "initial.r=0.9:1.1:4", "--out", str(out), "--scheduler", address or "any"]
     assert main(wanted) == 3
@@ -416,7 +416,7 @@ def test_a_cluster_whose_worker_is_killed_gives_the_same_bytes(tmp_path: Path) -
     reports.carry_out(asked(24, **more), tmp_path / "here", lambda: Here(None), 1)
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as local,
-        cluster.cluster(local.scheduler_address) as (executor, at_once),
+        workers.cluster(local.scheduler_address) as (executor, at_once),
     ):
         killed: list[int] = []
 

@@ -51,7 +51,7 @@ class Plant:
     """What a switching feedback acts on."""
 
     instance: Instance
-    """Whose model has a switching curve."""
+    """Instance whose model has a switching curve."""
     position: int
     rate: int
     """Places of these states."""

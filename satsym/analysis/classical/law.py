@@ -46,7 +46,7 @@ class Loop:
     """Control for each unit of the state that follows."""
     command: float
     differentiator: float
-    """As in the instance."""
+    """Command and differentiator time of the law, as the instance states them."""
     jump: Array
     """How the states change at once when the command steps, shape (n,)."""
     impulse: float

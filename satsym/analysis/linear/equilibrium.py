@@ -39,11 +39,11 @@ class Linearisation:
     model: Kernels
     parameters: tuple[float, ...]
     t0: float
-    """Which, and from when on."""
+    """Model that is linearised, its parameters, and the time from which on."""
     point: Array
     """The reference at t0, or the equilibrium; shape (n,)."""
     on_reference: bool
-    """Which of the two."""
+    """Whether the point lies on the model's reference; otherwise it is an equilibrium."""
     system: LinearSystem
     """Coefficients at t0; their states, inputs and outputs are deviations."""
     constant: bool

@@ -33,7 +33,7 @@ class Rational:
     C: fmpq_mat
 
     def with_inputs(self, columns: Sequence[int]) -> Rational:
-        """With some of the inputs alone."""
+        """Return the system with some of its inputs alone."""
         from flint import fmpq_mat
 
         chosen = [row[j] for row in self.B.tolist() for j in columns]

@@ -29,7 +29,7 @@ class Scaled:
     A: Array
     B: Array
     C: Array
-    """In these units."""
+    """Matrices of the system in the units that suit it."""
     states: Array
     inputs: Array
     outputs: Array

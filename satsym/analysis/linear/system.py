@@ -32,7 +32,7 @@ class LinearSystem:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    """Their names, n, m and k of them."""
+    """Names of the n states, m inputs and k outputs."""
     name: str = ""
     """What it is the linearisation of."""
     exact: Rational | None = None

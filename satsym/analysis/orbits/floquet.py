@@ -44,11 +44,11 @@ class Floquet:
     status: str
     """``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``."""
     orbit: Elements
-    """Whose neighbours they are."""
+    """Closed orbit whose neighbours the multipliers describe."""
     monodromy: Monodromy | None
     """``None`` unless computed, as are all other numbers here."""
     multipliers: Complex | None
-    """Its eigenvalues, shape (6,)."""
+    """Floquet multipliers: eigenvalues of the monodromy matrix, shape (6,)."""
     turning: HillEquations | None
     """Hill's equations, where the orbit is nearly circular."""
 

@@ -31,7 +31,7 @@ class Point:
     """What the Jacobian at a point of an orbit has for eigenvalues, and what is made of them."""
 
     distance: float
-    """From the centre."""
+    """Distance of the point from the centre of attraction."""
     eigenvalues: Complex
     """Computed eigenvalues of the generated Jacobian in Cartesian coordinates, shape (6,)."""
     closed_form: Complex

@@ -168,7 +168,7 @@ class Regulators:
     """Regulators of M instances."""
 
     clear: NDArray[np.bool_]
-    """Which are sure, shape (M,)."""
+    """Whether each regulator is sure, shape (M,)."""
     K: Array
     """Gains, shape (M, m, n)."""
     eigenvalues: NDArray[np.complexfloating]
@@ -176,7 +176,7 @@ class Regulators:
     residual: Array
     """Residuals of the Riccati equations, relative to their terms."""
     cost: Array
-    """From the initial states on, shapes (M,)."""
+    """Cost from the initial state of each instance on, shape (M,)."""
 
 
 def regulators(instances: Sequence[Instance]) -> Regulators | None:

@@ -139,7 +139,7 @@ def _computing(scheduler: str | None, count: int) -> Iterator[tuple[Callable[[],
 
         yield lambda: Workers(count), count
         return
-    from satsym.studies.cluster import cluster
+    from satsym.studies.workers import cluster
 
     with cluster(scheduler) as (executor, most):
         yield lambda: executor, most

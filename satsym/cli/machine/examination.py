@@ -61,7 +61,7 @@ class Finding:
         return "ok" if self.fine else "BROKEN" if self.required else "absent"
 
     def as_object(self) -> dict[str, str | bool]:
-        """For JSON."""
+        """Return the finding as an object for JSON."""
         return {
             "name": self.name,
             "value": self.value,

@@ -44,12 +44,12 @@ MOST_TRIED, MOST_OPERATIONS = 6, 400
 
 @dataclass(frozen=True)
 class Choice:
-    """In which form a step is written."""
+    """Form in which a step is written."""
 
     powers: tuple[int, ...]
     """Powers of the unit by which states are multiplied."""
     scales: tuple[float, ...] = ()
-    """By which quotients are."""
+    """Powers of the unit by which quotients are multiplied."""
     late: bool = True
     """Whether values that never change are multiplied in late."""
 
@@ -79,7 +79,7 @@ class Step:
     ahead: tuple[int | None, ...]
     """States of the last stage to which two slopes were added in place."""
     quotients: int
-    """Whose scales may be chosen."""
+    """Number of quotients whose scales may be chosen."""
 
     @property
     def rows(self) -> list[int]:
@@ -89,7 +89,7 @@ class Step:
 
     @property
     def operations(self) -> int:
-        """In each step."""
+        """Number of operations in each step."""
         return self.tape.operations(self.rows)
 
     @property
@@ -164,7 +164,7 @@ def _improved(written: Callable[[Choice], Step], choice: Choice, quotients: int)
 
 
 def _with(values: tuple[T, ...], place: int, value: T) -> tuple[T, ...]:
-    """With another value in a place."""
+    """Return values with another one in one place."""
     return (*values[:place], value, *values[place + 1 :])
 
 
@@ -226,7 +226,7 @@ class Group:
 
     states: tuple[tuple[int, ...], ...]
     rows: tuple[tuple[int, ...], ...]
-    """Which of the step's, for each."""
+    """States of each sum, and rows of the step's slopes on which they depend."""
     weights: Array
     """Weights of states and rows, shape (sums, states, states + rows)."""
     now: Array

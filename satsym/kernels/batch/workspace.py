@@ -38,7 +38,7 @@ def element(begin: int | str, row: int) -> str:
 
 
 def over_lanes(lines: Sequence[str]) -> list[str]:
-    """For each column of a block."""
+    """Lines of a loop over the columns of a block, with these lines as its body."""
     return [f"for j in range({LANES}):", *indented(lines)]
 
 

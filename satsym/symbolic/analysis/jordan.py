@@ -25,7 +25,7 @@ class JordanForm:
     """A T = T J."""
 
     blocks: tuple[JordanBlock, ...]
-    """In the order in which they stand in J."""
+    """Jordan blocks in the order in which they stand in J."""
     form: sp.ImmutableMatrix
     """J, with ones above the diagonal."""
     basis: sp.ImmutableMatrix

@@ -50,7 +50,7 @@ class Eigenvalue:
     """An eigenvalue with its multiplicities."""
 
     value: sp.Expr
-    """In closed form."""
+    """Eigenvalue in closed form."""
     algebraic: int
     geometric: int
     """Multiplicity as a root of the characteristic polynomial, and number of independent eigenvectors."""

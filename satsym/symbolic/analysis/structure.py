@@ -20,7 +20,7 @@ class Mode:
     """A mode that no input reaches, or no output shows."""
 
     eigenvalue: sp.Expr
-    """Its eigenvalue."""
+    """Eigenvalue of the mode."""
     vector: sp.ImmutableMatrix
     """Out of reach: w with w'A = eigenvalue w' and w'B = 0, so that w'x goes its own way. Out of sight: v with A v =
     eigenvalue v and C v = 0, so that no output shows a motion along v."""
@@ -44,7 +44,7 @@ class Reach:
     matrix: sp.ImmutableMatrix
     """[B, AB, A^2 B, ...] or [C; CA; CA^2; ...]."""
     rank: int
-    """Its rank."""
+    """Rank of the matrix."""
     assumed: tuple[sp.Expr, ...]
     """What must not vanish for the rank to be that, where this is not certain."""
     pbh: tuple[tuple[sp.Expr, int], ...]

@@ -76,7 +76,7 @@ class AboutRest(SpecialCase):
         return tuple(found)
 
     def brings(self) -> tuple[Variable, ...]:
-        """None: the coordinates keep their names."""
+        """Return no variables: the coordinates keep their names."""
         return ()
 
     def names(self, problem: Problem | None) -> dict[str, str]:
@@ -91,7 +91,7 @@ class AboutRest(SpecialCase):
             require(f"the rate of {coordinate.name}", velocity, over(known[coordinate.name], known[n.TIME.name]))
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """Whose motions, about which rest."""
+        """State whose motions are considered, and about which rest."""
         about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.of.reference.items())
         return (Paragraph("about_rest", self.of, tuple(about)),)
 

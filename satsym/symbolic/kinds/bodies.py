@@ -64,7 +64,7 @@ class Bodies(Model):
     modes: tuple[ModeGroup, ...] = ()
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
-        """As stated."""
+        """Return the mode groups as they were stated."""
         return self.modes
 
     @property

@@ -46,7 +46,7 @@ class Derived(Model):
             known[n.rate_of(state).name] = over(known[state.name], second)
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """Which model's motion it is."""
+        """State which model's motion this one is derived from."""
         return (Paragraph("motion_of", of=self.of),)
 
 

@@ -76,7 +76,7 @@ class Gyrostat(Model):
         return self.quantities
 
     def picture(self) -> geometry.Picture | None:
-        """Its bodies about their axis."""
+        """Draw the bodies about their axis."""
         return geometry.bodies(self, next(iter(self.angles)), tuple(self.bodies)) if self.angles else None
 
     def misfits(self) -> Iterator[str]:

@@ -53,7 +53,7 @@ class Newton(Particle):
         )
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """By differentiation and projection."""
+        """Steps from Newton's law to the first-order form, by differentiation and projection."""
         return (unit_vectors, position, velocity, acceleration, forces, newton, equations_of_motion, first_order)
 
     def misfits(self) -> Iterator[str]:
@@ -125,7 +125,7 @@ class Newton(Particle):
                 require(f"the force {name!r}, per unit mass,", component, acceleration)
 
     def picture(self) -> geometry.Picture | None:
-        """Its position, unit vectors and forces."""
+        """Draw the position, unit vectors and forces."""
         return geometry.motion(self, self.directions)
 
     def statement(self) -> tuple[Paragraph, ...]:

@@ -30,7 +30,7 @@ def found(so_far: Derivation) -> tuple[Minimum, ...]:
 
 
 def problem_of(so_far: Derivation) -> Problem:
-    """Its problem."""
+    """Return the problem of a derivation that has one."""
     if so_far.problem is None:
         raise TypeError(f"{so_far.name} has no cost")
     return so_far.problem
