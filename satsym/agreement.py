@@ -29,7 +29,7 @@ MOST_DIGITS = 4 * DIGITS
 LIMIT = 1e-40
 """Largest distance of equal numbers, relative to the larger one: two thirds of the digits."""
 
-NEGLIGIBLE_SHARE, NEGLIGIBLE_SIZE = 1e-60, 1e-240
+NEGLIGIBLE_FRACTION, NEGLIGIBLE_SIZE = 1e-60, 1e-240
 """Numbers below the first, times the largest number beside them, or below the second count as zero.
 
 Differences do not resolve the one, and decimals that cancel leave the other.
@@ -66,7 +66,7 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
     before: dict[int, tuple[Any, Any]] | None = None  # difference and size
     while True:
         pairs = list(zip(*sides(digits), strict=True))
-        faint = max(NEGLIGIBLE_SHARE * max((_size(*pair) for pair in pairs), default=0), NEGLIGIBLE_SIZE)
+        faint = max(NEGLIGIBLE_FRACTION * max((_size(*pair) for pair in pairs), default=0), NEGLIGIBLE_SIZE)
         still: dict[int, tuple[Any, Any]] = {}
         for k in range(len(pairs)) if before is None else before:
             difference, size = pairs[k][0] - pairs[k][1], _size(*pairs[k])

@@ -28,7 +28,7 @@ VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
 """As it was asked for, in one run."""
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
-MOST_PROGRESS_LINES, LEAST_PROGRESS_SECONDS, MOST_PROGRESS_SECONDS = 10, 5.0, 60.0
+MOST_PROGRESS_LINES, SHORTEST_PROGRESS_INTERVAL, LONGEST_PROGRESS_INTERVAL = 10, 5.0, 60.0
 """Progress where lines stay: how many there are, and the least and the most seconds between two."""
 
 
@@ -167,7 +167,7 @@ class Live:
             return
         now = time.monotonic()
         waited, further = now - self._told, int(MOST_PROGRESS_LINES * share) > self._tenth
-        if waited >= MOST_PROGRESS_SECONDS or (further and waited >= LEAST_PROGRESS_SECONDS):
+        if waited >= LONGEST_PROGRESS_INTERVAL or (further and waited >= SHORTEST_PROGRESS_INTERVAL):
             self._told, self._tenth = now, int(MOST_PROGRESS_LINES * share)
             with unless_unwritable():
                 _write(sys.stderr, f"{text}\n")

@@ -19,7 +19,7 @@ COMPLEX_STEP = 1e-30
 COPIES, COPY_DISTANCE = 2, 1e-4
 """Copies of each place, and how far aside of it they are, relative to each argument."""
 
-SMALLEST_SHARE = 1e-4
+SMALLEST_FRACTION = 1e-4
 """Share of what a row of derivatives comes to at most, at which something smaller in it counts: terms may cancel."""
 
 TOGETHER = {
@@ -128,12 +128,12 @@ class Evaluation:
         return found
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
-        """How small derivatives may be before what they are made of is lost: see :data:`SMALLEST_SHARE`."""
+        """How small derivatives may be before what they are made of is lost: see :data:`SMALLEST_FRACTION`."""
         if instead:
             unit, value = size(self._table(by, instead)), size(self(name, **instead))
         else:
             unit, value = self._sizes["", by], self._sizes[name, ""]
-        return np.asarray(SMALLEST_SHARE * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
+        return np.asarray(SMALLEST_FRACTION * value[..., None, :] / np.where(unit > 0.0, unit, 1.0))
 
     @cached_property
     def _sizes(self) -> dict[tuple[str, str], Array]:

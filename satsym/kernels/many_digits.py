@@ -17,7 +17,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from satsym.agreement import MOST_DIGITS, NEGLIGIBLE_SHARE, Sides, slopes
+from satsym.agreement import MOST_DIGITS, NEGLIGIBLE_FRACTION, Sides, slopes
 from satsym.arrays import Array
 from satsym.kernels import plain
 from satsym.kernels.contract import BATCH
@@ -246,8 +246,8 @@ def _to_objects(values: Array) -> Any:
 
 def _rounded(values: Sequence[Any]) -> list[float]:
     """Floats; what is next to nothing beside one and the largest of them is what cancelling leaves, and zero."""
-    faint = NEGLIGIBLE_SHARE * max((abs(v) for v in values if abs(v) < mp.inf), default=1)
-    return [0.0 if abs(v) <= max(faint, NEGLIGIBLE_SHARE) else float(v) for v in values]
+    faint = NEGLIGIBLE_FRACTION * max((abs(v) for v in values if abs(v) < mp.inf), default=1)
+    return [0.0 if abs(v) <= max(faint, NEGLIGIBLE_FRACTION) else float(v) for v in values]
 
 
 class _Constants(ast.NodeTransformer):

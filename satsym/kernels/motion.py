@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.evaluation import SMALLEST_SHARE, Evaluation, size
+from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, size
 from satsym.kernels.relations import Relation, along, derivative
 
 PROBES = (-1.7, -0.4, 0.9, 2.3)
@@ -25,7 +25,7 @@ def of_motion(of: Evaluation) -> Iterator[Relation]:
         curve = of("reference")
         rates, pace = of("dynamics", x=curve, u=rest), of.slope("reference", "t")[..., 0, :]
         terms = np.abs(of.slope("dynamics", "x", x=curve, u=rest) * curve).sum(axis=-2)
-        yield Relation("reference", "uncontrolled motion", pace, rates, SMALLEST_SHARE * terms)
+        yield Relation("reference", "uncontrolled motion", pace, rates, SMALLEST_FRACTION * terms)
     if of.has("invariants"):
         left, terms = along(of, "invariants", drift)
         yield Relation("invariants", "constant along the uncontrolled motion", left, np.zeros_like(left), terms)
@@ -50,7 +50,7 @@ def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
     yield Relation(name, "acceleration is that of Kepler motion", rates[3:6], -mu * place / distance**3, terms[3:6])
     if of.has("position"):
         found = of("position")
-        yield Relation("position", "place in space", found, place[: len(found)], distance * SMALLEST_SHARE)
+        yield Relation("position", "place in space", found, place[: len(found)], distance * SMALLEST_FRACTION)
 
 
 def _of_linear_models(of: Evaluation) -> Iterator[Relation]:
@@ -67,7 +67,7 @@ def _of_linear_models(of: Evaluation) -> Iterator[Relation]:
     ):
         if of.has(name):
             slopes = of.slope(function, by, **at_rest)
-            terms = SMALLEST_SHARE * size(slopes).max()
+            terms = SMALLEST_FRACTION * size(slopes).max()
             yield Relation(name, f"derivative of {function} at rest", of(name), slopes, terms)
     if of.has("original_state", "deviation_state"):
         back = of("deviation_state", original=of("original_state"))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
-from satsym.kernels.evaluation import SMALLEST_SHARE, Evaluation, size
+from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, size
 from satsym.kernels.relations import Relation, along, derivative
 
 
@@ -41,7 +41,7 @@ def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:
     f, lam = of("dynamics"), of.at["lam"]
     work = lam * f
     cost, terms = of("hamiltonian") - work.sum(axis=0), np.abs(work).sum(axis=0)
-    yield Relation("running_cost", "H - lambda' f", of("running_cost"), cost, SMALLEST_SHARE * terms)
+    yield Relation("running_cost", "H - lambda' f", of("running_cost"), cost, SMALLEST_FRACTION * terms)
     yield from derivative(of, "dynamics", "hamiltonian", ("lam",))
     yield from derivative(of, "costate_rate", "hamiltonian", ("x",), -1.0)
     yield from derivative(of, "terminal_gradient", "terminal_cost", ("x",))
@@ -79,7 +79,7 @@ def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Re
     expected = np.concatenate([*rates]) + surplus
     terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
     yield Relation(
-        "canonical", "rates of states and costates under the law", of("canonical"), expected, SMALLEST_SHARE * terms
+        "canonical", "rates of states and costates under the law", of("canonical"), expected, SMALLEST_FRACTION * terms
     )
     yield from derivative(of, "canonical_jacobian", "canonical", ("x", "lam"))
     yield from derivative(of, "canonical_drift", "canonical", ("t",))
@@ -104,12 +104,16 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
     slope = of.slope("terminal_cost", "x") + np.einsum("ck,cnk->nk", weights, by_state)
     ends = given * (x - target) + on_reference * (x - curve) + (1.0 - given - on_reference) * (lam - slope)
     terms = np.abs(given * x) + np.abs(on_reference * x) + np.abs(lam) + np.abs(slope)
-    yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, SMALLEST_SHARE * terms)
+    yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, SMALLEST_FRACTION * terms)
     h = _under_law(of, "hamiltonian", control) + _smoothing(of, control)
     parts = [h, of.slope("terminal_cost", "t")[0], *(weights * by_time[:, 0]), *((slope - lam) * on_reference * pace)]
     size_of_parts = np.sum(np.abs(parts), axis=0)
     yield Relation(
-        "boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * SMALLEST_SHARE
+        "boundary",
+        "transversality of the final time",
+        found[-1],
+        np.sum(parts, axis=0),
+        size_of_parts * SMALLEST_FRACTION,
     )
     yield from derivative(of, "boundary_jacobian", "boundary", ("x", "lam", "nu", "t"))
 
@@ -135,7 +139,7 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
     alone = u[:, None, :] * np.eye(len(u))[:, :, None]
     idle = of("hamiltonian", u=np.zeros_like(u))
     gained = np.array([of("hamiltonian", u=each) - idle for each in alone.swapaxes(0, 1)])
-    terms = SMALLEST_SHARE * np.abs(idle)
+    terms = SMALLEST_FRACTION * np.abs(idle)
     yield Relation(
         "switching_function", "contribution of each control to H", sigma * u + weight * np.abs(u), gained, terms
     )
@@ -230,11 +234,11 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     yield Relation("path_rates", "second rates of the constraints", rates[:, 1], wanted, terms[:, 0])
     vanishing, last, own = of("path_vanishing", u=law), of("path_rates", u=law), of("path_constraints", u=law)
     wanted = np.where(second[:, None], last[:, 1], np.where(derived[:, None], last[:, 0], own))
-    faint = SMALLEST_SHARE * max(size(last).max(), size(own).max())
+    faint = SMALLEST_FRACTION * max(size(last).max(), size(own).max())
     if of.kernels.spec.switching:
         wanted, moved = own.copy(), np.abs(_effect(of)).argmax(axis=1)
         wanted[derived] = np.take_along_axis(of("switching_function"), moved, axis=0)[derived]
-        faint = SMALLEST_SHARE * max(size(vanishing).max(), size(wanted).max())
+        faint = SMALLEST_FRACTION * max(size(vanishing).max(), size(wanted).max())
     yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, faint)
     for k, order in enumerate(orders):
         if order:

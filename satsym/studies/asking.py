@@ -82,7 +82,7 @@ def asked(
     return replace(study, compiled=True) if case.solver.backend == "auto" and _worth_compiling(study) else study
 
 
-LEAST_ROWS_COMPILED = 1000
+FEWEST_ROWS_COMPILED = 1000
 """Rows from which on machine code is made, or read, without anybody asking for it."""
 
 
@@ -90,7 +90,7 @@ def _worth_compiling(study: Study) -> bool:
     """Whether so many rows are solved together that compiling pays, where there is a compiler."""
     from satsym.kernels.batch.compiling import able
 
-    if study.design.count < LEAST_ROWS_COMPILED or study.command is not Command.SOLVE or not able():
+    if study.design.count < FEWEST_ROWS_COMPILED or study.command is not Command.SOLVE or not able():
         return False
     from satsym.studies.together import together
 

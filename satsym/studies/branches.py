@@ -39,7 +39,7 @@ from satsym.studies.rows import Column, Row
 from satsym.studies.solving import SINGLE_ORIGIN, certified, drawn_for_competitors
 from satsym.studies.together import CLOSED, plain
 
-LEAST_ROWS_OF_JUMP, MOST_ROWS = 4, 100_000
+FEWEST_ROWS_OF_JUMP, MOST_ROWS = 4, 100_000
 """Rows on a line in which one may jump against the trend, and rows of a study that is looked through."""
 
 JUMP, ROUNDING = 4.0, 1e-6
@@ -100,7 +100,7 @@ def looked_for(study: Study) -> bool:
     """Whether rows have neighbours, and can be solved from these: smooth problems on a grid with enough rows."""
     grid = (
         isinstance(study.design, Grid)
-        and max(study.design.shape) >= LEAST_ROWS_OF_JUMP
+        and max(study.design.shape) >= FEWEST_ROWS_OF_JUMP
         and study.design.count <= MOST_ROWS
     )
     return grid and study.command is Command.SOLVE and plain(study.task)
@@ -234,7 +234,7 @@ def jumping(places: Array, values: Array) -> NDArray[np.bool_]:
     values
         Shape (rows, quantities).
     """
-    if len(places) < LEAST_ROWS_OF_JUMP:
+    if len(places) < FEWEST_ROWS_OF_JUMP:
         return np.zeros(max(len(places) - 1, 0), dtype=bool)
     slopes = np.abs(np.diff(values, axis=0)) / np.diff(places)[:, None]
     apart = np.full((2, slopes.shape[1]), np.nan)

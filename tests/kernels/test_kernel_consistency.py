@@ -15,7 +15,7 @@ import pytest
 from satsym import instance
 from satsym.kernels import consistency, load, loading, shipped
 from satsym.kernels.digest import intact, sealed
-from satsym.kernels.evaluation import SMALLEST_SHARE
+from satsym.kernels.evaluation import SMALLEST_FRACTION
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
@@ -111,7 +111,7 @@ def test_shipped_modules_agree_with_themselves_to_rounding(name: str):
         # 17 states along a chain of 460 operations lose two digits more than the others by cancellation
         allowed = (0.1 if name == "gimballed_wheel" else 1e-3) * consistency.LIMIT
         if worst.function == "running_cost":  # one that is none is compared with this share of the terms that cancel
-            allowed = 4.0 * np.finfo(float).eps / SMALLEST_SHARE
+            allowed = 4.0 * np.finfo(float).eps / SMALLEST_FRACTION
         assert worst.deviation < allowed, worst
 
 

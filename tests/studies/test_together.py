@@ -19,7 +19,7 @@ from satsym.solvers.switching.linear.by_reach import separating
 from satsym.status import BadInput
 from satsym.studies import chunks, solving
 from satsym.studies.asked import Study, Task
-from satsym.studies.asking import LEAST_ROWS_COMPILED
+from satsym.studies.asking import FEWEST_ROWS_COMPILED
 from satsym.studies.asking import asked as asking
 from satsym.studies.rows import Found, Row
 from satsym.studies.together import rows_together, together
@@ -82,7 +82,7 @@ def test_many_rows_are_compiled_where_that_is_possible() -> None:
     pytest.importorskip("numba")
     few, many = (
         asked(sample=count, uniform={"initial.r": "0.9,1.1"})
-        for count in (LEAST_ROWS_COMPILED - 1, LEAST_ROWS_COMPILED)
+        for count in (FEWEST_ROWS_COMPILED - 1, FEWEST_ROWS_COMPILED)
     )
     assert not few.compiled
     assert many.compiled

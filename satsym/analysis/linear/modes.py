@@ -29,7 +29,7 @@ SHRUNK = 1e-4
 """How far a parameter shrinks."""
 LARGEST_STEP, SMALLEST_STEP = 0.5, 1e-4
 """Logarithms of the factors by which it does: the largest, and that below which eigenvalues are taken to meet."""
-LEAST_SEPARATION = 4.0
+SMALLEST_SEPARATION = 4.0
 """An eigenvalue is followed if every other one is so many times as far away as the one that continues it."""
 
 
@@ -183,4 +183,4 @@ def _continued(guess: Numbers, coming: Numbers) -> tuple[NDArray[np.intp], NDArr
     own = np.take_along_axis(apart, order[:, None], axis=1)[:, 0]
     others = apart + np.where(np.arange(len(coming)) == order[:, None], np.inf, 0.0)
     same = 1e-9 * np.abs(coming).max()  # numbers for one multiple eigenvalue need not be distinguished
-    return order, (LEAST_SEPARATION * own <= others.min(axis=1)) | (own <= same)
+    return order, (SMALLEST_SEPARATION * own <= others.min(axis=1)) | (own <= same)
