@@ -210,29 +210,70 @@ def integrated(
     NotProved
         If it has no enclosure.
     """
-    point, d, left, h = list(node), unit(len(node)), span, span
-    steps, deviations, errors, start = [], [], [], column(around)
+    middle, carried = [v.mid() for v in node], _Carried.of(node)
+    left, h, start = span, span, column(around)
+    steps, deviations, errors = [], [], []
     while True:
         h = min(h, left, key=lambda v: float(v.mid()))
         last = not h < left
-        middle = [v.mid() for v in point]
-        error = column([p - v for p, v in zip(point, middle, strict=True)])
-        deviation = (d * start).entries()
-        z = [p + e for p, e in zip(point, deviation, strict=True)]
+        errors.append(carried.error())
+        deviations.append((carried.frame * (carried.flow * start)).entries())
+        z = [a + b + c for a, b, c in zip(middle, errors[-1], deviations[-1], strict=True)]
         one, following = step(law, middle, z, left + slack if last else h, order, sizes)
         last = last and one.h.contains(left)
         steps.append(one)
-        deviations.append(deviation)
-        errors.append(error.entries())
         there = one.from_middle(left if last else one.h)
-        v = one.derivative()
-        point = [p + e for p, e in zip(there, (v * error).entries(), strict=True)]
-        d = v * d
+        middle, carried = [v.mid() for v in there], carried.after(one.derivative(), there)
         if last:
-            return Segment(point, d, rates(law, one.reached(one.h)), steps, deviations, errors)
+            point = [a + b for a, b in zip(middle, carried.error(), strict=True)]
+            derivative = carried.frame * carried.flow
+            return Segment(point, derivative, rates(law, one.reached(one.h)), steps, deviations, errors)
         left, h = left - one.h, following
         if len(steps) > MOST_STEPS:
             raise NotProved(f"more than {MOST_STEPS} steps in a segment")
+
+
+@dataclass(frozen=True)
+class _Carried:
+    """What a motion carries along from the start of a segment, in a frame that moves with it.
+
+    Balls about components would grow at each turn of the motion if they stood in fixed axes.
+
+    Attributes
+    ----------
+    frame
+        An exact matrix, near the derivatives by the start.
+    offset
+        A ball vector: how far the motion is from the midpoints that are followed is the frame times it.
+    flow
+        A ball matrix near the identity: the derivatives by the start are the frame times it.
+    """
+
+    frame: Matrix
+    offset: Matrix
+    flow: Matrix
+
+    @classmethod
+    def of(cls, values: Sequence[Ball]) -> _Carried:
+        """At the start, where values have these radii."""
+        one = unit(len(values))
+        return cls(one, column([v - v.mid() for v in values]), one)
+
+    def error(self) -> list[Ball]:
+        """How far the motion is from the midpoints that are followed, component by component."""
+        found: list[Ball] = (self.frame * self.offset).entries()
+        return found
+
+    def after(self, derivative: Matrix, there: Sequence[Ball]) -> _Carried:
+        """The same after a step with these derivatives, which leads the midpoint to these balls."""
+        moved, fresh = derivative * self.frame, column([v - v.mid() for v in there])
+        frame = moved.mid()
+        try:
+            back = frame.inv()
+        except ZeroDivisionError:
+            return _Carried(unit(len(there)), moved * self.offset + fresh, moved * self.flow)
+        turned = back * moved
+        return _Carried(frame, turned * self.offset + back * fresh, turned * self.flow)
 
 
 class Rows:
