@@ -27,6 +27,20 @@ class Proof(record.Proof):
         """What ``satsym prove --json`` prints of it, as text."""
         return to_json(self.to_dict())
 
+    def latex(self, lang: str = "en", *, fragment: bool = False) -> str:
+        """A LaTeX document of it, as ``satsym prove --latex`` writes it.
+
+        Parameters
+        ----------
+        lang
+            Its language.
+        fragment
+            Whether the preamble is left out, for inclusion in another document.
+        """
+        from satsym.report.latex.proof import render
+
+        return render(self, lang, standalone=not fragment)
+
     def __repr__(self) -> str:
         return proof_text(self)
 

@@ -7,15 +7,17 @@ from pathlib import Path
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import json_option, out_option, set_option, subject_argument
+from satsym.cli.options import json_option, out_option, place_option, set_option, subject_argument
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save
+from satsym.report.said import language
 from satsym.status import ExitCode, Status
 
 EXAMPLES = """\b
 Examples:
   satsym prove return-to-orbit          what is proved of the answer, with 20 digits
   satsym prove my_case.toml --json      the same for another program
+  satsym prove soft-return --latex soft-return.tex
 
 Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved here (it says which feature),
 5 not proved (it says which step fails)."""
@@ -26,10 +28,13 @@ Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved her
 @click.option(
     "--digits", type=click.IntRange(6, 60), default=20, metavar="N", help="Significant digits; 20 by default."
 )
+@place_option("--latex", "document", metavar="FILE", help="Also typeset it; a file of this name is replaced.")
 @set_option
 @json_option
 @out_option
-def prove(subject: str, digits: int, values: tuple[str, ...], as_json: bool, out: Path | None) -> ExitCode:
+def prove(
+    subject: str, digits: int, document: Path | None, values: tuple[str, ...], as_json: bool, out: Path | None
+) -> ExitCode:
     """Prove that the answer is a strict local minimum.
 
     X is a shipped instance or the path of a TOML file. It is solved; then ball arithmetic, whose every number carries a
@@ -59,6 +64,12 @@ def prove(subject: str, digits: int, values: tuple[str, ...], as_json: bool, out
         )
     result = with_settings(head("prove", case.model.spec, case, Status.CONVERGED) | proof.to_dict(), given)
     saved = save(folder, result, {})
+    if document is not None:
+        from satsym.report.latex.proof import render
+        from satsym.report.results.files import write_text
+
+        write_text(document, render(proof, language()))
+        saved = [*saved, document]
     answer(as_json, result, lambda: with_files(proof_text(proof, in_colour()), saved))
     if proof.status is Outcome.PROVED:
         return ExitCode.DONE

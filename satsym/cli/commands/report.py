@@ -17,12 +17,15 @@ from satsym.status import BadInput, ExitCode, Verdict
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
+    from satsym.proof.record import Proof
+    from satsym.solution import Solution
     from satsym.symbolic import Derivation
 
 EXAMPLES = """\b
 Examples:
   satsym report soft-return --html soft-return.html
   satsym report transfer-fuel --html transfer.html --interactive    with a slider over time
+  satsym report soft-return --html soft-return.html --prove         with a theorem beside the certificate
   satsym report my_case.toml --html my_case.html --derivation my_model.py"""
 
 
@@ -34,6 +37,7 @@ Examples:
 @place_option(
     "--study", "study", metavar="DIR", help="With --interactive: a study of X, whose answers a slider chooses."
 )
+@click.option("--prove", "proving", is_flag=True, help="With what `satsym prove` shows of the answer.")
 @set_option
 def report(
     subject: str,
@@ -41,6 +45,7 @@ def report(
     stated: Path | None,
     interactive: bool,
     study: Path | None,
+    proving: bool,
     values: tuple[str, ...],
 ) -> ExitCode:
     """Solve an instance, and show all of it on one page.
@@ -70,16 +75,26 @@ def report(
     with live() as line:
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
+        proof = _proof(case, solution, line.show) if proving else None
         line.show(say("drawing ..."))
         answers = explored(solution, study) if interactive else []
         options = f"--interactive{f' --study {shlex.quote(str(study))}' if study else ''}" if interactive else ""
-        text = render(solution, derivation, Given(subject, str(stated or ""), values, options), language(), answers)
+        given = Given(subject, str(stated or ""), values, options)
+        text = render(solution, derivation, given, language(), answers, proof)
     write_text(page, text)
     tell(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER
     failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
     return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
+
+
+def _proof(case: Instance, solution: Solution, show: Callable[[str], None]) -> Proof:
+    """What is proved of an answer."""
+    from satsym.proof.proving import prove
+
+    show(say("proving ..."))
+    return prove(case, lambda: solution)
 
 
 def _derivation(case: Instance, stated: Path | None, show: Callable[[str], None]) -> Derivation | None:

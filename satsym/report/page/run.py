@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
+from satsym.proof.record import Proof
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page import answer
 from satsym.report.page.explore import explore, scripts
@@ -15,6 +16,7 @@ from satsym.report.page.explored import Answer
 from satsym.report.page.motion import motion
 from satsym.report.page.pictures import pictures
 from satsym.report.page.problem import problem
+from satsym.report.page.proof import proof as section
 from satsym.report.plots.scene import Scene
 from satsym.report.said import message, say, spoken
 from satsym.report.texts import Texts, load
@@ -58,6 +60,7 @@ def render(
     given: Given,
     language: str = "en",
     explored: Sequence[Answer] = (),
+    proof: Proof | None = None,
 ) -> str:
     """A page that needs nothing but itself.
 
@@ -72,6 +75,8 @@ def render(
     explored
         Answers that a script shows besides, with sliders over time and over the answers; none on a page without
         scripts.
+    proof
+        That was asked for beside the answer.
 
     Returns
     -------
@@ -79,16 +84,22 @@ def render(
         HTML that depends on nothing but the arguments.
     """
     with spoken(language):
-        return _rendered(solution, derivation, given, language, explored)
+        return _rendered(solution, derivation, given, language, explored, proof)
 
 
 def _rendered(
-    solution: Solution, derivation: Derivation | None, given: Given, language: str, explored: Sequence[Answer]
+    solution: Solution,
+    derivation: Derivation | None,
+    given: Given,
+    language: str,
+    explored: Sequence[Answer],
+    proof: Proof | None,
 ) -> str:
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
     title = say(authored)
-    shown = {name: part for name, part in _sections(solution, derivation, given, texts, explored).items() if part}
+    parts = _sections(solution, derivation, given, texts, explored, proof)
+    shown = {name: part for name, part in parts.items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
     sections = [tag("section", tag("h2", texts.get("page", name)), part, id=name) for name, part in shown.items()]
     found = solution.certificate
@@ -120,7 +131,12 @@ def _rendered(
 
 
 def _sections(
-    solution: Solution, derivation: Derivation | None, given: Given, texts: Texts, explored: Sequence[Answer]
+    solution: Solution,
+    derivation: Derivation | None,
+    given: Given,
+    texts: Texts,
+    explored: Sequence[Answer],
+    proof: Proof | None,
 ) -> dict[str, Markup]:
     spec, scene = solution.instance.model.spec, Scene.of(solution)
     parts = [answer.facts(solution, texts)]
@@ -135,8 +151,9 @@ def _sections(
         "motion": motion(scene, texts) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),
         "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
+        "proof": section(proof, texts) if proof else Markup(),
         "derivation": _derivation(derived, texts),
-        "reproduce": _commands(solution, derivation, given, texts),
+        "reproduce": _commands(solution, derivation, given, texts, proof is not None),
     }
 
 
@@ -156,12 +173,14 @@ def _derivation(derived: Derived | None, texts: Texts) -> Markup:
     return joined(tag("p", texts.get("page", "derivation_about")), derived.steps())
 
 
-def _commands(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts) -> Markup:
+def _commands(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts, proved: bool) -> Markup:
     stated, model = given.stated, solution.instance.model.spec.name
     name = shlex.join([given.subject, *(part for value in given.values for part in ("--set", value))])
     again = f" --derivation {shlex.quote(stated)}" if stated else ""
     again += given.interactive and f" {given.interactive}"
+    again += " --prove" if proved else ""
     lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html{again}"]
+    lines += [f"satsym prove {name}"] if proved else []
     if derivation is not None:
         lines.append(f"satsym latex {shlex.quote(f'{stated}:{model}') if stated else model}")
     about = texts.get("page", "reproduce_about", version=__version__)
