@@ -33,7 +33,11 @@ CONVEX = (
     "O. L. Mangasarian, Sufficient conditions for the optimal control of nonlinear systems, SIAM Journal on Control 4 "
     "(1966) 139-152",
 )
-
+WAITING = (
+    "least time to a point of rest",
+    "L. S. Pontryagin, V. G. Boltyanskii, R. V. Gamkrelidze and E. F. Mishchenko, The Mathematical Theory of Optimal "
+    "Processes, Interscience 1962, chapter III",
+)
 
 BEST = (
     "It is strictly better than all other admissible motions whose states stay near it, however different their "
@@ -137,15 +141,15 @@ def of_field(found: Regularity) -> Hypothesis:
     )
 
 
-def theorem(statement: Statement, laws: Sequence[Law], convexity: str, radius: float) -> Theorem:
+def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity: str, waits: str) -> Theorem:
     """What follows where all hypotheses were shown.
 
     Parameters
     ----------
-    convexity
-        In what the problem is convex, in words; empty where that is not known.
     radius
         Of the box that holds one extremal only, relative to the sizes.
+    convexity, waits
+        In what the problem is convex, and why nobody arrives earlier, in words; empty where that is not known.
     """
     one = f"There is exactly one extremal of this structure within {radius:g}, relative to the sizes of its components."
     if walled(statement):
@@ -159,9 +163,10 @@ def theorem(statement: Statement, laws: Sequence[Law], convexity: str, radius: f
     jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
     name, source = BROKEN if jumping else FIELD
     claimed: tuple[str, ...] = (one, BEST_AT_FREE_TIMES if statement.tf is None else BEST)
-    if convexity and not statement.spec.path_constraints:
-        name, source = f"{name}; {CONVEX[0]}", f"{source}; {CONVEX[1]}"
-        claimed = (*claimed, f"It is global: {convexity}.")
+    for (also, where), reason in ((CONVEX, convexity), (WAITING, waits)):
+        if reason and not statement.spec.path_constraints:
+            name, source = f"{name}; {also}", f"{source}; {where}"
+            claimed = (*claimed, f"It is global: {reason}.")
     return Theorem(name, source, claimed)
 
 

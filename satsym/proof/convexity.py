@@ -1,18 +1,21 @@
-"""Where an extremal is a global minimum: linear motion, convex cost and convex control set, in given time.
+"""Where an extremal is a global minimum.
 
-Then H is convex in states and controls together, and every normal extremal is optimal among all admissible motions
-(Mangasarian). Linearity and the second derivatives are read from the model with states and controls unbounded: what
-comes out finite does not depend on them.
+One case is a linear motion with a convex cost and a convex control set, in given time. Then H is convex in states and
+controls together, and every normal extremal is optimal among all admissible motions (Mangasarian). The other case is
+least time to a point of rest, with a linear motion. Linearity and the second derivatives are read from the model with
+states and controls unbounded: what comes out finite does not depend on them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from flint import arb, ctx
 
 from satsym.proof.balls.arithmetic import Answers, Ball, constant, value
-from satsym.proof.balls.jets import Jet, variables
+from satsym.proof.balls.jets import OPAQUE, Jet, variables
+from satsym.proof.rest import admits_zero
 from satsym.proof.statement import Statement
 
 
@@ -24,27 +27,71 @@ def convex(statement: Statement) -> str:
     spec = statement.spec
     if statement.tf is None or spec.control_set not in ("free", "box", "ball") or not spec.autonomous:
         return ""
+    if any(target.turns is not None for target in statement.targets.values()):
+        return ""
     n, m = len(spec.states), len(spec.controls)
-    anywhere = arb(0, float("inf"))
-    ctx.cap = 1
-    given = variables([anywhere] * (n + m))
     kernel, p = statement.kernel, statement.p
-    before, kernel.answers = kernel.answers, _Undecided()
-    try:
-        motion = kernel.dynamics(constant(0), given[:n], given[n:], p)
-        cost = kernel.running_cost(constant(0), given[:n], given[n:], p)
-        end = kernel.terminal_cost(constant(statement.tf), given[:n], p)
-    except (ArithmeticError, ValueError, _Asked):
+    cost = _anywhere(statement, lambda given: [kernel.running_cost(constant(0), given[:n], given[n:], p)])
+    end = _anywhere(statement, lambda given: [kernel.terminal_cost(constant(statement.tf), given[:n], p)])
+    if cost is None or end is None or not _linear(statement):
         return ""
-    finally:
-        kernel.answers = before
-    if any(_second(v) for v in motion if isinstance(v, Jet)):
-        return ""
-    if any(not v[0].is_finite() for one in motion if isinstance(one, Jet) for v in one.first.values()):
-        return ""
-    if not (_semidefinite(cost, n + m) and _semidefinite(end, n + m)):
+    if not (_semidefinite(cost[0], n + m) and _semidefinite(end[0], n + m)):
         return ""
     return "the motion is linear, the costs are convex, so is the control set, and the final time is given"
+
+
+def waiting(statement: Statement) -> str:
+    """Why no other motion takes less time to the end, in words; empty where that is not known.
+
+    Where the motion is linear, the controls that alone minimise H also make lambda' x least at the final time, among
+    all motions until then. Whoever arrives earlier at a point where one can stay without control may wait there until
+    that time; lambda' x is then as small, by other controls: H vanishes at the end, and without control it would be
+    the running cost, which is positive.
+    """
+    spec, kernel, p = statement.spec, statement.kernel, statement.p
+    n, m = len(spec.states), len(spec.controls)
+    if statement.tf is not None or spec.control_set not in ("box", "ball") or not spec.autonomous:
+        return ""
+    if spec.path_constraints or spec.maximise or len(statement.targets) != n:
+        return ""
+    if any(target.value is None or target.side or target.turns is not None for target in statement.targets.values()):
+        return ""
+    if not all(admits_zero(low, high) for low, high in zip(statement.lower, statement.upper, strict=True)):
+        return ""
+    ctx.cap = 1
+    try:
+        rate = value(kernel.running_cost(OPAQUE, [OPAQUE] * n, [OPAQUE] * m, p))
+        end = value(kernel.terminal_cost(OPAQUE, [OPAQUE] * n, p))
+    except TypeError:  # one of them depends on something
+        return ""
+    there = [constant(statement.targets[i].value) for i in range(n)]
+    still = kernel.dynamics(constant(0), there, [constant(0)] * m, p)
+    if not (rate > 0 and end.is_zero() and all(value(v).is_zero() for v in still) and _linear(statement)):
+        return ""
+    return "the motion is linear, time alone is the cost, and one can stay at the end without control"
+
+
+def _linear(statement: Statement) -> bool:
+    """Whether the rates of the states are linear in states and controls, apart from constants."""
+    kernel, n = statement.kernel, len(statement.spec.states)
+    motion = _anywhere(statement, lambda given: kernel.dynamics(constant(0), given[:n], given[n:], statement.p))
+    jets = [one for one in motion or () if isinstance(one, Jet)]
+    finite = all(v[0].is_finite() for one in jets for v in one.first.values())
+    return motion is not None and finite and not any(_second(one) for one in jets)
+
+
+def _anywhere(statement: Statement, function: Callable[[list[Jet]], Sequence[Any]]) -> Sequence[Any] | None:
+    """What a function returns of states and controls that may be anything; ``None`` where it asks which."""
+    ctx.cap = 1
+    given = variables([arb(0, float("inf"))] * (len(statement.spec.states) + len(statement.spec.controls)))
+    kernel = statement.kernel
+    before, kernel.answers = kernel.answers, _Undecided()
+    try:
+        return function(given)
+    except (ArithmeticError, ValueError, _Asked):
+        return None
+    finally:
+        kernel.answers = before
 
 
 class _Asked(Exception):
@@ -52,7 +99,7 @@ class _Asked(Exception):
 
 
 class _Undecided(Answers):
-    """Of a comparison there is no answer where states may be anything."""
+    """Answers of comparisons where states may be anything: there are none."""
 
     def below(self, key: Any, a: Any, b: Any) -> bool:
         raise _Asked

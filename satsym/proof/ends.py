@@ -72,7 +72,7 @@ class End:
         """Where a state that is not free must be, with its rate and its second rate by the final time."""
         target = self.statement.targets[i]
         if target.value is not None:
-            return target.value, arb(0), arb(0)
+            return target.value + 2 * (target.turns or 0) * arb.pi(), arb(0), arb(0)
         (t,) = variables([self.time])
         place, (speed,), ((bend,),) = derivatives(lambda: self.statement.kernel.reference(t, self.statement.p)[i], 1)
         return place, speed, bend

@@ -26,8 +26,8 @@ POINTS = 3
 SEED = 20260
 SPREAD = 0.03
 """How far from the extremal the points are, relative to the sizes."""
-AGREED = 1e-25
-"""Largest difference of what is equal, relative to the sizes of both."""
+KEPT = 0.6
+"""Share of the bits of the arithmetic to which equal numbers agree, relative to the sizes of both."""
 
 
 def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], sizes: Sequence[float]) -> None:
@@ -103,7 +103,7 @@ class _Point:
     def equal(self, a: Sequence[Any], b: Sequence[Any], what: str) -> None:
         a, b = [value(v) for v in a], [value(v) for v in b]
         size = max((float(abs(v).mid()) for v in (*a, *b)), default=1.0)
-        if not all(abs(v - w) <= AGREED * max(size, 1e-30) for v, w in zip(a, b, strict=True)):
+        if not all(abs(v - w) <= _agreed() * max(size, 1e-30) for v, w in zip(a, b, strict=True)):
             raise NotProved(f"the kernel contradicts its own motion and costs: {what}")
 
     def motion(self) -> None:
@@ -238,7 +238,7 @@ class _Point:
     def among(self, wanted: Ball, found: Sequence[Ball], what: str) -> None:
         """A number that must be positive is among those that are shown to be."""
         size = max(abs(float(wanted.mid())), 1e-30)
-        if not any(abs(wanted - v) <= AGREED * size * 1e3 for v in found):
+        if not any(abs(wanted - v) <= _agreed() * size * 1e3 for v in found):
             raise NotProved(f"the kernel's law does not keep to {what}")
 
     def free(self) -> None:
@@ -294,11 +294,33 @@ class _Point:
         self.vanishing(slopes)
         return self.among(r * r - norm, shown, "the ball of the controls")
 
+    def directed(self) -> None:
+        """The controls are a direction, by its angle or as a vector."""
+        (part,) = self.kernel.spec.control_parts
+        if part.kind == "angle":
+            self.angle()
+        else:
+            self.steered()
+
+    def steered(self) -> None:
+        """H is linear in a vector of bounded norm; the law is the largest one against the coefficients."""
+        m = len(self.u)
+        middle, slopes, bends = self.by_controls([constant(0)] * m)
+        for row in bends:
+            self.equal([v + 1 for v in row], [arb(1)] * m, "H by the controls")
+        for _ in range(2):
+            u = [value(v) for v in self.random_controls()]
+            total = sum((a * v for a, v in zip(slopes, u, strict=True)), middle)
+            self.equal([self.at(*u)], [total], "H by the controls")
+        size = sum((a * a for a in slopes), arb(0))
+        assert isinstance(self.law, Regular)
+        largest = value(self.law.bounds[0])
+        best = [-largest * a / size.sqrt() for a in slopes]
+        self.equal([value(v) + largest for v in self.u], [v + largest for v in best], "the controls")
+        self.among(size, self.conditions(), "a direction that is determined")
+
     def angle(self) -> None:
         """H is a multiple of the cosine of a direction, which is the law's where that is least."""
-        (part,) = self.kernel.spec.control_parts
-        if part.kind != "angle":
-            raise BeyondProof(f"a control set of the kind {part.kind}")
         pi = arb.pi()
         ahead, behind = self.at(arb(0)), self.at(pi)
         mean, a = (ahead + behind) / 2, (ahead - behind) / 2
@@ -310,11 +332,15 @@ class _Point:
         self.among(a * a + b * b, self.conditions(), "a direction that is determined")
 
 
+def _agreed() -> Ball:
+    return arb(2) ** -int(KEPT * ctx.prec)
+
+
 _SETS: dict[str, Callable[[_Point], None]] = {
     "free": _Point.free,
     "box": _Point.box,
     "ball": _Point.ball,
-    "product": _Point.angle,
+    "product": _Point.directed,
 }
 
 

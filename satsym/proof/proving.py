@@ -16,7 +16,7 @@ from satsym.instance import Instance
 from satsym.proof import claims, enclosures, mixed, structure, walls
 from satsym.proof.balls.arithmetic import BeyondProof, NotProved
 from satsym.proof.balls.taylor import Order
-from satsym.proof.convexity import convex
+from satsym.proof.convexity import convex, waiting
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
 from satsym.proof.locating import Place, located
@@ -81,7 +81,7 @@ def _tried(record: Proof, attempt: Callable[[Proof], Proof]) -> Proof:
 def _first(case: Instance, record: Proof) -> Proof:
     """What is known before anything is solved: that a theorem covers the problem, or that doing nothing is best."""
     refuse(case)
-    statement = stated(case, {})
+    statement = stated(case)
     record = replace(record, numbers=dict(statement.source.stated))
     if walled(statement) and not convex(statement):
         raise BeyondProof("path constraints of a problem that is not convex")
@@ -128,7 +128,7 @@ class Located:
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     if not found.status.answered:
         raise NotProved(f"there is no answer to begin with: {found.message}")
-    statement = stated(case, dict(found.instance.met))
+    statement = stated(case, found.instance.met, found.x[:, -1])
     record = replace(record, numbers=dict(statement.source.stated))
     shooting, place = _begun(statement, found, record.digits)
     for arc in shooting.arcs:
@@ -150,7 +150,8 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
             record = replace(record, hypotheses=(*record.hypotheses, one()))
         except NotProved as error:
             raise _Stopped(record, str(error)) from None
-    theorem = claims.theorem(statement, [arc.law for arc in shooting.arcs], convexity, there.radius)
+    laws = [arc.law for arc in shooting.arcs]
+    theorem = claims.theorem(statement, laws, there.radius, convexity, waiting(statement))
     return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
 
 

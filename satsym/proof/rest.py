@@ -31,12 +31,13 @@ def costs_nothing(statement: Statement) -> bool:
     if spec.path_constraints or spec.maximise or not spec.autonomous:
         return False
     within = zip(statement.lower, statement.upper, strict=True)
-    if spec.control_set == "box" and not all(_admits_zero(low, high) for low, high in within):
+    if spec.control_set == "box" and not all(admits_zero(low, high) for low, high in within):
         return False
     return _squares(statement) and _nothing_at_the_end(statement)
 
 
-def _admits_zero(low: Any, high: Any) -> bool:
+def admits_zero(low: Any, high: Any) -> bool:
+    """Whether zero lies between bounds of a control."""
     return bool((low == -math.inf or low <= 0) and (high == math.inf or high >= 0))
 
 

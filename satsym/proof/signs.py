@@ -21,6 +21,12 @@ DEEPEST = 16
 PARTS = 14
 """How often, to find the part of a step on which a condition falls to zero."""
 
+_DIRECTED = {
+    "angle": "H is a cosine of the direction, of an amplitude that does not vanish",
+    "ball": "H is linear in the controls, with coefficients that do not all vanish",
+}
+"""Why a direction is the only best one, by the kind of its set."""
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -169,7 +175,7 @@ def _of_hamiltonian(law: Law, step: Step) -> str:
     assert isinstance(law, Regular | OnBoundary | OnMixed)
     spec = law.kernel.spec
     if spec.control_parts:
-        return "H is a cosine of the direction, of an amplitude that does not vanish"
+        return _DIRECTED[spec.control_parts[0].kind]
     ctx.cap = 1
     t, x, lam = law.parts([arb_series([v]) for v in step.range])
     m = len(spec.controls)

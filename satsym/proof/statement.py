@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
 from typing import Any
 
 from flint import arb
 
+from satsym.control_part import ControlPart
 from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.instance.resolve import REFERENCE
@@ -31,6 +34,15 @@ _OF_MODELS = frozenset(
 """Fields of models. An instance or a model with fields that are not among these is refused."""
 
 
+_ALONG = frozenset(
+    """dynamics running_cost costate_rate control_law control_hessian canonical canonical_jacobian extremal_jacobian
+    switching_function magnitude_weight throttle_slope path_constraints path_rates path_gradient path_effect
+    path_multiplier path_vanishing boundary_control""".split()
+)
+"""Functions of generated modules that are evaluated along an extremal."""
+_NOTHING: Mapping[str, Side] = MappingProxyType({})
+
+
 @dataclass(frozen=True)
 class Target:
     """What a final state must be.
@@ -41,10 +53,13 @@ class Target:
         Where it is given; ``None`` where it is on the reference.
     side
         Of a range, the end that is met; ``None`` where the value is given.
+    turns
+        How many whole turns are added to an angle that counts modulo a turn; ``None`` for what does not.
     """
 
     value: Ball | None
     side: Side | None = None
+    turns: int | None = None
 
 
 @dataclass(frozen=True)
@@ -85,13 +100,15 @@ class Statement:
         return [constant(v) for v in self.parameters]
 
 
-def stated(case: Instance, met: dict[str, Side]) -> Statement:
+def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[float] = ()) -> Statement:
     """The problem of an instance.
 
     Parameters
     ----------
     met
         Ends of ranges at which final states are, by name.
+    last
+        Final states of an answer, by which angles that count modulo a turn are those near by.
 
     Raises
     ------
@@ -111,6 +128,8 @@ def stated(case: Instance, met: dict[str, Side]) -> Statement:
     ]
     time = _time_unit(case) if source.has_units("time") else "1"
     targets, ranges = _ends(case, source, met)
+    if len(last) and case.solver.free_angles:
+        targets = {i: _turned(case, i, target, last[i]) for i, target in targets.items()}
     kernel = BallKernel(case.model)
     _refuse_cases(kernel)
     lower, upper = (
@@ -153,7 +172,19 @@ def _time_unit(case: Instance) -> str:
     return units.time_unit(v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
 
 
-def _ends(case: Instance, source: Source, met: dict[str, Side]) -> tuple[dict[int, Target], dict[int, tuple[Any, Any]]]:
+def _turned(case: Instance, i: int, target: Target, last: float) -> Target:
+    """The end of an angle that is near a final state, where it counts modulo a turn; else what it was."""
+    name = case.model.spec.state_names[i]
+    if name not in case.solver.free_angles:
+        return target
+    if target.value is None or target.side is not None:
+        raise BeyondProof("angles modulo a turn on the reference, or in a range")
+    return replace(target, turns=round((last - float(target.value.mid())) / math.tau))
+
+
+def _ends(
+    case: Instance, source: Source, met: Mapping[str, Side]
+) -> tuple[dict[int, Target], dict[int, tuple[Any, Any]]]:
     targets: dict[int, Target] = {}
     ranges: dict[int, tuple[Any, Any]] = {}
     for i, v in enumerate(case.model.spec.states):
@@ -189,11 +220,16 @@ def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) 
     (part,) = spec.control_parts
     if part.kind == "angle":
         return (constant(1), constant(0))  # full length, nothing regularised
-    norm = case.norms[part.name][1]
-    unit = spec.controls[0].unit
-    keys = ("control", part.name, "max_norm") if source.gives("control", part.name) else ("control", "max_norm")
+    if part.branch == "direction":
+        return (_norm(case, source, part), constant(0))
     # Of what regularises, nothing is left on an arc that is wholly on or off.
-    return (constant(source.number(norm, unit, *keys)), constant(arb("1e-100")), constant(1), constant(0))
+    return (_norm(case, source, part), constant(arb("1e-100")), constant(1), constant(0))
+
+
+def _norm(case: Instance, source: Source, part: ControlPart) -> Any:
+    """The largest norm of a vector of controls."""
+    keys = ("control", part.name, "max_norm") if source.gives("control", part.name) else ("control", "max_norm")
+    return constant(source.number(case.norms[part.name][1], case.model.spec.controls[0].unit, *keys))
 
 
 def _refuse_cases(kernel: BallKernel) -> None:
@@ -204,11 +240,10 @@ def _refuse_cases(kernel: BallKernel) -> None:
         allowed = known if name == "running_cost" and spec.switching else set()
         if set(kernel.cases(name)) - allowed:
             raise BeyondProof("a motion or a cost that is stated by cases, or with absolute values")
-    ends = {"terminal_cost", "terminal_gradient", "reference", "boundary", "boundary_jacobian", "forward", "backward"}
-    moving = {name for name in kernel.timed - ends if name.startswith("path_")}
-    if moving:
+    timed = kernel.timed & _ALONG
+    if any(name.startswith(("path_", "boundary_")) for name in timed):
         raise BeyondProof("path constraints that depend on time")
-    if spec.autonomous and kernel.timed - ends:
+    if spec.autonomous and timed:
         raise BeyondProof("a motion that depends on time, of a model that is said not to")
 
 
@@ -235,7 +270,6 @@ def refuse(case: Instance) -> None:
         (spec.multipliers, "constraints at the end other than given states"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
-        (case.solver.free_angles, "final angles that count modulo a turn"),
         (case.free, "initial values, an initial time or parameters that are free"),
         (spec.equilibria, "a model that is an attitude in orbit"),
     ):
@@ -250,8 +284,8 @@ def refuse(case: Instance) -> None:
     if len(spec.control_parts) != 1 or len(spec.control_parts[0].controls) != len(spec.controls):
         raise BeyondProof("a product of several control sets")
     (part,) = spec.control_parts
-    known = (part.kind, part.branch) in (("angle", "direction"), ("ball", "throttled"))
+    known = (part.kind, part.branch) in (("angle", "direction"), ("ball", "direction"), ("ball", "throttled"))
     if not known or part.turned_by or (part.kind == "angle" and len(part.controls) != 1):
         raise BeyondProof(f"a control set of the kind {part.kind} with a law of the kind {part.branch}")
-    if part.kind == "ball" and (case.norms[part.name][0] != 0.0 or len(part.controls) != 2):
+    if part.branch == "throttled" and (case.norms[part.name][0] != 0.0 or len(part.controls) != 2):
         raise BeyondProof("a minimum norm of the controls, or a vector of other than two controls")

@@ -55,7 +55,7 @@ def arcs(statement: Statement, found: Solution, path: Path) -> tuple[list[Law], 
     spec = statement.spec
     if spec.switching:
         return _held(statement, found)
-    kind = Throttled if spec.control_parts and spec.control_parts[0].kind == "ball" else Regular
+    kind = Throttled if any(part.branch == "throttled" for part in spec.control_parts) else Regular
     return _regular(statement, found, path, kind)
 
 
