@@ -170,7 +170,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     arcs, nodes, lengths = structure.placed(laws, times, path, sizes)
     shooting = Shooting(statement, tuple(arcs), tuple(junctions), tuple(sizes))
     n = laws[0].n
-    nodes[0][:n] = statement.initial
+    nodes[0] = _started(statement, nodes[0], n)
     if laws[0].timed:
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
@@ -227,8 +227,13 @@ def _box(shooting: Shooting, place: Place, radius: float) -> Box:
 def _exact(shooting: Shooting, nodes: list[list[Any]]) -> list[list[Any]]:
     """Nodes of which the given components of the first are those of the problem."""
     n, law = shooting.arcs[0].law.n, shooting.arcs[0].law
-    first = [*shooting.statement.initial, *nodes[0][n : 2 * n], *([shooting.statement.t0] if law.timed else [])]
-    return [first, *nodes[1:]]
+    first = _started(shooting.statement, nodes[0], n)
+    return [[*first[: 2 * n], *([shooting.statement.t0] if law.timed else [])], *nodes[1:]]
+
+
+def _started(statement: Statement, node: list[Any], n: int) -> list[Any]:
+    """A first node with the initial states that are given."""
+    return [statement.initial[i] if i < n and i not in statement.free else v for i, v in enumerate(node)]
 
 
 def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:

@@ -1,7 +1,8 @@
 """Multiple shooting on balls: the conditions that make arcs an extremal, and Krawczyk's operator of them.
 
-Unknown are the costates at the start, all components at the later nodes, and the lengths of arcs where these are not
-given. The equations: each segment leads from a node to the next; where one arc ends and another begins a condition of
+Unknown are the costates at the start and the states that are free there, all components at the later nodes, and the
+lengths of arcs where these are not given. The equations: costates of states that are free at the start vanish there;
+each segment leads from a node to the next; where one arc ends and another begins a condition of
 the former vanishes; the conditions at the end; and, with unknown lengths and a given final time, their sum.
 """
 
@@ -137,24 +138,27 @@ class Shooting:
         return self.statement.tf is None or len(self.arcs) > 1
 
     @property
-    def scales(self) -> list[float]:
-        """Of all unknowns, in order."""
+    def first(self) -> list[int]:
+        """The unknown components at the start: states that are free there, and the costates."""
         n = self.arcs[0].law.n
+        return [*self.statement.free, *range(n, 2 * n)]
+
+    @property
+    def scales(self) -> list[float]:
+        """Sizes of all unknowns, in order."""
         count = sum(arc.segments for arc in self.arcs)
-        return [*self.sizes[n : 2 * n], *(list(self.sizes[:-1]) * count)]
+        return [*(self.sizes[i] for i in self.first), *(list(self.sizes[:-1]) * count)]
 
     def unknowns(self, nodes: Sequence[Sequence[Any]], lengths: Sequence[Any]) -> list[Any]:
         """The unknown ones of all numbers, in order."""
-        n = self.arcs[0].law.n
-        found = [*nodes[0][n : 2 * n], *(v for node in nodes[1:] for v in node)]
+        found = [*(nodes[0][i] for i in self.first), *(v for node in nodes[1:] for v in node)]
         return [*found, *lengths] if self.lengths_unknown else found
 
     def placed(self, values: Sequence[Any], nodes: list[list[Any]], lengths: list[Any]) -> tuple[Any, Any]:
         """Nodes and lengths with other unknowns."""
-        n, m = self.arcs[0].law.n, self.arcs[0].law.m
-        left = list(values)
-        first = [*nodes[0][:n], *left[:n], *nodes[0][2 * n :]]
-        del left[:n]
+        m, left, first = self.arcs[0].law.m, list(values), list(nodes[0])
+        for i in self.first:
+            first[i] = left.pop(0)
         moved = [first]
         for _ in nodes[1:]:
             moved.append(left[:m])
@@ -285,8 +289,11 @@ class Rows:
         self.n, self.m = law.n, law.m
         self.residuals: list[Ball] = []
         self.rows: list[dict[int, Ball]] = []
-        self.lengths = self.n + self.m * (len(box.nodes) - 1)
+        self.first = shooting.first
+        self.lengths = len(self.first) + self.m * (len(box.nodes) - 1)
         """The first place of a length."""
+        for i in shooting.statement.free:  # costates of states that are free at the start vanish there
+            self._add(box.nodes[0][self.n + i], {self._place(0, self.n + i): arb(1)})
 
     def matched(self, one: Segment, k: int, j: int, share: Ball, last: bool) -> None:
         """A segment leads from node k to the next; where the last one of an arc ends, costates may jump."""
@@ -357,11 +364,11 @@ class Rows:
 
     def _place(self, k: int, i: int) -> int:
         """The place of component i of node k among the unknowns."""
-        return i - self.n if k == 0 else self.n + self.m * (k - 1) + i
+        return self.first.index(i) if k == 0 else len(self.first) + self.m * (k - 1) + i
 
     def _of_node(self, k: int, entries: Sequence[Ball]) -> dict[int, Ball]:
         """Entries by components of a node, without those that are given."""
-        unknown = range(self.n, 2 * self.n) if k == 0 else range(self.m)
+        unknown = self.first if k == 0 else range(self.m)
         return {self._place(k, i): entries[i] for i in unknown}
 
     def _add(self, residual: Ball, row: dict[int, Ball]) -> None:

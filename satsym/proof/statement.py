@@ -14,6 +14,7 @@ from satsym.control_part import ControlPart
 from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.instance.resolve import REFERENCE
+from satsym.instance.unknowns import Place
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, constant
 from satsym.proof.balls.exact import Source
 from satsym.proof.balls.kernel import BallKernel
@@ -74,6 +75,8 @@ class Statement:
         By the place of the state; a state that is not there is free.
     open_ranges
         By place, the ends between which a free final state must lie.
+    free
+        Places of the initial states that are free; in `initial` they have the values where a solver begins.
     """
 
     case: Instance
@@ -88,6 +91,7 @@ class Statement:
     upper: list[Any]
     targets: dict[int, Target]
     open_ranges: dict[int, tuple[Any, Any]]
+    free: tuple[int, ...]
 
     @property
     def spec(self) -> ProblemSpec:
@@ -123,8 +127,10 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         else source.default(value, "parameters", v.symbol)
         for v, value in zip(spec.parameters, case.parameters, strict=True)
     ]
+    free = tuple(sorted(one.index for one in case.free))
     initial = [
-        source.number(value, v.unit, "initial", v.symbol) for v, value in zip(spec.states, case.initial, strict=True)
+        source.free(value, "initial", v.symbol) if i in free else source.number(value, v.unit, "initial", v.symbol)
+        for i, (v, value) in enumerate(zip(spec.states, case.initial, strict=True))
     ]
     time = _time_unit(case) if source.has_units("time") else "1"
     targets, ranges = _ends(case, source, met)
@@ -152,6 +158,7 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         upper,
         targets,
         ranges,
+        free,
     )
 
 
@@ -270,7 +277,7 @@ def refuse(case: Instance) -> None:
         (spec.multipliers, "constraints at the end other than given states"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
-        (case.free, "initial values, an initial time or parameters that are free"),
+        (any(one.place is not Place.INITIAL for one in case.free), "an initial time or parameters that are free"),
         (spec.equilibria, "a model that is an attitude in orbit"),
     ):
         if there:

@@ -101,6 +101,11 @@ class Source:
         self.stated[_named(key)] = found.stated
         return found.ball
 
+    def free(self, value: float, *key: str) -> Ball:
+        """A number that is to be found; where a solver begins."""
+        self.stated[_named(key)] = "free"
+        return arb(value)
+
     def has_units(self, table: str) -> bool:
         """Whether a table of the file has a quantity with its unit."""
         return any(isinstance(v, str) for v in self._tree.get(table, {}).values())
