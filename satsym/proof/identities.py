@@ -16,7 +16,7 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.balls.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
 from satsym.proof.balls.jets import OPAQUE, Jet, derivatives, variables
-from satsym.proof.laws import AtLevels, Law, Regular, Throttled
+from satsym.proof.laws import AtLevels, Law, Regular, Throttled, norms
 from satsym.proof.laws import derivatives as partials
 from satsym.proof.mixed import OnMixed
 from satsym.proof.statement import Statement
@@ -199,23 +199,26 @@ class _Point:
             self.equal([self.by_controls(u)[0]], [total], "H by the controls")
 
     def throttle(self) -> None:
-        """H is linear in a vector and its norm; the law is its best direction at the largest norm, or none."""
-        one, none = arb(1), arb("1e-60")
-        zero = self.at(none, none)
-        pairs = [(self.at(one, none), self.at(-one, none)), (self.at(none, one), self.at(none, -one))]
+        """H is linear in a vector and its norm; the law is its best direction at the largest or the least norm."""
+        m, none = len(self.u), arb("1e-60")
+        zero = self.at(*[none] * m)
+        ways = [[arb(int(i == j)) if i == j else none for j in range(m)] for i in range(m)]
+        pairs = [(self.at(*way), self.at(*(-v if v == 1 else v for v in way))) for way in ways]
         a = [(v - w) / 2 for v, w in pairs]
         q = (pairs[0][0] + pairs[0][1]) / 2 - zero
         for _ in range(2):
             u = [value(v) for v in self.random_controls()]
-            norm = (u[0] * u[0] + u[1] * u[1]).sqrt()
-            self.equal([self.at(*u)], [zero + q * norm + a[0] * u[0] + a[1] * u[1]], "H by the controls")
-        size = (a[0] * a[0] + a[1] * a[1]).sqrt()
+            norm = sum((v * v for v in u), arb(0)).sqrt()
+            self.equal(
+                [self.at(*u)], [sum((v * w for v, w in zip(a, u, strict=True)), zero + q * norm)], "H by the controls"
+            )
+        size = sum((v * v for v in a), arb(0)).sqrt()
         law = self.law
         assert isinstance(law, Throttled)
         slope = self.kernel.throttle_slope(self.t, self.x, self.lam, self.p, law.bounds)
         self.equal(slope, [q - size], "the slope of the throttle")
-        largest = arb(0) if law.off else value(law.bounds[0])
-        best = [arb(0) - largest * v / size for v in a]
+        least, largest = map(value, norms(law))
+        best = [-(least if law.off else largest) * v / size for v in a]
         self.equal([value(v) + 1 for v in self.u], [v + 1 for v in best], "the controls")
 
     def quadratic(self) -> tuple[list[Ball], list[list[Ball]]]:
@@ -314,7 +317,7 @@ class _Point:
             self.equal([self.at(*u)], [total], "H by the controls")
         size = sum((a * a for a in slopes), arb(0))
         assert isinstance(self.law, Regular)
-        largest = value(self.law.bounds[0])
+        largest = value(norms(self.law)[1])
         best = [-largest * a / size.sqrt() for a in slopes]
         self.equal([value(v) + largest for v in self.u], [v + largest for v in best], "the controls")
         self.among(size, self.conditions(), "a direction that is determined")

@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from satsym.proof.balls.arithmetic import Answers, Ball, Key, NotProved, Series, constant
+from satsym.proof.balls.arithmetic import Answers, Ball, Key, NotProved, Series, constant, value
 from satsym.proof.balls.kernel import BallKernel
 
 SIMULTANEOUS = "two bounds are met or left at once; the theorem asks for one at a time"
@@ -145,10 +145,11 @@ class Regular(Law):
 
 
 class Throttled(Regular):
-    """A vector that is as long as it may be, or none, by the sign of the throttle's slope."""
+    """A vector that is as long or as short as it may be, by the sign of the throttle's slope."""
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
-        return [constant(0)] * len(self.kernel.spec.controls) if self.off else super().control(z)
+        none = self.off and value(norms(self)[0]).is_zero()
+        return [constant(0)] * len(self.kernel.spec.controls) if none else super().control(z)
 
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
         t, x, lam = self.parts(z)
@@ -160,11 +161,19 @@ class Throttled(Regular):
 
     @property
     def off(self) -> bool:
-        """Whether the vector is none here: the first comparison of the motion is with the least norm."""
+        """Whether the norm is the least one here: the first comparison of the motion is with it."""
         return next((answer for key, answer in self.answers.given.items() if key[0] == "canonical"), False)
 
 
 THROTTLE: Key = ("throttle_slope", 0)
+
+
+def norms(law: Regular) -> tuple[Series, Series]:
+    """The least and the largest norm of a vector of controls, which are among the bounds."""
+    (part,) = law.kernel.spec.control_parts
+    if part.kind == "annulus":
+        return law.bounds[0], law.bounds[1]
+    return (law.bounds[-1] if part.branch == "throttled" else constant(0)), law.bounds[0]
 
 
 class AtLevels(Law):

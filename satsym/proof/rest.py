@@ -26,7 +26,14 @@ POINTS, SEED = 3, 20261
 def costs_nothing(statement: Statement) -> bool:
     """Whether no control is the best one: it is admissible, others cost something, and the end is free."""
     spec = statement.spec
-    if statement.free or statement.targets or statement.open_ranges or statement.tf is None or spec.control_parts or spec.switching:
+    if (
+        statement.free
+        or statement.targets
+        or statement.open_ranges
+        or statement.tf is None
+        or spec.control_parts
+        or spec.switching
+    ):
         return False
     if spec.path_constraints or spec.maximise or not spec.autonomous:
         return False

@@ -9,7 +9,7 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, Key, NotProved, value
 from satsym.proof.balls.jets import OPAQUE
-from satsym.proof.balls.taylor import Step, polynomial
+from satsym.proof.balls.taylor import Step, polynomial, rates
 from satsym.proof.ends import positive
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.mixed import OnMixed
@@ -21,9 +21,10 @@ DEEPEST = 16
 PARTS = 14
 """How often, to find the part of a step on which a condition falls to zero."""
 
+_LINEAR = "H is linear in the controls, with coefficients that do not all vanish"
 _DIRECTED = {
     "angle": "H is a cosine of the direction, of an amplitude that does not vanish",
-    "ball": "H is linear in the controls, with coefficients that do not all vanish",
+    **dict.fromkeys(("ball", "annulus"), _LINEAR),
 }
 """Why a direction is the only best one, by the kind of its set."""
 
@@ -66,16 +67,16 @@ def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | No
     ctx.cap = n + 1
     near, last = law.conditions(step.series), law.conditions(step.last)
     for (key, c), (_, d) in zip(near, last, strict=True):
-        series = [*(c[k] for k in range(n)), d[n]]
+        condition = _Condition(law, key, step, [*(c[k] for k in range(n)), d[n]])
         first = last_part = 0.0
         if before and key == before.entering:
-            first = _part(_derived(series, before.order), step.h, 1, 1, where)
+            first = _part(condition, before.order, 1, 1, where)
         if after and key == after.leaving:
-            last_part = _part(_derived(series, after.order), step.h, -1, (-1) ** after.order, where)
+            last_part = _part(condition, after.order, -1, (-1) ** after.order, where)
         if first + last_part >= 1.0:
             continue
         low, high = step.h * first, step.h * (1.0 - last_part)
-        if not _positive(_Condition(law, key, step, series), low, high):
+        if not _positive(condition, low, high):
             raise NotProved(
                 f"{where}: a sign that its law needs ({key[0]} {key[1]}) is not shown; another structure may be right"
             )
@@ -89,15 +90,16 @@ def _derived(series: Sequence[Ball], order: int) -> list[Ball]:
     return list(series)
 
 
-def _part(derivative: Sequence[Ball], h: Ball, end: int, sign: int, where: str) -> float:
+def _part(condition: _Condition, order: int, end: int, sign: int, where: str) -> float:
     """The share of a step, from its beginning (1) or up to its end (-1), on which a derivative has a sign.
 
     A condition that vanishes there, with all derivatives of lower order, is positive on that part but for its end.
     """
+    h, derivative = condition.step.h, _derived(condition.series, order)
     for k in range(PARTS):
         w = h / 2**k
         between = arb(0).union(w) if end > 0 else (h - w).union(h)
-        if sign * polynomial(derivative, between) > 0:
+        if sign * polynomial(derivative, between) > 0 or (order == 1 and sign * condition.rate(between) > 0):
             return float(2.0**-k)
     raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
 
@@ -121,6 +123,16 @@ class _Condition:
         z = [arb_series([v]) for v in self.step.reached(time)]
         try:
             return value(dict(self.law.conditions(z))[self.key])
+        except (ArithmeticError, ValueError):
+            return arb(0, float("inf"))
+
+    def rate(self, time: Ball) -> Ball:
+        """Its rate of change over a ball of times."""
+        z = self.step.reached(time)
+        try:
+            moved = zip(z, rates(self.law, z), strict=True)
+            ctx.cap = 2
+            return dict(self.law.conditions([arb_series([v, r]) for v, r in moved]))[self.key][1]
         except (ArithmeticError, ValueError):
             return arb(0, float("inf"))
 

@@ -12,6 +12,7 @@ from flint import arb
 
 from satsym.control_part import ControlPart
 from satsym.instance import Instance
+from satsym.instance.control import MAX_NORM, MIN_NORM
 from satsym.instance.ends import Side
 from satsym.instance.resolve import REFERENCE
 from satsym.instance.unknowns import Place
@@ -227,16 +228,21 @@ def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) 
     (part,) = spec.control_parts
     if part.kind == "angle":
         return (constant(1), constant(0))  # full length, nothing regularised
-    if part.branch == "direction":
-        return (_norm(case, source, part), constant(0))
+    largest, least = (_norm(case, source, part, key) for key in (MAX_NORM, MIN_NORM))
     # Of what regularises, nothing is left on an arc that is wholly on or off.
-    return (_norm(case, source, part), constant(arb("1e-100")), constant(1), constant(0))
+    left = (constant(0),) if part.branch == "direction" else (constant(arb("1e-100")), constant(1))
+    if part.kind == "annulus":
+        return (least, largest, *left)
+    return (largest, *left, *([least] if part.branch == "throttled" else []))
 
 
-def _norm(case: Instance, source: Source, part: ControlPart) -> Any:
-    """The largest norm of a vector of controls."""
-    keys = ("control", part.name, "max_norm") if source.gives("control", part.name) else ("control", "max_norm")
-    return constant(source.number(case.norms[part.name][1], case.model.spec.controls[0].unit, *keys))
+def _norm(case: Instance, source: Source, part: ControlPart, key: str) -> Any:
+    """The largest or the least norm of a vector of controls."""
+    value = case.norms[part.name][key == MAX_NORM]
+    if key == MIN_NORM and value == 0.0:
+        return constant(0)
+    keys = ("control", part.name, key) if source.gives("control", part.name) else ("control", key)
+    return constant(source.number(value, case.model.spec.controls[0].unit, *keys))
 
 
 def _refuse_cases(kernel: BallKernel) -> None:
@@ -291,8 +297,6 @@ def refuse(case: Instance) -> None:
     if len(spec.control_parts) != 1 or len(spec.control_parts[0].controls) != len(spec.controls):
         raise BeyondProof("a product of several control sets")
     (part,) = spec.control_parts
-    known = (part.kind, part.branch) in (("angle", "direction"), ("ball", "direction"), ("ball", "throttled"))
+    known = part.kind == "angle" or (part.normed and part.branch in ("direction", "throttled"))
     if not known or part.turned_by or (part.kind == "angle" and len(part.controls) != 1):
         raise BeyondProof(f"a control set of the kind {part.kind} with a law of the kind {part.branch}")
-    if part.branch == "throttled" and (case.norms[part.name][0] != 0.0 or len(part.controls) != 2):
-        raise BeyondProof("a minimum norm of the controls, or a vector of other than two controls")
