@@ -34,9 +34,9 @@ CONVEX = (
     "(1966) 139-152",
 )
 WAITING = (
-    "least time to a point of rest",
+    "minimum time to a point of rest",
     "L. S. Pontryagin, V. G. Boltyanskii, R. V. Gamkrelidze and E. F. Mishchenko, The Mathematical Theory of Optimal "
-    "Processes, Interscience 1962, chapter III",
+    "Processes, Interscience 1962",
 )
 
 BEST = (
@@ -58,7 +58,7 @@ REST = Theorem(
 
 
 def of_rest(steps: int) -> tuple[Hypothesis, ...]:
-    """What makes no control the best one."""
+    """Say what makes no control the best one."""
     return (
         Hypothesis(
             "the cost is a positive definite quadratic form in the controls alone, and the end is free",
@@ -71,7 +71,7 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
 
 
 def of_signs(shown: Shown) -> Hypothesis:
-    """That laws are the best ones along their arcs."""
+    """Say that laws are the best ones along their arcs."""
     if not shown.conditions:
         return Hypothesis("no bound of the controls is met", "none is stated", "0 signs")
     return Hypothesis(
@@ -82,12 +82,12 @@ def of_signs(shown: Shown) -> Hypothesis:
 
 
 def of_minimiser(reason: str) -> Hypothesis:
-    """That H has one minimiser."""
+    """Say that H has one minimiser."""
     return Hypothesis("the minimiser of H is unique", reason, "on every step")
 
 
 def of_ends(statement: Statement, end: End) -> Hypothesis:
-    """That ends of ranges push, and that others are not met.
+    """Show that the ends of ranges that are met push outwards, and that others are not met.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
 
 
 def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
-    """That multipliers of path constraints push outwards only.
+    """Show that multipliers of path constraints push outwards only.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
 
 
 def of_field(found: Regularity) -> Hypothesis:
-    """That there is no focal point."""
+    """Say that there is no focal point."""
     parts = [f"{found.pieces} pieces"]
     if found.ratios:
         parts.append(f"smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}")
@@ -147,7 +147,7 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
     Parameters
     ----------
     radius
-        Of the box that holds one extremal only, relative to the sizes.
+        The radius of the box that holds one extremal only, relative to the sizes.
     convexity, waits
         In what the problem is convex, and why nobody arrives earlier, in words; empty where that is not known.
     """
@@ -157,7 +157,8 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
             *CONSTRAINED,
             (
                 one,
-                f"It is a global minimum of the cost: {convexity}, and path constraints are linear in the states.",
+                f"It is a global minimum of the cost: {convexity}, and path constraints that are met are linear in the "
+                "states.",
             ),
         )
     jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
@@ -171,7 +172,7 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
 
 
 def scope(statement: Statement) -> str:
-    """Which problem is proved, and what is not claimed."""
+    """Say which problem is proved, and what is not claimed."""
     path = statement.source.path
     numbers = (
         f"decimals of {path} and of the generated module are exact rational numbers, degrees are parts of pi."

@@ -20,7 +20,7 @@ from satsym.proof.statement import Statement
 
 
 def convex(statement: Statement) -> str:
-    """In what a problem is convex, in words; empty where that is not known.
+    """Say why a problem is convex, in words; empty where that is not known.
 
     A range of a final state is a convex end set, and so is a given state; a final time that is free is not.
     """
@@ -41,7 +41,7 @@ def convex(statement: Statement) -> str:
 
 
 def waiting(statement: Statement) -> str:
-    """Why no other motion takes less time to the end, in words; empty where that is not known.
+    """Say why no other motion takes less time to the end, in words; empty where that is not known.
 
     Where the motion is linear, the controls that alone minimise H also make lambda' x least at the final time, among
     all motions until then. Whoever arrives earlier at a point where one can stay without control may wait there until
@@ -68,7 +68,7 @@ def waiting(statement: Statement) -> str:
     still = kernel.dynamics(constant(0), there, [constant(0)] * m, p)
     if not (rate > 0 and end.is_zero() and all(value(v).is_zero() for v in still) and _linear(statement)):
         return ""
-    return "the motion is linear, time alone is the cost, and one can stay at the end without control"
+    return "the motion is linear, time alone is the cost, and the end is an equilibrium of the uncontrolled motion"
 
 
 def _linear(statement: Statement) -> bool:

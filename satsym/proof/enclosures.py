@@ -1,4 +1,4 @@
-"""From balls about an extremal to the numbers of the record."""
+"""How balls about an extremal become the numbers of the record."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from satsym.proof.shooting import Box, Inclusion, Segment, Shooting
 from satsym.proof.statement import Statement
 
 MOST_NODES = 9
-"""Of the record; more would say nothing more."""
+"""How many nodes a record has at most; more would say nothing more."""
 
 
 def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius: float) -> Proof:
@@ -58,7 +58,7 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
 
 
 def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
-    """By how many times the gradients of path constraints the costates fall, junction by junction."""
+    """The factors of the gradients of path constraints by which costates fall, junction by junction."""
     here = shooting.unknowns(box.nodes, box.lengths)
     _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
     return list(found[len(shooting.arcs) :])
@@ -82,7 +82,7 @@ def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) ->
 
 
 def _times(shooting: Shooting, lengths: list[Ball]) -> list[Ball]:
-    """When the nodes are."""
+    """The times of the nodes."""
     found = [shooting.statement.t0]
     begins = accumulate(lengths, initial=shooting.statement.t0)
     for arc, begin, length in zip(shooting.arcs, begins, lengths, strict=False):

@@ -22,9 +22,9 @@ class End:
     Attributes
     ----------
     law
-        Of the last arc.
+        The law of the last arc.
     z, time
-        Components and time.
+        The final components and the final time.
     terminal
         Value, gradient and Hessian of the terminal cost by the states and time.
     """
@@ -37,7 +37,7 @@ class End:
 
     @classmethod
     def at(cls, statement: Statement, law: Law, z: Sequence[Ball], time: Ball) -> End:
-        """At a point."""
+        """The end of a chain of arcs whose last law and final components are these."""
         n, kernel = law.n, statement.kernel
         given = variables([*z[:n], time])
         terminal = derivatives(lambda: kernel.terminal_cost(given[n], given[:n], statement.p), n + 1)
@@ -100,7 +100,7 @@ class End:
         return total
 
     def hamiltonian_by_time(self) -> Ball:
-        """H_t."""
+        """The derivative of H by time, with the controls of the law."""
         law = self.law
         if not law.timed:
             return arb(0)

@@ -35,7 +35,7 @@ class Regularity:
     pieces
         Into how many the interval fell, on each of which X was shown to be regular.
     ratios
-        Of the determinants of X after and before each jump of the controls; all are positive.
+        Ratios of the determinants of X after and before each jump of the controls; all are positive.
     """
 
     start: str

@@ -20,7 +20,7 @@ from satsym.proof.laws import AtLevels, Law, Regular, Throttled, norms
 from satsym.proof.laws import derivatives as partials
 from satsym.proof.mixed import OnMixed
 from satsym.proof.statement import Statement
-from satsym.proof.walls import OnBoundary
+from satsym.proof.walls import OnBoundary, Pushed
 
 POINTS = 3
 SEED = 20260
@@ -119,11 +119,8 @@ class _Point:
         found = self.law.rates(self.series)
         self.equal(found[: self.n], self.kernel.dynamics(self.t, self.x, self.u, self.p), "rates of the states")
         wanted = [-v for v in h_x]
-        if isinstance(self.law, OnBoundary):
-            push = value(self.law.multiplier(self.series))
-            wanted = [v - push * value(s) for v, s in zip(wanted, self.law.slope, strict=True)]
-        if isinstance(self.law, OnMixed):
-            push, slope = value(self.law.multiplier(self.series)), self.law.slope(self.series)
+        if isinstance(self.law, Pushed):
+            push, slope = value(self.law.multiplier(self.series)), self.law.gradient(self.series)
             wanted = [v - push * value(s) for v, s in zip(wanted, slope, strict=True)]
         self.equal(found[self.n : 2 * self.n], wanted, "rates of the costates")
 
@@ -176,7 +173,7 @@ class _Point:
         states, controls = variables([value(v) for v in self.x]), variables([value(v) for v in self.u])
         at, slope, _ = derivatives(lambda: level(states, self.u), n)
         self.equal([at + 1], [arb(1)], "a boundary arc is on its boundary")
-        self.equal(law.slope(self.series), slope, "the gradient of a path constraint")
+        self.equal(law.gradient(self.series), slope, "the gradient of a path constraint")
         _, (effect,), _ = derivatives(lambda: level(self.x, controls), 1)
         try:
             (stated,) = (value(v) for v in self.kernel.path_effect(self.t, self.x, [OPAQUE], self.p)[k : k + 1])

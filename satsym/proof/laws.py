@@ -26,7 +26,7 @@ class Law(ABC):
     kernel
         The model.
     parameters
-        As constants.
+        The parameters of the model, as constants.
     """
 
     def __init__(self, kernel: BallKernel, parameters: Sequence[Series]) -> None:
@@ -46,7 +46,7 @@ class Law(ABC):
         return [*found, constant(1)] if self.timed else found
 
     def jacobian(self, z: Sequence[Series]) -> list[Series]:
-        """Their derivatives by the components, row by row."""
+        """Derivatives of the rates by the components, row by row."""
         found, n = list(self._jacobian(z)), 2 * self.n
         if not self.timed:
             return found
@@ -78,7 +78,7 @@ class Law(ABC):
 
     @abstractmethod
     def leaving(self, other: Law) -> Key:
-        """Which of the conditions vanishes where another law begins, or has ended."""
+        """The key of the condition that vanishes where another law begins, or has ended."""
 
     @abstractmethod
     def _rates(self, z: Sequence[Series]) -> Sequence[Series]: ...

@@ -15,7 +15,7 @@ from satsym.proof.structure import REMAINDER, TERMS, leap
 
 TRIES = 12
 SETTLED = 1e-8
-"""From a correction that is smaller, relative to the sizes, the next one is to all digits; a second such is enough."""
+"""A correction smaller than this, relative to the sizes, is followed by one to all digits; a second such ends."""
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from satsym.proof.balls.arithmetic import BeyondProof, Key, Series, constant
-from satsym.proof.balls.jets import Jet
-from satsym.proof.balls.kernel import BallKernel
 from satsym.proof.laws import Law
 from satsym.proof.shooting import Junction
 from satsym.proof.statement import Statement
-from satsym.proof.walls import BesideWalls, levels, wall
+from satsym.proof.walls import BesideWalls, Pushed, levels, wall
 from satsym.solution import Solution
 
 
@@ -27,23 +25,14 @@ class BesideMixed(BesideWalls):
         return wall(other.which) if isinstance(other, OnMixed) else super().leaving(other)
 
 
-class OnMixed(Law):
+class OnMixed(Pushed):
     """An arc on the boundary of a constraint that holds the control."""
-
-    def __init__(self, kernel: BallKernel, parameters: Sequence[Series], which: int) -> None:
-        super().__init__(kernel, parameters)
-        self.which = which
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
         return [self.kernel.boundary_control(t, x, lam, self.p, ())[self.which] + constant(0)]
 
-    def multiplier(self, z: Sequence[Series]) -> Series:
-        """By which the gradient of the constraint enters the rates of the costates."""
-        t, x, lam = self.parts(z)
-        return self.kernel.path_multiplier(t, x, self.control(z), lam, self.p, ())[self.which] + constant(0)
-
-    def slope(self, z: Sequence[Series]) -> list[Series]:
+    def gradient(self, z: Sequence[Series]) -> list[Series]:
         """The gradient of the constraint by the states."""
         t, x, _ = self.parts(z)
         found = self.kernel.path_gradient(t, x, self.control(z), self.p)
@@ -55,18 +44,6 @@ class OnMixed(Law):
 
     def leaving(self, other: Law) -> Key:
         return ("path_multiplier", self.which)
-
-    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
-        t, x, lam = self.parts(z)
-        u, push = self.control(z), self.multiplier(z)
-        costates = self.kernel.costate_rate(t, x, u, lam, self.p)
-        pushed = [v - push * s for v, s in zip(costates, self.slope(z), strict=True)]
-        return [*(v + constant(0) for v in self.kernel.dynamics(t, x, u, self.p)), *pushed]
-
-    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
-        given, zero = [Jet(v, {i: constant(1)}) for i, v in enumerate(z)], constant(0)
-        found = self._rates(given)
-        return [(v.first.get(j, zero) if isinstance(v, Jet) else zero) for v in found for j in range(len(z))]
 
 
 def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float]]:

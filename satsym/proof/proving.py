@@ -47,7 +47,7 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
         Solves it, to know where to look; nothing that the answer claims is used. It is asked only of problems that a
         theorem covers.
     digits
-        Of the enclosures.
+        Significant digits of the enclosures.
 
     Returns
     -------
@@ -128,7 +128,7 @@ class Located:
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     if not found.status.answered:
         raise NotProved(f"there is no answer to begin with: {found.message}")
-    statement = stated(case, found.instance.met, found.x[:, -1])
+    statement = stated(case, found.instance.met, found.x[:, -1].tolist())
     record = replace(record, numbers=dict(statement.source.stated))
     shooting, place = _begun(statement, found, record.digits)
     for arc in shooting.arcs:

@@ -41,7 +41,7 @@ class Enclosure:
 
     @property
     def text(self) -> str:
-        """As people read it."""
+        """The number and its radius, as people read them."""
         return f"{self.centre} +/- {self.radius}"
 
 
@@ -124,7 +124,7 @@ class Proof:
     unique_within
         How far from the located one, relative to the sizes, there is no other extremal of this structure.
     digits, wall_s
-        That were asked for; seconds.
+        How many digits were asked for, and how many seconds the proof took.
     """
 
     model: str

@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from satsym.proof.balls.arithmetic import Ball, NotProved, Series, constant, value
-from satsym.proof.balls.jets import OPAQUE, Jet, derivatives, variables
+from satsym.proof.balls.jets import OPAQUE, derivatives, gradients, variables
 from satsym.proof.balls.taylor import Order
 from satsym.proof.ends import positive
 from satsym.proof.shooting import integrated
@@ -89,9 +89,7 @@ class Uncontrolled:
         return [v + constant(0) for v in self.kernel.dynamics(OPAQUE, z, self.u, self.p)]
 
     def jacobian(self, z: Sequence[Series]) -> list[Series]:
-        given, zero = [Jet(v, {i: constant(1)}) for i, v in enumerate(z)], constant(0)
-        found = self.kernel.dynamics(OPAQUE, given, self.u, self.p)
-        return [(v.first.get(j, zero) if isinstance(v, Jet) else zero) for v in found for j in range(len(z))]
+        return gradients(lambda given: self.kernel.dynamics(OPAQUE, given, self.u, self.p), z)
 
     def cost(self, z: Sequence[Series]) -> Series:
         return constant(0)

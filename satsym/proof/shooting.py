@@ -21,7 +21,7 @@ from satsym.proof.laws import Law, derivatives
 from satsym.proof.statement import Statement
 
 MOST_STEPS = 3000
-"""Of one pass over the extremal."""
+"""How many steps of integration one pass over the extremal may take."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Arc:
 
     @property
     def segments(self) -> int:
-        """How many there are."""
+        """How many segments the arc has."""
         return len(self.fractions) - 1
 
 
@@ -74,9 +74,9 @@ class Box:
     Attributes
     ----------
     nodes, around
-        Of each node all components; those of the first that are given have their own radius in `nodes`.
+        All components of each node; those of the first that are given have their own radius in `nodes`.
     lengths, lengths_around
-        Of the arcs, and after them the multiples of junctions at which costates jump.
+        Lengths of the arcs, and after them the multiples of junctions at which costates jump.
     """
 
     nodes: list[list[Ball]]
@@ -94,13 +94,13 @@ class Segment:
     point
         Where the midpoint of the box leads.
     derivative
-        By the node, over the box.
+        Derivatives of the final components by those at the node, over the box.
     rates
-        At the end, over the box.
+        Rates of the components at the end, over the box.
     steps
-        Of the integration.
+        The steps of the integration.
     deviations, errors
-        At the start of each step, how far motions of the box are from the one of the midpoint, and how far that one is
+        How far, at the start of each step, motions of the box are from the one of the midpoint, and how far that one is
         from the midpoint of the step.
     """
 
@@ -130,7 +130,7 @@ class Shooting:
     arcs: tuple[Arc, ...]
     junctions: tuple[Junction, ...]
     sizes: tuple[float, ...]
-    """Of the components, and of the cost."""
+    """Sizes of the components, and of the cost."""
 
     @property
     def lengths_unknown(self) -> bool:
@@ -166,7 +166,7 @@ class Shooting:
         return moved, (left if self.lengths_unknown else list(lengths))
 
     def final_time(self, lengths: Sequence[Ball]) -> Ball:
-        """When the last arc ends."""
+        """The time at which the last arc ends."""
         lengths = lengths[: len(self.arcs)]
         return self.statement.t0 + sum(lengths, arb(0)) if self.lengths_unknown else self.statement.tf
 
@@ -259,7 +259,7 @@ class _Carried:
 
     @classmethod
     def of(cls, values: Sequence[Ball]) -> _Carried:
-        """At the start, where values have these radii."""
+        """What is carried at the start of a segment, where components have these radii."""
         one = unit(len(values))
         return cls(one, column([v - v.mid() for v in values]), one)
 
@@ -269,7 +269,7 @@ class _Carried:
         return found
 
     def after(self, derivative: Matrix, there: Sequence[Ball]) -> _Carried:
-        """The same after a step with these derivatives, which leads the midpoint to these balls."""
+        """What is carried after a step with these derivatives, which leads the midpoint to these balls."""
         moved, fresh = derivative * self.frame, column([v - v.mid() for v in there])
         frame = moved.mid()
         try:

@@ -19,7 +19,7 @@ from satsym.proof.walls import OnBoundary, require_push
 DEEPEST = 16
 """How often a step is halved to show a sign on it."""
 PARTS = 14
-"""How often, to find the part of a step on which a condition falls to zero."""
+"""How often a step is halved to find the part of it on which a condition falls to zero."""
 
 _LINEAR = "H is linear in the controls, with coefficients that do not all vanish"
 _DIRECTED = {
@@ -84,7 +84,7 @@ def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | No
 
 
 def _derived(series: Sequence[Ball], order: int) -> list[Ball]:
-    """The coefficients of a derivative."""
+    """The coefficients of a derivative of a series."""
     for _ in range(order):
         series = [k * v for k, v in enumerate(series)][1:]
     return list(series)
@@ -114,11 +114,11 @@ class _Condition:
     series: list[Ball]
 
     def positive(self, time: Ball) -> bool:
-        """Whether it is positive, by its series, which may reach less far than that of the motion, or by its values."""
+        """Whether the condition is positive, by its series, which may reach less far than the motion, or values."""
         return bool(polynomial(self.series, time) > 0 or self.at(time) > 0)
 
     def at(self, time: Ball) -> Ball:
-        """Its value over a ball of times."""
+        """The value of the condition over a ball of times."""
         ctx.cap = 1
         z = [arb_series([v]) for v in self.step.reached(time)]
         try:
@@ -127,7 +127,7 @@ class _Condition:
             return arb(0, float("inf"))
 
     def rate(self, time: Ball) -> Ball:
-        """Its rate of change over a ball of times."""
+        """The rate of change of the condition over a ball of times."""
         z = self.step.reached(time)
         try:
             moved = zip(z, rates(self.law, z), strict=True)

@@ -54,7 +54,7 @@ class Target:
     value
         Where it is given; ``None`` where it is on the reference.
     side
-        Of a range, the end that is met; ``None`` where the value is given.
+        The end of its range that is met; ``None`` where the value is given.
     turns
         How many whole turns are added to an angle that counts modulo a turn; ``None`` for what does not.
     """
@@ -73,9 +73,9 @@ class Statement:
     bounds
         The argument of that name: constants, infinite floats, and what regularises nothing.
     targets
-        By the place of the state; a state that is not there is free.
+        What final states must be, by the place of the state; one that is not there is free.
     open_ranges
-        By place, the ends between which a free final state must lie.
+        The ends between which free final states must lie, by the place of the state.
     free
         Places of the initial states that are free; in `initial` they have the values where a solver begins.
     """
@@ -96,7 +96,7 @@ class Statement:
 
     @property
     def spec(self) -> ProblemSpec:
-        """Of the model."""
+        """The specification of the model."""
         return self.kernel.spec
 
     @property
@@ -135,8 +135,8 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
     ]
     time = _time_unit(case) if source.has_units("time") else "1"
     targets, ranges = _ends(case, source, met)
-    if len(last) and case.solver.free_angles:
-        targets = {i: _turned(case, i, target, last[i]) for i, target in targets.items()}
+    if case.solver.free_angles:
+        targets = {i: _turned(case, i, target, last[i] if last else 0.0) for i, target in targets.items()}
     kernel = BallKernel(case.model)
     _refuse_cases(kernel)
     lower, upper = (
@@ -248,11 +248,12 @@ def _norm(case: Instance, source: Source, part: ControlPart, key: str) -> Any:
 def _refuse_cases(kernel: BallKernel) -> None:
     """Refuse motions and costs with cases; what controls that switch cost may be their magnitudes."""
     spec = kernel.spec
-    for name in ("dynamics", "running_cost", "terminal_cost", *(("reference",) if spec.has_reference else ())):
+    besides = (("reference",) if spec.has_reference else ()) + (("path_constraints",) if spec.path_constraints else ())
+    for name in ("dynamics", "running_cost", "terminal_cost", *besides):
         known = {f"{control}{after}" for control in spec.control_names for after in ("", "_value")}
         allowed = known if name == "running_cost" and spec.switching else set()
         if set(kernel.cases(name)) - allowed:
-            raise BeyondProof("a motion or a cost that is stated by cases, or with absolute values")
+            raise BeyondProof("a motion, a cost or a constraint that is stated by cases, or with absolute values")
     timed = kernel.timed & _ALONG
     if any(name.startswith(("path_", "boundary_")) for name in timed):
         raise BeyondProof("path constraints that depend on time")

@@ -7,6 +7,7 @@ convex problem, multiples that are not negative make the extremal a global minim
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from functools import partial
 
@@ -14,7 +15,7 @@ import numpy as np
 from flint import arb_series, ctx
 
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, Key, NotProved, Series, constant, value
-from satsym.proof.balls.jets import OPAQUE, Jet
+from satsym.proof.balls.jets import OPAQUE, gradients
 from satsym.proof.balls.kernel import BallKernel
 from satsym.proof.balls.taylor import Step
 from satsym.proof.laws import Law, Regular
@@ -59,12 +60,44 @@ class BesideWalls(Regular):
         return [*super().conditions(z), *kept]
 
 
-class OnBoundary(Law):
-    """An arc on the boundary of a constraint."""
+class Pushed(Law):
+    """An arc on the boundary of a constraint, whose gradient enters the rates of the costates.
+
+    Parameters
+    ----------
+    which
+        The place of the constraint among all.
+    """
 
     def __init__(self, kernel: BallKernel, parameters: Sequence[Series], which: int) -> None:
         super().__init__(kernel, parameters)
         self.which = which
+
+    @abstractmethod
+    def gradient(self, z: Sequence[Series]) -> list[Series]:
+        """The gradient of the constraint by the states."""
+
+    def multiplier(self, z: Sequence[Series]) -> Series:
+        """The factor of the constraint's gradient in the rates of the costates."""
+        t, x, lam = self.parts(z)
+        return self.kernel.path_multiplier(t, x, self.control(z), lam, self.p, ())[self.which] + constant(0)
+
+    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        u, push = self.control(z), self.multiplier(z)
+        costates = self.kernel.costate_rate(t, x, u, lam, self.p)
+        pushed = [v - push * s for v, s in zip(costates, self.gradient(z), strict=True)]
+        return [*(v + constant(0) for v in self.kernel.dynamics(t, x, u, self.p)), *pushed]
+
+    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
+        return gradients(self._rates, z)
+
+
+class OnBoundary(Pushed):
+    """An arc on the boundary of a constraint on the states."""
+
+    def __init__(self, kernel: BallKernel, parameters: Sequence[Series], which: int) -> None:
+        super().__init__(kernel, parameters, which)
         self.slope = [constant(v) for v in gradient_of(self, which)]
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
@@ -73,10 +106,8 @@ class OnBoundary(Law):
         found = self.kernel.boundary_control(t, x, lam, self.p, ())
         return list(found[m * self.which : m * self.which + m])
 
-    def multiplier(self, z: Sequence[Series]) -> Series:
-        """By which the gradient of the constraint enters the rates of the costates."""
-        t, x, lam = self.parts(z)
-        return self.kernel.path_multiplier(t, x, self.control(z), lam, self.p, ())[self.which] + constant(0)
+    def gradient(self, z: Sequence[Series]) -> list[Series]:
+        return self.slope
 
     def vanishing(self, z: Sequence[Series], law: Law | None = None) -> list[Series]:
         """What is zero all along: the constraint, its rate, H_u along the boundary, and the rate of that."""
@@ -92,21 +123,6 @@ class OnBoundary(Law):
 
     def leaving(self, other: Law) -> Key:
         return wall(self.which)
-
-    def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
-        t, x, lam = self.parts(z)
-        u, push = self.control(z), self.multiplier(z)
-        costates = self.kernel.costate_rate(t, x, u, lam, self.p)
-        pushed = [v - push * s for v, s in zip(costates, self.slope, strict=True)]
-        return [*(v + constant(0) for v in self.kernel.dynamics(t, x, u, self.p)), *pushed]
-
-    def _jacobian(self, z: Sequence[Series]) -> Sequence[Series]:
-        m = len(z)
-        given = [Jet(v, {i: constant(1)}) for i, v in enumerate(z)]
-        zero = constant(0)
-        return [
-            (jet.first.get(j, zero) if isinstance(jet, Jet) else zero) for jet in self._rates(given) for j in range(m)
-        ]
 
 
 def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float], list[float]]:

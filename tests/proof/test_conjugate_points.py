@@ -43,6 +43,11 @@ def test_with_given_ends_nothing_is_proved_behind_it(tf: float) -> None:
     assert proof.costate_initial  # the extremal exists nevertheless
 
 
+def test_with_given_ends_nothing_is_proved_a_billionth_behind_it() -> None:
+    case, found = between(0.5, math.pi + 1e-9)
+    assert prove(case, lambda: found).status is Outcome.NOT_PROVED
+
+
 @pytest.mark.parametrize(("tf", "wanted"), [(1.0, Outcome.PROVED), (1.5, Outcome.PROVED), (1.75, Outcome.NOT_PROVED)])
 def test_with_a_free_end_the_focal_time_is_half_of_it(tf: float, wanted: Outcome) -> None:
     case, found = between(None, tf)

@@ -55,7 +55,7 @@ def test_least_time_is_global_where_one_can_wait_at_the_end() -> None:
 
 @pytest.mark.slow
 def test_an_angle_modulo_a_turn_ends_at_the_nearest_one() -> None:
-    """q'' = u from q = 4 to q = 0 modulo a turn at rest, in the time 1: ahead, by 2 pi - 4, at the cost 6 (2 pi - 4)^2."""
+    """A wheel turns from 4 to 0 modulo a turn, at rest, in time 1: ahead, by 2 pi - 4, at the cost 6 (2 pi - 4)^2."""
     q, v, u = sympy.symbols("q v u", real=True)
     motion = satsym.FirstOrder(
         name="wheel_motion",

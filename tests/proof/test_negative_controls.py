@@ -44,6 +44,7 @@ def altered(name: str, function: str, old: str, new: str) -> Instance:
 ALTERED = [
     ("canonical", "        w_2,\n", "        w_2 - q,\n"),
     ("canonical", "-lambda_q,", "-2.0*lambda_q,"),
+    ("canonical", "-lambda_q,", "-lambda_q - 1.0e-27*q,"),
     ("canonical_jacobian", "        -w_2,\n", "        w_2,\n"),
     ("control_law", "w = -lambda_q_dot", "w = -0.999*lambda_q_dot"),
     ("running_cost", "0.5*u1*u1", "0.5*u1*u1 + q"),
@@ -100,7 +101,7 @@ def test_a_feature_that_no_theorem_covers_is_named_before_anything_is_solved(nam
     assert feature in proof.reason
 
 
-def test_what_is_free_at_the_start_or_counts_modulo_a_turn_is_refused() -> None:
+def test_an_angle_on_the_reference_modulo_a_turn_is_refused() -> None:
     case = instance.load("return-to-orbit")
     turning = replace(case, solver=type(case.solver)(free_angles=("theta",)))
     assert prove(turning, lambda: pytest.fail("nothing need be solved")).status is Outcome.BEYOND

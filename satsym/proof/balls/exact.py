@@ -38,9 +38,9 @@ class Number:
     rational
         The number, or what multiplies a power of pi.
     turns
-        That power.
+        The exponent of that power.
     stated
-        As the record of a proof shows it.
+        The number as the record of a proof shows it.
     """
 
     rational: Fraction
@@ -80,7 +80,7 @@ class Source:
         value
             What solvers compute with.
         unit
-            Of `value`, where a text may carry another one.
+            The unit of `value`; a text may carry another one.
         """
         written: Any = self._tree
         for part in key:

@@ -170,6 +170,13 @@ def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ba
     return value(found.value), first, second
 
 
+def gradients(function: Callable[[Sequence[Jet]], Sequence[Any]], z: Sequence[Any]) -> list[Any]:
+    """Derivatives of series that a function returns, by its arguments, row by row, as series."""
+    zero = constant(0)
+    found = function([Jet(v, {i: constant(1)}) for i, v in enumerate(z)])
+    return [(v.first.get(j, zero) if isinstance(v, Jet) else zero) for v in found for j in range(len(z))]
+
+
 class _Opaque:
     """A number that nothing may depend on: arithmetic with it is an error."""
 

@@ -17,9 +17,9 @@ from satsym.proof.balls.arithmetic import Ball, NotProved, Series, value
 Matrix = Any
 """An ``arb_mat``."""
 SHORTEST = 1e-9
-"""Of the length of a step that is asked for: what is left of it where no enclosure is found."""
+"""The share of the length of a step to which it is cut, at most, until no enclosure counts as found."""
 FEWER = 0.65
-"""Of the terms, how many there are of derivatives by the start, which multiply what is small."""
+"""The share of the terms that series of the derivatives by the start have, which multiply what is small."""
 
 
 class Field(Protocol):
@@ -53,13 +53,14 @@ class Step:
     middle
         Coefficients of the motion from the midpoint of the start.
     series, last
-        Of the motions from `z`: coefficients up to `terms` - 1 at the start of the step, and the next one within it.
+        Series of the motions from `z`: coefficients up to `terms` - 1 at the start of the step, and the next one within
+        it.
     flow
         Coefficients of the derivatives by the start, the last one within the step.
     costs
         Coefficients of the cost so far along the motion from the midpoint, the last one within the step.
     terms
-        Of these series before the last one.
+        How many coefficients these series have before the last one.
     """
 
     h: Ball

@@ -1,0 +1,68 @@
+"""Features that no theorem here covers are refused by their names before anything is solved, whatever else is there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import sympy
+
+import satsym
+from satsym.proof.proving import prove
+from satsym.proof.record import Outcome
+from satsym.symbolic import Ball, Box
+
+q, v, u, w, k = sympy.symbols("q v u w k", real=True)
+START, END = {"q": 1.0, "v": 0.0}, {"q": 0.0, "v": 0.0}
+
+
+def body(*parameters: Any) -> Any:
+    return satsym.FirstOrder(
+        name="refused_motion",
+        title="A body",
+        states=(satsym.Variable("q", "q"), satsym.Variable("v", "v")),
+        controls=(satsym.Variable("u", "u"), satsym.Variable("w", "w")),
+        parameters=parameters,
+        rates={q: v, v: u + w},
+    )
+
+
+EFFORT = (u**2 + w**2) / 2
+STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
+    "terminal constraints": ({"terminal_constraints": (q + v - 1,)}, {"tf": 1.0}, "constraints at the end"),
+    "terminal inequalities": ({"terminal_inequalities": {"far": q - 9}}, {"tf": 1.0}, "constraints at the end"),
+    "points on the way": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "points on the way"),
+    "walls of order one": ({"path_constraints": {"slow": v - 9}}, {"final": END, "tf": 1.0}, "order one"),
+    "sets of two kinds": (
+        {"control_sets": {"one": Box("u"), "other": Ball("w")}},
+        {"final": END, "tf": 1.0, "control": {"u": [-9.0, 9.0], "other": {"max_norm": 9.0}}},
+        "a product of several control sets",
+    ),
+    "a free beginning": ({}, {"final": END, "tf": 3.0, "t0": "free"}, "an initial time or parameters that are free"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("feature", STATED)
+def test_a_feature_is_named(feature: str) -> None:
+    stated, given, named = STATED[feature]
+    cost = EFFORT + 1 + (satsym.symbolic.t**2 if "t0" in given else 0)
+    problem = satsym.Problem(name="refused", title="Refused", model=body(), running_cost=cost, **stated)
+    case = satsym.Instance.of(problem, initial=START, **given)
+    proof = prove(case.case, lambda: pytest.fail("nothing need be solved"))
+    assert proof.status is Outcome.BEYOND
+    assert named in proof.reason
+
+
+@pytest.mark.slow
+def test_a_free_parameter_is_refused() -> None:
+    problem = satsym.Problem(
+        name="refused",
+        title="Refused",
+        model=body(satsym.Variable("k", "k", default=1.0)),
+        running_cost=EFFORT + (k - 2) ** 2,
+    )
+    case = satsym.Instance.of(problem, initial=START, final=END, tf=1.0, parameters={"k": "free"})
+    proof = prove(case.case, lambda: pytest.fail("nothing need be solved"))
+    assert proof.status is Outcome.BEYOND
+    assert "parameters that are free" in proof.reason
