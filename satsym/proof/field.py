@@ -18,7 +18,7 @@ from satsym.proof.balls.arithmetic import Ball, NotProved
 from satsym.proof.balls.taylor import Matrix, Step, rates, unit
 from satsym.proof.ends import positive
 from satsym.proof.laws import AtLevels, Law, Throttled, gradient
-from satsym.proof.shooting import Pass, Segment, Shooting
+from satsym.proof.shooting import Carried, Pass, Segment, Shooting
 
 DEEPEST = 10
 """How often a step is halved to show that X is regular on it."""
@@ -82,18 +82,18 @@ def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regul
 
 def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ball) -> tuple[Matrix, int]:
     """W at the end of a segment, or an exact matrix above it, and the pieces that it took."""
-    x, lam, pieces = unit(n), w, 0
+    m = segment.derivative.nrows()
+    first = arb_mat(m, n, [*unit(n).entries(), *w.entries(), *[arb(0)] * (n * (m - 2 * n))])
+    x, lam, pieces, carried = unit(n), w, 0, Carried.of([arb(0)] * m)
     for step in segment.steps:
         start = _ratio(x, lam)
         taken = _regular(step, start, _widths(start, sizes[:n]), 0.0, 1.0, DEEPEST)
         if not taken:
             raise NotProved(f"X of the field is not shown to be regular near t = {_about(time)} (a conjugate point?)")
         pieces, time = pieces + taken, time + step.h
-        v = step.derivative()
-        x, lam = (
-            _block(v, 0, 0, n) * x + _block(v, 0, n, n) * lam,
-            _block(v, n, 0, n) * x + _block(v, n, n, n) * lam,
-        )
+        carried = carried.after(step.derivative(), [arb(0)] * m)
+        there = carried.frame * (carried.flow * first)
+        x, lam = _block(there, 0, 0, n), _block(there, n, 0, n)
     return _above(_ratio(x, lam), sizes[:n]), pieces
 
 

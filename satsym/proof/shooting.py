@@ -214,7 +214,7 @@ def integrated(
     NotProved
         If it has no enclosure.
     """
-    middle, carried = [v.mid() for v in node], _Carried.of(node)
+    middle, carried = [v.mid() for v in node], Carried.of(node)
     left, h, start = span, span, column(around)
     steps, deviations, errors = [], [], []
     while True:
@@ -238,7 +238,7 @@ def integrated(
 
 
 @dataclass(frozen=True)
-class _Carried:
+class Carried:
     """What a motion carries along from the start of a segment, in a frame that moves with it.
 
     Balls about components would grow at each turn of the motion if they stood in fixed axes.
@@ -258,7 +258,7 @@ class _Carried:
     flow: Matrix
 
     @classmethod
-    def of(cls, values: Sequence[Ball]) -> _Carried:
+    def of(cls, values: Sequence[Ball]) -> Carried:
         """What is carried at the start of a segment, where components have these radii."""
         one = unit(len(values))
         return cls(one, column([v - v.mid() for v in values]), one)
@@ -268,16 +268,16 @@ class _Carried:
         found: list[Ball] = (self.frame * self.offset).entries()
         return found
 
-    def after(self, derivative: Matrix, there: Sequence[Ball]) -> _Carried:
+    def after(self, derivative: Matrix, there: Sequence[Ball]) -> Carried:
         """What is carried after a step with these derivatives, which leads the midpoint to these balls."""
         moved, fresh = derivative * self.frame, column([v - v.mid() for v in there])
         frame = moved.mid()
         try:
             back = frame.inv()
         except ZeroDivisionError:
-            return _Carried(unit(len(there)), moved * self.offset + fresh, moved * self.flow)
+            return Carried(unit(len(there)), moved * self.offset + fresh, moved * self.flow)
         turned = back * moved
-        return _Carried(frame, turned * self.offset + back * fresh, turned * self.flow)
+        return Carried(frame, turned * self.offset + back * fresh, turned * self.flow)
 
 
 class Rows:
