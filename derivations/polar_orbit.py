@@ -1,4 +1,4 @@
-"""A satellite in the plane of its orbit, in polar coordinates, thrusting radially and tangentially.
+"""A satellite in the plane of its orbit, in polar coordinates, thrusting radially and transversally.
 
 Everything is per unit mass. The reference is a circular orbit of radius sigma and angular velocity omega; it
 is an orbit only if mu = sigma^3 omega^2, which is therefore how mu is given.
@@ -18,13 +18,13 @@ STATES = (
 )
 CONTROLS = (
     Variable("u1", "u_1", "km/s**2", "radial thrust per unit mass"),
-    Variable("u2", "u_2", "km/s**2", "tangential thrust per unit mass"),
+    Variable("u2", "u_2", "km/s**2", "transverse thrust per unit mass"),
 )
 PARAMETERS = (
     Variable("sigma", r"\sigma", "km", "radius of the reference orbit", 1.0, positive=True),
     Variable("omega", r"\omega", "rad/s", "angular velocity of the reference orbit", 1.0, positive=True),
     Variable("c1", "c_1", "1", "weight of the radial thrust", 1.0, positive=True),
-    Variable("c2", "c_2", "1", "weight of the tangential thrust", 1.0, positive=True),
+    Variable("c2", "c_2", "1", "weight of the transverse thrust", 1.0, positive=True),
     Variable("k1", "k_1", "1/s**3", "terminal weight of the distance", 0.0),
     Variable("k2", "k_2", "1/s", "terminal weight of the radial velocity", 0.0),
     Variable("k3", "k_3", "km**2/s**3", "terminal weight of the angle", 0.0),
@@ -52,7 +52,7 @@ orbit = Newton(
     coordinates={r: r_dot, theta: theta_dot},
     directions={"e_r": e_r, "e_theta": e_theta},
     position=r * e_r,
-    forces={"gravity": -mu / r**2 * e_r, "radial thrust": u1 * e_r, "tangential thrust": u2 * e_theta},
+    forces={"gravity": -mu / r**2 * e_r, "radial thrust": u1 * e_r, "transverse thrust": u2 * e_theta},
     reference={r: sigma, r_dot: 0, theta: omega * t, theta_dot: omega},
 )
 
@@ -105,11 +105,11 @@ TRANSLATIONS = {
         "polar angle in the inertial plane": "sudut polar pada bidang inersial",
         "angular velocity": "kecepatan sudut",
         "radial thrust per unit mass": "gaya dorong radial per satuan massa",
-        "tangential thrust per unit mass": "gaya dorong tangensial per satuan massa",
+        "transverse thrust per unit mass": "gaya dorong transversal per satuan massa",
         "radius of the reference orbit": "jari-jari orbit acuan",
         "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",
         "weight of the radial thrust": "bobot gaya dorong radial",
-        "weight of the tangential thrust": "bobot gaya dorong tangensial",
+        "weight of the transverse thrust": "bobot gaya dorong transversal",
         "weight of the thrust": "bobot gaya dorong",
         "terminal weight of the distance": "bobot akhir jarak",
         "terminal weight of the radial velocity": "bobot akhir kecepatan radial",
@@ -119,7 +119,7 @@ TRANSLATIONS = {
         "gravitational parameter": "parameter gravitasi",
         "gravity": "gravitasi",
         "radial thrust": "dorong radial",
-        "tangential thrust": "dorong tangensial",
+        "transverse thrust": "dorong transversal",
     },
 }
 

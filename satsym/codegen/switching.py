@@ -62,10 +62,11 @@ def vectors(derivation: Derivation) -> list[Entry]:
 
 def curve(derivation: Derivation) -> list[Entry]:
     """Functions of the switching curve, where there is one: the law of the state, and changes of position from rest."""
-    if switching_curve.STEP not in derivation:
+    steps = (switching_curve.CURVE, switching_curve.FEEDBACK, switching_curve.RESTS)
+    if switching_curve.CURVE not in derivation:
         return []
     arguments, (control,) = "t x p bounds final", names(derivation.model.controls)
-    stated = {e.name: e.rhs for e in derivation.step(switching_curve.STEP).equations}
+    stated = {e.name: e.rhs for name in steps for e in derivation.step(name).equations}
     beyond = stated["beyond"].xreplace({ON_CURVE: stated["curve"]})
     law = stated[control].xreplace({SIDE: stated["side"]}).xreplace({BEYOND_CURVE: beyond})
     first = stated["first"].xreplace({TRANSITION: stated["duration"]})

@@ -69,10 +69,13 @@ class Conclusion:
         Key of the sentence.
     values
         What is filled into it: expressions, or tuples of them.
+    after
+        Name of the equation after which it is said; empty where it is said after all of them.
     """
 
     key: str
     values: Mapping[str, sp.Basic]
+    after: str = ""
 
 
 @dataclass(frozen=True)

@@ -76,18 +76,24 @@ class Line:
 
     @property
     def components(self) -> tuple[sp.Expr, ...]:
-        """The entries of the right-hand side where it is a vector or a matrix; none where it is a number."""
-        return tuple(self.right) if isinstance(self.right, sp.MatrixBase) else ()
+        """The entries of the right-hand side where it is a vector; none where it is a number or a matrix."""
+        return tuple(self.right) if isinstance(self.right, sp.MatrixBase) and self.right.cols == 1 else ()
+
+    @property
+    def rows(self) -> tuple[tuple[sp.Expr, ...], ...]:
+        """The rows of the right-hand side where it is a matrix; none where it is a number or a vector."""
+        if not isinstance(self.right, sp.MatrixBase) or self.right.cols == 1:
+            return ()
+        return tuple(tuple(self.right.row(i)) for i in range(self.right.rows))
 
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence of a statement, by its key, the model and the letter it names, and the equations it leads to."""
+    """A sentence of a statement, by its key, the model that it names, and the equations it leads to."""
 
     sentence: str
     of: Model | None = None
     lines: tuple[Line, ...] = ()
-    letter: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,6 +186,10 @@ class Model:
     def followed(self) -> str:
         """The parameter over which equilibria of an attitude are followed; empty where it is not one attitude."""
         return ""
+
+    def direction_cosines(self) -> sp.Matrix | None:
+        """The matrix that direction cosines make, by the names under which steps state them; ``None`` without them."""
+        return None
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
         """What the modes of small motions are called, by the states that have the largest part in them."""

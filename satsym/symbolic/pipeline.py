@@ -92,6 +92,8 @@ SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     switching_curve.switching_curve,
+    switching_curve.switching_feedback,
+    switching_curve.rest_to_rest,
 )
 """Where H is linear in the controls and their magnitudes."""
 

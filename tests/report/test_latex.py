@@ -14,17 +14,19 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
-from sympy import Matrix, cos, sin, sqrt, tan
+from sympy import Matrix, Symbol, cos, sin, sqrt, tan
 
 import satsym.symbolic
 from satsym.report.latex import tex
 from satsym.report.latex.document import render
+from satsym.report.latex.preamble import SIZES
 from satsym.report.latex.width import width
 from satsym.report.texts import MissingText, languages, load
 from satsym.spec import ControlSetKind
 from satsym.status import BadInput
 from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, symbols_of, t
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.switching.phase_plane import phase_plane
 from tests.support import derived as shared
 
 NASTY = r"100 % of a_b & {c} #1 $x$ ~ ^ \input{x} <“q”> -- 'é' α Ω 日 € 10⁻³"
@@ -205,7 +207,8 @@ def test_widths_are_estimated_as_tex_measures_them(tmp_path: Path) -> None:
     formulas = [typeset.tex(side) for s in derivation.steps for e in s.equations for side in (e.lhs, e.rhs)]
     wide = [f for f in dict.fromkeys(formulas) if width(f) > 8]
     measure = "".join(rf"\setbox0\hbox{{$\displaystyle {f}$}}\typeout{{width=\the\wd0}}" + "\n" for f in wide)
-    text = rf"\documentclass[11pt]{{article}}\usepackage{{amsmath}}\begin{{document}}{measure}x\end{{document}}"
+    head = f"\\documentclass[11pt]{{article}}\\usepackage{{amsmath}}{SIZES}\n"
+    text = rf"{head}\begin{{document}}{measure}x\end{{document}}"
     points = [float(p) for p in re.findall(r"^width=([\d.]+)pt", compiled(text, tmp_path), re.MULTILINE)]
     ratios = [width(f) / (p / 10.95) for f, p in zip(wide, points, strict=True)]
     assert 0.97 < min(ratios) <= max(ratios) < 1.4
@@ -405,3 +408,53 @@ def test_beside_a_variable_j_the_cost_functional_has_another_letter() -> None:
     assert not re.search(r"(?<![A-Za-z])J =", re.sub(r"[ &]+", " ", other))
     assert r"J = \int" in re.sub(r"[ &]+", " ", plain)
     assert r"\mathcal{C}" not in plain
+
+
+def test_appendices_stand_before_the_references() -> None:
+    text = render(shared.shipped("polar_orbit"))
+    assert 0 < text.index("\\appendix") < text.index(r"\section{Checks}") < text.index(r"\begin{thebibliography}")
+
+
+def test_a_linearisation_says_where_it_divides_by_a_norm_that_vanishes() -> None:
+    said = shared.shipped("transfer_fuel").step("linearisation").conclusions
+    assert [one.key for one in said] == ["divided by a norm"]
+    assert r"$B$ divides by $\sqrt{T_r^{2} + T_\theta^{2}}$, which vanishes where" in render(
+        shared.shipped("transfer_fuel")
+    )
+    assert shared.shipped("polar_orbit").step("linearisation").conclusions == ()
+
+
+def test_what_ranks_mean_is_said_after_each_input_and_output() -> None:
+    text = render(shared.shipped("clohessy_wiltshire"))
+    step = text.partition(r"}{Controllability}")[2].partition(r"}{Observability}")[0]
+    places = [
+        step.index(said)
+        for said in ("the model is controllable", "For the input $u_1$ alone", "has dimension $3$ of $4$")
+    ]
+    assert places == sorted(places)
+    assert places[-1] < step.index("For the input $u_2$ alone") < step.index("controllable from the input $u_2$ alone")
+
+
+def test_the_phase_plane_of_least_time_leads_to_the_target_along_the_curve() -> None:
+    derivation = shared.shipped("pitch_minimum_time")
+    plane = phase_plane(derivation)
+    assert plane is not None
+    curve = derivation.equation("switching_curve.curve").rhs
+    ones = {s: 0 if s.name.startswith("target") else -1 if s.name.endswith("_min") else 1 for s in curve.free_symbols}
+    for q, v in plane.curve:
+        assert float(curve.xreplace({**ones, Symbol(plane.rate, real=True): v})) == pytest.approx(q)
+    for first, second in plane.trajectories:
+        assert first[-1] == second[0]
+        assert float(curve.xreplace({**ones, Symbol(plane.rate, real=True): second[0][1]})) == pytest.approx(
+            second[0][0]
+        )
+        assert second[-1] == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+def test_bodies_are_typeset_as_matrices_whose_longer_entries_an_appendix_has() -> None:
+    text = render(shared.shipped("gimballed_wheel"))
+    body, _, appendix = text.partition("\\appendix")
+    assert r"W^{\mathrm{wheel}} = \left(\begin{array}" in re.sub(r"&|  +", "", body).replace("}  =", "} =")
+    assert r"\label{gimballed_wheel:kane.part_1}" in appendix
+    assert r"\label{gimballed_wheel:kane.M}" in body
+    assert r"\begin{multicols}{2}" in appendix

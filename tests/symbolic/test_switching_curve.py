@@ -29,28 +29,29 @@ def test_the_curve_is_the_known_parabola_for_symmetric_bounds_and_rest() -> None
     special = {low: -1, high: 1, target: 0, sp.Symbol("target_x1", real=True): 0}
     on_curve = found.equation("switching_curve.curve").rhs.xreplace(special)
     assert sp.simplify(on_curve + x2 * sp.Abs(x2) / 2) == 0
-    duration = found.equation("switching_curve.duration").rhs.xreplace(special)
+    duration = found.equation("rest_to_rest.duration").rhs.xreplace(special)
     assert sp.simplify(duration - 2 * sp.sqrt(sp.Abs(x1))) == 0
-    assert found.equation("switching_curve.beyond").rhs == x1 - ON_CURVE
+    assert found.equation("switching_feedback.beyond").rhs == x1 - ON_CURVE
 
 
 def test_the_pulses_of_the_pitch_axis_last_as_the_paper_has_them() -> None:
     found, theta, inertia = derive(pitch_minimum_time), sp.Symbol("theta", real=True), sp.Symbol("I_y", positive=True)
     limit = sp.Symbol("T", positive=True)
     special = dict(zip(sp.symbols("wheel_torque_min wheel_torque_max", real=True), (-limit, limit), strict=True))
-    duration = found.equation("switching_curve.duration").rhs.xreplace(special)
+    duration = found.equation("rest_to_rest.duration").rhs.xreplace(special)
     error = sp.Abs(theta - sp.Symbol("target_theta", real=True))
     assert sp.simplify(duration**2 - 4 * error * inertia / limit) == 0
 
 
 def test_both_conventions_have_the_same_curve_and_law() -> None:
-    one, other = (derived(MINIMUM_TIME, convention).step("switching_curve") for convention in ("minimum", "maximum"))
-    assert one.equations == other.equations
+    one, other = (derived(MINIMUM_TIME, convention) for convention in ("minimum", "maximum"))
+    for name in (step.CURVE, step.FEEDBACK, step.RESTS):
+        assert one.step(name).equations == other.step(name).equations
 
 
 def test_a_control_that_pushes_the_other_way_swaps_the_bounds() -> None:
     pushes, pulls = derived(MINIMUM_TIME), derive(switching({x1: x2, x2: -u1}, 1))
-    laws = [found.equation("switching_curve.u1").rhs for found in (pushes, pulls)]
+    laws = [found.equation("switching_feedback.u1").rhs for found in (pushes, pulls)]
     assert [law.args[0] for law in laws] == [SIDE, SIDE]
     assert laws[0].args[2:] == laws[1].args[:1:-1]
 
@@ -74,9 +75,10 @@ def test_other_problems_have_no_such_step(problem: Problem) -> None:
 
 def test_the_checks_catch_a_wrong_curve_law_and_duration() -> None:
     found = derived(MINIMUM_TIME)
-    chain = step._chain(found)
+    chain = step.chain_of(found)
     assert chain is not None
-    stated = {e.name: e.rhs for e in found.step("switching_curve").equations}
+    steps = (step.CURVE, step.FEEDBACK, step.RESTS)
+    stated = {e.name: e.rhs for name in steps for e in found.step(name).equations}
     q_f, curve = chain.target[0], stated["curve"] - chain.target[0]
     law = stated["u1"].xreplace({SIDE: stated["side"]})
     reversed_law, beyond = stated["u1"].xreplace({SIDE: -stated["side"]}), x1 - q_f - curve

@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from satsym.report.latex import tex
+from satsym.report.latex.context import Context, row_of
 from satsym.report.latex.equations import Row, display
-from satsym.report.latex.steps import Context, costate_rows, row_of
+from satsym.report.latex.steps import costate_rows
 from satsym.symbolic import Problem, Step
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.terms import plain

@@ -10,10 +10,11 @@ import re
 from collections.abc import Iterator, Mapping
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
+from satsym.report.latex.context import Context, Shown, numbers_of
 from satsym.report.latex.references import cited
 from satsym.report.latex.rules import listed_sources, rule
 from satsym.report.latex.statement import statement
-from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, shown
+from satsym.report.latex.steps import shown
 from satsym.report.texts import PHRASES, Texts, load
 from satsym.symbolic import Derivation, Step
 from satsym.symbolic.convention import worded
@@ -67,9 +68,9 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     body = _NAME.sub(lambda found: texts.phrase(found[0]), body)
     body, works = cited(body, name, texts)
     source = f"% Written by satsym from the derivation of {name}. Do not edit.\n"
-    macros, end = preamble.macros(name, texts), composer.checks()
+    macros, end = preamble.macros(name, texts), composer.appendices()
     if not standalone:
-        return f"{source}% Needs the packages {preamble.PACKAGES}.\n{macros}\n{body}\n\n{works}\n\n{end}\n"
+        return f"{source}% Needs the packages {preamble.PACKAGES}.\n{macros}\n{body}\n\n{end}\n\n{works}\n"
     own = texts.phrase(derivation.title)
     title = tex.worded(own, derivation.notation)
     head = (
@@ -78,8 +79,8 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     )
     opening = preamble.preamble(texts, tex.bookmark(own))
     return (
-        f"{source}{opening}{macros}\\begin{{document}}\n{head}\n\n{body}\n\n{works}\n"
-        f"\\appendix\n{end}\n\\end{{document}}\n"
+        f"{source}{opening}{macros}\\begin{{document}}\n{head}\n\n{body}\n\n"
+        f"\\appendix\n{end}\n\n{works}\n\\end{{document}}\n"
     )
 
 
@@ -135,9 +136,14 @@ class _Composer:
             done += [self._section("boundary_value"), *boundary_value.collected(self._context)]
         return done
 
-    def checks(self) -> str:
-        """How all steps were checked."""
-        return f"{self._section('checks')}\n{checks.listed(self._derivation, self._texts)}"
+    def appendices(self) -> str:
+        """How all steps were checked, and equations that are too many for the place of their step."""
+        listed = f"{self._section('checks')}\n{checks.listed(self._derivation, self._texts)}"
+        apart = "\n".join(one.appendix for one in self._shown.values() if one.appendix)
+        if not apart:
+            return listed
+        opening = self._texts.get("openings", "subexpressions")
+        return f"{listed}\n\n{self._section('subexpressions')}\n{opening}\n{apart}"
 
     def _place(self, section: str) -> str:
         return tex.label(f"{self._derivation.name}:section.{section}")
@@ -159,9 +165,8 @@ class _Composer:
         stated = rule(self._context, step, self._sources(step))
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
-        said = [conclusion(self._context, c) for c in step.conclusions]
         further = [found for key in (step.name, *step.kinds) if (found := self._texts.find("further", key))]
-        return "\n".join((heading, stated, self._shown[step.name].body, *said, *self._while(step), *further))
+        return "\n".join((heading, stated, self._shown[step.name].body, *self._while(step), *further))
 
     def _title(self, step: Step) -> str:
         """The title of a step, in its form for a single control where there is one."""

@@ -67,6 +67,11 @@ def array(cells: Sequence[Sequence[str]]) -> str:
     return rf"\left(\begin{{array}}{{@{{\,}}{'c' * len(cells[0])}@{{\,}}}} {body} \end{{array}}\right)"
 
 
+def also(back: int, addresses: Sequence[str]) -> str:
+    """Labels for what shares the number of an equation, counted back from the last one."""
+    return rf"\satsymalso{{{back}}}{{{','.join(map(label, addresses))}}}%" if addresses else ""
+
+
 def _between(above: str, below: str) -> str:
     """What parts two rows of a matrix."""
     for fraction, both, one in ((r"\frac", FAR, APART), (r"\tfrac", APART, NEAR)):
@@ -77,15 +82,21 @@ def _between(above: str, below: str) -> str:
     return CLOSE
 
 
-def display(rows: Sequence[Row]) -> str:
-    """The equations, aligned at their equals signs, in as many environments as their widths ask for."""
+def display(rows: Sequence[Row], line: float = LINE) -> str:
+    """The equations, aligned at their equals signs, in as many environments as their widths ask for.
+
+    Parameters
+    ----------
+    line
+        Width in em that an equation may take beside its number.
+    """
     blocks: list[list[Row]] = []
     for row in rows:
-        alone = _left_is_long(row)
-        if not blocks or alone or _left_is_long(blocks[-1][-1]):
+        alone = _left_is_long(row, line)
+        if not blocks or alone or _left_is_long(blocks[-1][-1], line):
             blocks.append([])
         blocks[-1].append(row)
-    return "\n".join(map(_block, blocks))
+    return "\n".join(_block(rows, line) for rows in blocks)
 
 
 def broken(terms: Sequence[Term], limit: float) -> list[str]:
@@ -122,16 +133,16 @@ def _best_breaks(pieces: Sequence[Piece], limit: float) -> list[int]:
     return best[-1][1]
 
 
-def _left_is_long(row: Row) -> bool:
+def _left_is_long(row: Row, line: float) -> bool:
     left, right = width(row.left_tex), width(joined(row.right))
-    return left > 0.4 * LINE and left + right + 1.3 > LINE
+    return left > 0.4 * line and left + right + 1.3 > line
 
 
-def _block(rows: list[Row]) -> str:
+def _block(rows: list[Row], line: float) -> str:
     star = "*" if rows[0].again else ""
-    if len(rows) == 1 and _left_is_long(rows[0]):
-        return _environment(f"equation{star}", [f"{_both_sides_broken(rows[0])} {rows[0].tag}"])
-    room = LINE - max(width(row.left_tex) for row in rows) - 1.3
+    if len(rows) == 1 and _left_is_long(rows[0], line):
+        return _environment(f"equation{star}", [f"{_both_sides_broken(rows[0], line)} {rows[0].tag}"])
+    room = line - max(width(row.left_tex) for row in rows) - 1.3
     lines = []
     for row in rows:
         right = broken(row.right, room - width(row.end))
@@ -153,10 +164,10 @@ def _on_lines(lines: Sequence[str]) -> str:
     return lines[0] + "".join(f"{end}\n  &{line}" for end, line in zip(ends, lines[1:], strict=True))
 
 
-def _both_sides_broken(row: Row) -> str:
+def _both_sides_broken(row: Row, line: float) -> str:
     """A long left side above the right one."""
-    left = broken(row.left, LINE)
-    right = broken(row.right, LINE - 2 * INDENT - 1.3)
+    left = broken(row.left, line)
+    right = broken(row.right, line - 2 * INDENT - 1.3)
     lines = [f"&{line}" for line in left] + [rf"&\qquad = {right[0]}"] + [rf"&\qquad\quad {line}" for line in right[1:]]
     return "\\begin{split}\n  " + " \\\\\n  ".join(lines) + "\n  \\end{split}"
 

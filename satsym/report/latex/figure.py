@@ -10,9 +10,13 @@ from satsym.report.latex.tex import escape
 from satsym.report.texts import Texts
 from satsym.symbolic.model import Model
 from satsym.symbolic.motion.picture import Arrow, Picture, Place
+from satsym.symbolic.switching.phase_plane import PhasePlane
 
 SIZE = 2.6
 """Distance of the body from the centre, in cm."""
+
+WIDE, HIGH = 3.2, 2.2
+"""Where the switching curve ends in a phase plane, in cm from the target."""
 
 CLEAR = "fill=white,inner sep=1pt,outer sep=3pt"
 """A name that covers the lines below it."""
@@ -25,14 +29,56 @@ def figure(model: Model, texts: Texts, label: str) -> str:
     found = model.picture()
     if found is None:
         return ""
-    lines = "\n".join(f"  {line};" for line in DRAWN[found.kind](found))
-    lines = _WORD.sub(lambda word: rf"\text{{{escape(texts.phrase(word[1]))}}}", lines)
     caption = texts.get("figures", found.kind) + (f" {texts.get('figures', 'path')}" if found.path else "")
-    sentence = texts.get("figures", "shown", label=label)
+    return f"{texts.get('figures', 'shown', label=label)}\n{_floating(DRAWN[found.kind](found), caption, texts, label)}"
+
+
+def phase_figure(shown: PhasePlane, named: Callable[[str], str], texts: Texts, label: str) -> str:
+    """Draw the phase plane of a switching curve, with the sentence that leads to it.
+
+    Parameters
+    ----------
+    named
+        Returns the LaTeX of a symbol by its name.
+    """
+    caption = texts.get("figures", "phase_plane", control=named(shown.control))
+    sentence = texts.get("figures", "phase_plane_shown", label=label)
+    return f"{sentence}\n{_floating(_phase_plane(shown, named), caption, texts, label)}"
+
+
+def _floating(lines: Iterator[str], caption: str, texts: Texts, label: str) -> str:
+    body = "\n".join(f"  {line};" for line in lines)
+    body = _WORD.sub(lambda word: rf"\text{{{escape(texts.phrase(word[1]))}}}", body)
     return (
-        f"{sentence}\n\\begin{{figure}}[!htb]\n\\centering\n\\begin{{tikzpicture}}[>=stealth]\n{lines}\n"
+        f"\\begin{{figure}}[!htb]\n\\centering\n\\begin{{tikzpicture}}[>=stealth]\n{body}\n"
         f"\\end{{tikzpicture}}\n\\caption{{{caption}}}\\label{{{label}}}\n\\end{{figure}}"
     )
+
+
+def _phase_plane(shown: PhasePlane, named: Callable[[str], str]) -> Iterator[str]:
+    """Axes, trajectories, the curve over them, and on either side of it the bound that applies."""
+    far = max(abs(q) for q, _ in shown.curve)
+    high = max(abs(v) for _, v in shown.curve)
+
+    def at(place: Place) -> str:
+        x, y = (round(part, 3) + 0.0 for part in (WIDE * place[0] / far, HIGH * place[1] / high))
+        return f"({x:.3f},{y:.3f})"
+
+    def through(points: tuple[Place, ...]) -> str:
+        return "plot coordinates {" + " ".join(map(at, points)) + "}"
+
+    yield rf"\draw[->,black!50] {at((-1.6 * far, 0))} -- {at((1.6 * far, 0))} node[right] {{${named(shown.position)}$}}"
+    yield rf"\draw[->,black!50] {at((0, -1.15 * high))} -- {at((0, 1.2 * high))} node[above] {{${named(shown.rate)}$}}"
+    for first, second in shown.trajectories:
+        half = len(first) // 2
+        yield rf"\draw[->,blue!60!black] {through(first[: half + 1])}"
+        yield rf"\draw[blue!60!black] {through(first[half:])}"
+        yield rf"\draw[->,blue!60!black,thick] {through(second[: len(second) // 2])}"
+    yield rf"\draw[very thick] {through(shown.curve)}"
+    control = named(shown.control)
+    yield rf"\node at {at((-1.0 * far, -0.75 * high))} {{${control} = {named(shown.rising)}$}}"
+    yield rf"\node at {at((1.0 * far, 0.75 * high))} {{${control} = {named(shown.falling)}$}}"
+    yield r"\fill (0,0) circle (2pt)"
 
 
 def _space(shown: Picture) -> Iterator[str]:

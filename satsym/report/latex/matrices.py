@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from satsym.report.latex import tex
-from satsym.report.latex.equations import LINE, Row, array, display
+from satsym.report.latex.equations import LINE, Row, also, array, display
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.symbolic import Derivation, Equation, Step
@@ -54,7 +53,7 @@ def with_matrices(
     rows = [Row(f"{address}.{m.prefix}", plain(stands.get(m.prefix, m.prefix)), plain(w)) for m, w, _ in shown]
     parts = [display(rows)] if rows else []
     for back, (matrix, _, named) in zip(range(len(shown) - 1, -1, -1), shown, strict=True):
-        parts.append(_also(back, address, [e for e in matrix.equations if e not in named.values()]))
+        parts.append(also(back, [f"{address}.{e.name}" for e in matrix.equations if e not in named.values()]))
     for matrix, _, named in shown:
         if named:
             stated = [e for e in matrix.equations if not typeset.is_zero(e.rhs)]
@@ -71,7 +70,7 @@ def with_matrices(
             if not typeset.is_zero(e.rhs)
         ]
         zero = [e for e in matrix.equations if typeset.is_zero(e.rhs)]
-        parts += [display(entries), _also(0, address, zero)]
+        parts += [display(entries), also(0, [f"{address}.{e.name}" for e in zero])]
         rows += entries
     return "\n".join(p for p in parts if p), [row.address for row in rows]
 
@@ -106,7 +105,7 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     """An equation whose right-hand side is a matrix, and those that its long entries need, or all of its entries."""
     cells = [[typeset.tex(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
     head, _, _ = name.partition(" = ")
-    letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
+    letter = head[0].lower() if head[:1].isalpha() and head[1:2] in ("", "^") else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
     mirrored = bool(named or written is None) and is_mirrored(matrix)
     if written is None and not mirrored and (parted := in_parts(cells, LINE - width(name) - 2.0)):
@@ -178,6 +177,23 @@ def fitted(
     return None, {}
 
 
+def with_names(
+    cells: Sequence[Sequence[str]], names: Sequence[Sequence[str]], room: float
+) -> tuple[list[list[str]], set[tuple[int, int]]]:
+    """Return the cells, the longest of them replaced by their names until they fit, and the places of those."""
+    shown, named = [list(row) for row in cells], set[tuple[int, int]]()
+    widths = {width(cell) for row in cells for cell in row}
+    for limit in sorted(widths, reverse=True):
+        if _total(shown) <= room:
+            break
+        for i, row in enumerate(cells):
+            for j, cell in enumerate(row):
+                if cell != "0" and width(cell) >= limit:
+                    shown[i][j] = names[i][j]
+                    named.add((i, j))
+    return shown, named
+
+
 def _written(matrix: NamedMatrix, letter: str, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
     """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so, or too tall."""
     room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
@@ -207,9 +223,3 @@ def _places(matrix: NamedMatrix, letter: str) -> list[tuple[str, Equation]]:
 
 def _total(cells: Sequence[Sequence[str]]) -> float:
     return sum(max(map(width, column)) + GAP for column in zip(*cells, strict=True))
-
-
-def _also(back: int, address: str, equations: Sequence[Equation]) -> str:
-    """Labels for what shares the number of an equation, counted back from the last one."""
-    labels = ",".join(tex.label(f"{address}.{e.name}") for e in equations)
-    return rf"\satsymalso{{{back}}}{{{labels}}}%" if labels else ""

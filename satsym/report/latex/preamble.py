@@ -6,8 +6,11 @@ import re
 
 from satsym.report.texts import Texts
 
-PACKAGES = "amsmath, amssymb, array, booktabs, longtable, xcolor, tikz"
+PACKAGES = "amsmath, amssymb, array, booktabs, longtable, multicol, xcolor, tikz"
 """What a document needs that takes in the body alone."""
+
+SIZES = r"\DeclareMathSizes{10.95}{10.95}{9}{7} % an index may bear a dot"
+"""Sizes of formulas and of indices, of which the usual ones are 8 and 6."""
 
 PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \ifdefined\pdfinfoomitdate % the same bytes whenever it is compiled
@@ -18,11 +21,12 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \usepackage[<babel>]{babel}
 \usepackage[expansion=false]{microtype}
 \usepackage{amsmath,amssymb}
-\usepackage{array,booktabs,longtable}
+\usepackage{array,booktabs,longtable,multicol}
 \usepackage[width=160mm,height=240mm]{geometry}
 \usepackage{xcolor,tikz}
 \usepackage[colorlinks,allcolors=blue!45!black]{hyperref}
 \hypersetup{pdftitle={<title>},pdflang={<language>},pdfcreator={satsym}}
+<sizes>
 \setlength{\jot}{6pt}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt plus 2pt}
@@ -62,6 +66,8 @@ MACROS = r"""\makeatletter
 % {lines}: a new page unless there is room for as many on this one
 \def\satsymroom#1{\par\penalty-100\begingroup\dimen@\pagegoal\advance\dimen@-\pagetotal
   \ifdim#1\baselineskip>\dimen@\ifdim\dimen@>\z@\vfil\fi\break\fi\endgroup}
+% begins equations in columns at the same height
+\def\satsymcolumns{\raggedcolumns\abovedisplayskip\z@\abovedisplayshortskip\z@\vspace*{-\baselineskip}}
 % keeps a list on one page
 \def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
 \makeatother
@@ -72,6 +78,7 @@ def preamble(texts: Texts, title: str) -> str:
     """All up to macros, in a language, for a document of that title, which is LaTeX."""
     fill = {"babel": texts.get("words", "babel"), "language": texts.language, "title": title}
     own = "" if texts.language == "en" else OWN
+    fill["sizes"] = SIZES
     fill["abstract"] = texts.get("words", "abstract")
     return re.sub("<([a-z]+)>", lambda hole: fill[hole[1]], PREAMBLE + own)
 

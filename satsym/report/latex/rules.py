@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import combinations
 
-from satsym.report.latex.steps import Context
+from satsym.report.latex.context import Context
 from satsym.report.texts import Texts
 from satsym.symbolic import Derivation, Step
 from satsym.symbolic.principle.notation import letter_of_parts

@@ -264,12 +264,12 @@ def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     ends: dict[str, tuple[str, str]] = {}
     for said in derivation.model.statement():
         fill = {"name": tex.name(said.of.name), "title": tex.escape(texts.phrase(said.of.title))} if said.of else {}
-        fill |= {"letter": tex.vector(said.letter)} if said.letter else {}
         shown: dict[str, list[Row]] = {}
         for line in said.lines:
             new, rows = _rows(line, texts, typeset), shown.setdefault(line.thing, [])
-            for k, row in enumerate(new, len(rows) + 1):
-                address = _address(derivation, line.address or f"{line.thing}.{k}")
+            for k, row in enumerate(new, 1):
+                own = f"{line.address}.{k}" if len(new) > 1 else line.address
+                address = _address(derivation, own if line.address else f"{line.thing}.{len(rows) + 1}")
                 rows.append(Row(address, row.left, row.right))
         equations = "\n" + display([row for rows in shown.values() for row in rows]) if shown else ""
         paragraphs.append(texts.get("statement", said.sentence, **fill) + equations)
@@ -283,6 +283,8 @@ def _rows(line: Line, texts: Texts, typeset: Typesetter) -> list[Row]:
     left += rf"_{{\text{{{tex.escape(texts.phrase(line.index))}}}}}" if line.index else ""
     if line.components:
         return _vector(left, [typeset.terms(component) for component in line.components])
+    if line.rows:
+        return [Row("", plain(left), plain(array([[typeset.tex(cell) for cell in row] for row in line.rows])))]
     return [Row("", plain(left), typeset.terms(line.right))]
 
 

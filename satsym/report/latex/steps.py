@@ -3,52 +3,65 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from satsym.report.latex import tex
-from satsym.report.latex.equations import LINE, Row, display
+from satsym.report.latex import bodies, tex
+from satsym.report.latex.context import Context, Shown, numbers_of, row_of
+from satsym.report.latex.equations import LINE, Row, also, display
+from satsym.report.latex.figure import phase_figure
 from satsym.report.latex.matrices import entries_are, is_mirrored, matrix_rows, with_matrices
 from satsym.report.latex.width import width
-from satsym.report.texts import Texts
-from satsym.symbolic import Conclusion, Derivation, Equation, Step
+from satsym.symbolic import Conclusion, Equation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import joined, plain
-from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.model import variables_of
 from satsym.symbolic.principle.path.notation import mixed, of_states, rate
 from satsym.symbolic.principle.transversality import on_a_reference
+from satsym.symbolic.switching.phase_plane import phase_plane
 
 LONGEST = 12
 """Lines of an equation that is shown where a step has several of no other use, at most."""
-
-
-@dataclass(frozen=True)
-class Context:
-    """What typesetting a step needs besides the step."""
-
-    derivation: Derivation
-    texts: Texts
-    typeset: Typesetter
-
-    def address(self, step: Step) -> str:
-        """The address of a step."""
-        return f"{self.derivation.name}:{step.name}"
-
-    def costates(self) -> list[str]:
-        """Names of the costates, in the order of the states."""
-        return [self.typeset.costate(v.symbol) for v in self.derivation.model.states]
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A step's equations in LaTeX, and the addresses of the first and the last that got numbers of their own."""
-
-    body: str
-    first: str
-    last: str
+FEW = 6
+"""Things that are zero on one line, at most; fewer have a line each."""
 
 
 def shown(context: Context, step: Step) -> Shown:
-    """Typeset the equations of a step."""
+    """Typeset the equations of a step, and its conclusions where they belong: after a group of them, or at the end."""
+    parts, ends, groups, appendix = [], [], groups_of(step), ""
+    for place, (equations, conclusions) in enumerate(groups):
+        if place and equations:
+            parts.append("\n" + next_group(context, step, equations[0]))
+        if equations:
+            found = _equations_of(context, replace(step, equations=equations))
+            parts.append(found.body)
+            ends += [found.first, found.last]
+            appendix += found.appendix
+        parts += [conclusion(context, one) for one in conclusions]
+    return Shown("\n".join(parts), ends[0], ends[-1], appendix)
+
+
+def groups_of(step: Step) -> list[tuple[tuple[Equation, ...], tuple[Conclusion, ...]]]:
+    """Return the equations of a step up to each one after which something is concluded, with what is."""
+    said: dict[str, list[Conclusion]] = {}
+    for one in step.conclusions:
+        said.setdefault(one.after, []).append(one)
+    groups: list[tuple[tuple[Equation, ...], tuple[Conclusion, ...]]] = []
+    waiting: list[Equation] = []
+    for equation in step.equations:
+        waiting.append(equation)
+        if equation.name in said:
+            groups.append((tuple(waiting), tuple(said[equation.name])))
+            waiting = []
+    return [*groups, (tuple(waiting), tuple(said.get("", ())))]
+
+
+def next_group(context: Context, step: Step, first: Equation) -> str:
+    """Introduce the next group of equations of a step, which is about what its first equation is named after."""
+    named = next(v.latex for v in variables_of(context.derivation.model) if v.symbol == first.name)
+    return context.texts.get("groups", f"{step.name}_alone", port=named)
+
+
+def _equations_of(context: Context, step: Step) -> Shown:
     found = with_matrices(context.derivation, step, context.texts, context.typeset)
     if found:
         body, addresses = found
@@ -88,14 +101,14 @@ def _once(rows: Sequence[Row]) -> Shown:
     shown = list(first.values())
     found = _display(shown)
     return replace(
-        found, body="\n".join([found.body, *_also(shown, [pair for pair in same if pair[0] is not pair[1]])])
+        found, body="\n".join([found.body, *_repeated(shown, [pair for pair in same if pair[0] is not pair[1]])])
     )
 
 
-def _also(shown: Sequence[Row], same: Sequence[tuple[Row, Row]]) -> list[str]:
+def _repeated(shown: Sequence[Row], same: Sequence[tuple[Row, Row]]) -> list[str]:
     """Labels of rows that are not shown, at the numbers of shown ones that say the same."""
     places = {row.address: k for k, row in enumerate(reversed(shown))}
-    return [rf"\satsymalso{{{places[old.address]}}}{{{tex.label(row.address)}}}%" for row, old in same]
+    return [also(places[old.address], [row.address]) for row, old in same]
 
 
 def _with_whole_matrices(context: Context, step: Step) -> Shown:
@@ -222,7 +235,7 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
     if problem.terminal_inequalities:
         parts.append(texts.get("boundary", "inequalities"))
     rows = [row for group in groups.values() for row in group]
-    return Shown("\n".join(parts), rows[0].address, rows[-1].address)
+    return Shown("\n" + "\n".join(parts), rows[0].address, rows[-1].address)
 
 
 def _transfer_functions(context: Context, step: Step) -> Shown:
@@ -249,6 +262,15 @@ def _smoothed(context: Context, step: Step) -> Shown:
     return _display([replace(row, left=marked.get(str(left), row.left)) for row, left in rows])
 
 
+def _with_phase_plane(context: Context, step: Step) -> Shown:
+    """The law of the state, and a picture of what it does."""
+    found = _display([row_of(context, step, e) for e in step.equations])
+    plane = phase_plane(context.derivation)
+    assert plane is not None
+    label = tex.label(f"{context.derivation.name}:figure.{step.name}")
+    return replace(found, body=f"{found.body}\n{phase_figure(plane, context.typeset.symbol, context.texts, label)}")
+
+
 def _shorter(context: Context, step: Step) -> Shown:
     """Without equations that take a good part of a page, which have the number of the one before."""
     rows = [row_of(context, step, e) for e in step.equations]
@@ -260,7 +282,20 @@ def _shorter(context: Context, step: Step) -> Shown:
     words = context.texts.get("groups", "omitted", listed=named)
     before = [(row, ([s for s in rows[: rows.index(row)] if s in shown] or shown)[-1]) for row in left]
     found = _once(shown)
-    return replace(found, body="\n".join([found.body, *_also(shown, before), words]))
+    return replace(found, body="\n".join([found.body, *_repeated(shown, before), words]))
+
+
+def _zeros_together(context: Context, step: Step) -> Shown:
+    """Several things that are zero on one line; the others as they stand."""
+    rows = [(row_of(context, step, e), context.typeset.is_zero(e.rhs)) for e in step.equations]
+    zero, others = ([row for row, vanishes in rows if vanishes is kept] for kept in (True, False))
+    if len(zero) < FEW:
+        return _as_they_stand(context, step)
+    lines = [zero[k : k + FEW] for k in range(0, len(zero), FEW)]
+    shown = [replace(line[0], left=plain(" = ".join(row.left_tex for row in line))) for line in lines]
+    labels = [also(len(lines) - 1 - k, [row.address for row in line[1:]]) for k, line in enumerate(lines)]
+    body = "\n".join([*([display(others)] if others else []), display(shown), *filter(None, labels)])
+    return Shown(body, (others or shown)[0].address, shown[-1].address)
 
 
 def _vectors(context: Context, step: Step) -> Shown:
@@ -288,14 +323,14 @@ LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     "transfer_function": _transfer_functions,
     "poles_and_zeros": _poles,
     "smoothed_law": _smoothed,
+    "switching_feedback": _with_phase_plane,
+    "kinematics": bodies.kinematics,
+    "kane": bodies.kane,
+    "first_order": bodies.first_order,
+    "reference": _zeros_together,
+    "invariant_motions": _zeros_together,
     "lqr_costates": _costate_equations,
 }
-
-
-def numbers_of(first: str, last: str) -> str:
-    """The equation number of an address, or the range of two."""
-    ends = dict.fromkeys((tex.label(first), tex.label(last)))
-    return r"\mbox{--}".join(rf"\eqref{{{label}}}" for label in ends)
 
 
 def _derivative(by: str) -> str:
@@ -304,10 +339,3 @@ def _derivative(by: str) -> str:
 
 def _display(rows: Sequence[Row]) -> Shown:
     return Shown(display(rows), rows[0].address, rows[-1].address)
-
-
-def row_of(context: Context, step: Step, equation: Equation, also: str = "", typeset: Typesetter | None = None) -> Row:
-    """An equation as it stands, or in the notation of another typesetter."""
-    typeset = typeset or context.typeset
-    left, right = typeset.terms(equation.lhs), typeset.terms(equation.rhs)
-    return Row(f"{context.address(step)}.{equation.name}", left, right, also)

@@ -108,11 +108,6 @@ def _character(c: str) -> str:
     return c if c in "ßæÆøØœŒłŁðÐþÞđĐı" else rf"\texttt{{U+{ord(c):04X}}}"
 
 
-def vector(letter: str) -> str:
-    """A letter as that of a vector."""
-    return rf"\{'boldsymbol' if letter.startswith(chr(92)) else 'mathbf'}{{{letter}}}"
-
-
 def unit(text: str) -> str:
     """A unit such as ``km**3/s**2``, upright; an en dash for a pure number."""
     if text.strip() in ("", "1"):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-SCRIPT = 0.72
+SCRIPT = 0.82
 """Size of sub- and superscripts."""
 
 _TOKEN = re.compile(r"\\[A-Za-z]+\*?|\\.|.", re.DOTALL)

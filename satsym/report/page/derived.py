@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from satsym.report.display import unit_text
@@ -11,11 +12,12 @@ from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.html.mathml import math
 from satsym.report.latex import tex
 from satsym.report.latex.checks import checked
+from satsym.report.latex.context import Context
 from satsym.report.latex.document import SECTION_FROM, in_language
 from satsym.report.latex.equations import broken
 from satsym.report.latex.rules import listed_sources, rule
 from satsym.report.latex.statement import admissible, conditions
-from satsym.report.latex.steps import Context, conclusion
+from satsym.report.latex.steps import conclusion, groups_of, next_group
 from satsym.report.latex.width import width
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.said import decimal
@@ -149,15 +151,18 @@ class Derived:
         title = texts.get("titles", step.name)
         stated = prose(rule(self._context, step, self._sources(step)), self._numbers)
         self._numbers[label] = str(number)
-        equations = [self._equation(*line) for line in self._lines(step)]
-        said = [tag("p", prose(conclusion(self._context, one), self._numbers)) for one in step.conclusions]
+        body: list[Markup] = []
+        for place, (equations, conclusions) in enumerate(groups_of(step)):
+            if place and equations:
+                body.append(tag("p", prose(next_group(self._context, step, equations[0]), self._numbers)))
+            body += [self._equation(*line) for line in self._lines(replace(step, equations=equations))]
+            body += [tag("p", prose(conclusion(self._context, one), self._numbers)) for one in conclusions]
         checks = [tag("li", prose(checked(texts, check), {})) for check in step.checks]
         return tag(
             "details",
             tag("summary", tag("h4", f"{texts.get('words', 'step')} {number}. {title}")),
             tag("div", stated, class_="rule"),
-            *equations,
-            *said,
+            *body,
             tag("ul", *checks, class_="checks", aria_label=texts.get("page", "checked")),
             class_="step",
             id=label,

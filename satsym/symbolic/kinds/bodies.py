@@ -63,6 +63,10 @@ class Bodies(Model):
     varied: str = ""
     modes: tuple[ModeGroup, ...] = ()
 
+    def direction_cosines(self) -> sp.Matrix | None:
+        """As stated."""
+        return self.attitude
+
     def mode_groups(self) -> tuple[ModeGroup, ...]:
         """Return the mode groups as they were stated."""
         return self.modes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, Literal
 
 import sympy as sp
@@ -74,7 +75,8 @@ def _reach_step(so_far: Derivation, kind: Kind) -> Step | None:
     for name, port in groups.items():
         found = controllability_of(of, port) if kind == "controllability" else observability_of(of, port)
         equations += _equations(so_far, kind, name, found, of.closed_form)
-        conclusions += _conclusions(kind, name or (ports[0] if len(ports) == 1 else ""), found, of)
+        said = _conclusions(kind, name or (ports[0] if len(ports) == 1 else ""), found, of)
+        conclusions += [replace(one, after=equations[-1].name) for one in said]
         ranks.append((found.matrix, found.rank))
         modes += [(port, mode) for mode in found.lost]
         forms += [(port, found.kalman)] if found.kalman else []

@@ -10,7 +10,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, gradient, simplified, simplify, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
-from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kepler.central_force import inertial_velocity, uncontrolled_force
 from satsym.symbolic.model import Particle, symbols_of, t
 
@@ -94,9 +94,23 @@ def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> 
 def linearisation(so_far: Derivation) -> Step:
     """Jacobians A = f_x and B = f_u along any motion."""
     model = so_far.model
-    states, rates = symbols_of(model.states), list(so_far.rhs("first_order"))
-    equations, check = jacobians(rates, states, {"A": states, "B": symbols_of(model.controls)}, tidy, {})
-    return Step("linearisation", "differentiate rates", equations, ("first_order",), (check,))
+    states, controls, rates = symbols_of(model.states), symbols_of(model.controls), list(so_far.rhs("first_order"))
+    equations, check = jacobians(rates, states, {"A": states, "B": controls}, tidy, {})
+    norms = _vanishing_divisors([e.rhs for e in equations], controls)
+    said = (Conclusion("divided by a norm", {"norms": sp.Tuple(*norms)}),) if norms else ()
+    return Step("linearisation", "differentiate rates", equations, ("first_order",), (check,), said)
+
+
+def _vanishing_divisors(entries: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    """Return norms of controls by which entries divide: roots that vanish where the controls do."""
+    off = dict.fromkeys(controls, sp.Integer(0))
+    bases = {
+        power.base
+        for entry in entries
+        for power in entry.atoms(sp.Pow)
+        if power.exp.is_negative and not power.exp.is_integer and power.base.free_symbols & off.keys()
+    }
+    return sorted((sp.sqrt(base) for base in bases if base.xreplace(off) == 0), key=sp.default_sort_key)
 
 
 def jacobians(
