@@ -3,8 +3,8 @@
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 47892e2104e77649baa2cff9aa6652390b266da55f86465cafbc89509a358858
+Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
+Digest: 7db3a1521621635b29f18a5585abb355ad370f2eb7e688e4ab8300f0bed9b5e9
 """
 
 import math
@@ -25,7 +25,7 @@ MODEL = {
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'radial thrust per unit mass'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'tangential thrust per unit mass'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'transverse thrust per unit mass'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},

@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/inspection.py. Do not edit: mend tha
     satsym derive derivations/examples/inspection.py
 Source: ../derivations/examples/inspection.py ea44ba41bc01ebbda8bec5ed189f09d4
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: cf006c18ac3365472ee25bc895f0b133afe4ef6cf97393da5d431722c7a650c3
+Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
+Digest: 10286cb81981cd569c9861396335f16992631ddc1285bd82c6342c26ba05b1d2
 """
 
 import math
@@ -26,7 +26,7 @@ MODEL = {
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'radial thrust per unit mass'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'tangential thrust per unit mass'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'transverse thrust per unit mass'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: f0dfd49872793630b8746af2e158ddca600c8093487b62c4862771a52e032c87
+Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
+Digest: ac67baa93f55b5f07eba4eb2a55ae3e1e7bb59daa3e87b917a4f1086c73a07cf
 """
 
 import math
@@ -24,7 +24,7 @@ MODEL = {
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'radial thrust per unit mass'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'tangential thrust per unit mass'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'transverse thrust per unit mass'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},

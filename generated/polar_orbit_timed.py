@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: ea60fb8abc927c413a618e4f0fbdea049057e70ad3d1d5b5289f8e3d47eab3c6
+Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
+Digest: 77868c4d6f5f6e30bbd52aaafe4ad5be3360209c5d21bc1b21efda23f0a1749c
 """
 
 import math
@@ -24,13 +24,13 @@ MODEL = {
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'radial thrust per unit mass'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'tangential thrust per unit mass'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'transverse thrust per unit mass'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
-        {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the tangential thrust', 'default': 1.0, 'positive': True},
+        {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the transverse thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'k1', 'latex': 'k_1', 'unit': '1/s**3', 'meaning': 'terminal weight of the distance', 'default': 0.0},
         {'symbol': 'k2', 'latex': 'k_2', 'unit': '1/s', 'meaning': 'terminal weight of the radial velocity', 'default': 0.0},
         {'symbol': 'k3', 'latex': 'k_3', 'unit': 'km**2/s**3', 'meaning': 'terminal weight of the angle', 'default': 0.0},

@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
     satsym derive derivations/examples/kept_orbit.py
 Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py a0a0838ca384971e9b24675f4ae88528
-Digest: 8a0d007218ce51c2cbedc5f4f7226f34dd16be98d26c84f3d5cbabf3f690b310
+Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
+Digest: ec7859fe1623935c379b71fe89b5bbb031f225b9d21af13b31027ba7cfa01b6a
 """
 
 import math
@@ -26,13 +26,13 @@ MODEL = {
     ),
     'controls': (
         {'symbol': 'u1', 'latex': 'u_1', 'unit': 'km/s**2', 'meaning': 'radial thrust per unit mass'},
-        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'tangential thrust per unit mass'},
+        {'symbol': 'u2', 'latex': 'u_2', 'unit': 'km/s**2', 'meaning': 'transverse thrust per unit mass'},
     ),
     'parameters': (
         {'symbol': 'sigma', 'latex': '\\sigma', 'unit': 'km', 'meaning': 'radius of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'omega', 'latex': '\\omega', 'unit': 'rad/s', 'meaning': 'angular velocity of the reference orbit', 'default': 1.0, 'positive': True},
         {'symbol': 'c1', 'latex': 'c_1', 'meaning': 'weight of the radial thrust', 'default': 1.0, 'positive': True},
-        {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the tangential thrust', 'default': 1.0, 'positive': True},
+        {'symbol': 'c2', 'latex': 'c_2', 'meaning': 'weight of the transverse thrust', 'default': 1.0, 'positive': True},
         {'symbol': 'r_min', 'latex': 'r_{\\min}', 'unit': 'km', 'meaning': 'minimum distance from the centre of force', 'positive': True},
     ),
     'control_set': 'free',
