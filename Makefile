@@ -93,7 +93,7 @@ check-pages: $(VENV)/installed-pages docs  ## look for what keeps people from us
 	$(BIN)/python .ci/pages.py
 
 clean:  ## remove the environment, results and caches
-	rm -rf $(VENV) results build docs/_build docs/_static/gallery docs/_static/figures docs/reference docs/gallery docs/gallery.md docs/notebook.md *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) results build docs/_build docs/_static/gallery docs/_static/figures docs/reference docs/gallery docs/gallery.md docs/notebook*.md *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One environment for everything, made again only when pyproject.toml changes.

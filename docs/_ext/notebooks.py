@@ -1,12 +1,16 @@
 """Notebooks as pages: each cell with what it ends with, as a notebook shows that."""
 
 import ast
+import io
 import json
 from pathlib import Path
+from pprint import pformat
+from typing import Any
 
+from gallery import themed
 from sphinx.application import Sphinx
 
-NOTEBOOKS = ("notebook",)
+NOTEBOOKS = ("notebook", "notebook_class", "notebook_system", "notebook_study")
 
 
 def page(name: str, path: Path) -> str:
@@ -32,12 +36,23 @@ def shown(source: str, known: dict[str, object]) -> str:
         exec(compile(ast.Module([last], []), "notebook", "exec"), known)  # noqa: S102
         return ""
     value = eval(compile(ast.Expression(last.value), "notebook", "eval"), known)  # noqa: S307
+    if hasattr(value, "savefig"):
+        return drawn(value)
     if hasattr(value, "_repr_html_"):
         return f"```{{raw}} html\n<div class='cell wide' tabindex='0'>{value._repr_html_()}</div>\n```"
     if hasattr(value, "_repr_latex_"):
         tex = value._repr_latex_().strip("$").removeprefix(r"\displaystyle ")
         return f"$$\n{tex}\n$$"
-    return "" if value is None else f"```text\n{value!r}\n```"
+    return "" if value is None else f"```text\n{value if isinstance(value, str) else pformat(value, width=100)}\n```"
+
+
+def drawn(figure: Any) -> str:
+    """A figure, dark where its reader's pages are."""
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", metadata={"Date": None})
+    svg = themed(stream.getvalue())
+    label = "The figure that this cell ends with"
+    return f"```{{raw}} html\n<figure class='example' role='img' aria-label='{label}'>{svg}</figure>\n```"
 
 
 def _write(app: Sphinx) -> None:

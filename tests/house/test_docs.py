@@ -17,7 +17,8 @@ from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
 READMES = [DOCS.parent / "README.md", DOCS.parent / "README.id.md"]
-PAGES = [DOCS / "start.md", DOCS / "howto.md", DOCS / "asked.md", *sorted((DOCS / "tutorials").glob("*.md"))]
+SINGLE = ("start", "howto", "asked", "models_without_cost")
+PAGES = [*(DOCS / f"{name}.md" for name in SINGLE), *sorted((DOCS / "tutorials").glob("*.md"))]
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -133,6 +134,31 @@ def test_the_notebook_runs_from_top_to_bottom_and_shows_what_each_cell_ends_with
     assert costlier
 
 
+def test_all_notebooks_are_pages() -> None:
+    stated = re.search(r"^NOTEBOOKS = (.*)$", (DOCS / "_ext" / "notebooks.py").read_text("utf-8"), re.MULTILINE)
+    assert set(ast.literal_eval(stated[1])) == {path.stem for path in DOCS.glob("*.ipynb")}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["class", "system", "study"])
+def test_the_other_notebooks_run_and_every_cell_ends_with_something(name: str) -> None:
+    cells = json.loads((DOCS / f"notebook_{name}.ipynb").read_text(encoding="utf-8"))["cells"]
+    known: dict[str, Any] = {}
+    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
+        *before, last = ast.parse(source).body
+        assert isinstance(last, ast.Expr)
+        exec(compile(ast.Module(before, []), "notebook", "exec"), known)  # noqa: S102
+        assert eval(compile(ast.Expression(last.value), "notebook", "eval"), known) is not None  # noqa: S307
+    if name == "class":
+        assert known["answer"].verdict == "wrong"
+    if name == "system":
+        assert known["solution"].certificate.verdict.value == "certified"
+        assert "1/[time]" in known["refusal"]
+    if name == "study":
+        cheapest = min(zip(known["found"]["objective"], known["found"]["initial.r"], strict=True))[1]
+        assert 1.04 < float(cheapest) < 0.9 ** (-2 / 3)
+
+
 def test_the_readmes_show_the_same_commands() -> None:
     english, indonesian = ((DOCS.parent / name).read_text(encoding="utf-8") for name in ("README.md", "README.id.md"))
     blocks = ("".join(re.findall(r"```sh\n(.*?)```", text, re.DOTALL)) for text in (indonesian, english))
@@ -146,6 +172,6 @@ def test_the_readmes_show_the_same_commands() -> None:
 def test_every_page_is_in_the_table_of_contents() -> None:
     listed = re.findall(r"^(?!:)([\w./]+)$", (DOCS / "index.md").read_text(encoding="utf-8"), re.MULTILINE)
     there = [path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")]
-    written = {"gallery", "notebook", "reference/commands", "reference/python"}
+    written = {"gallery", *(path.stem for path in DOCS.glob("*.ipynb")), "reference/commands", "reference/python"}
     by_hand = {name for name in there if not name.startswith(("_", "gallery/"))} - {"index"}
     assert set(listed) == by_hand | written
