@@ -128,7 +128,7 @@ METHODS = {
         Method("linear", "closed-form solution of linear canonical equations", "satsym.solvers.linear:solve"),
         Method(
             "bang-bang",
-            "exact arcs, for controls without a cost of their squares",
+            "exact arcs, for controls whose squares do not enter the cost",
             "satsym.solvers.by_search:bang_bang",
             switching=True,
             automatic=True,

@@ -149,7 +149,7 @@ def _require_same(
     more = "".join(f" --set {printable(name)}={value!r}" for name, value in (settings or {}).items())
     if (written.model, written.instance) != (model, own):
         theirs = printable(f"{written.instance or written.model} (model {written.model})")
-        raise unusable(listing, f"is of {theirs}, not of {own or model} (model {model})", found.command, more)
+        raise unusable(listing, f"belongs to {theirs}, not to {own or model} (model {model})", found.command, more)
     file = file_of(given) if given else None
     if file and written.instance_file and file["digest"] != written.instance_file.digest:
-        raise unusable(listing, f"is of {own} before its file was changed", found.command, more)
+        raise unusable(listing, f"was made from {own} before its file was changed", found.command, more)

@@ -99,7 +99,7 @@ class Point:
             return self._power(self.value(node.base), constant(node.exponent))
         if isinstance(node, Call):
             return self.value_of_call(node)
-        raise NoValue(f"{type(node).__name__} is no formula")
+        raise NoValue(f"{type(node).__name__} is not a formula")
 
     def symbol(self, name: str) -> int:
         """The value of a symbol."""
@@ -172,7 +172,7 @@ class Point:
         for key, (real, imaginary) in terms.coefficients.items():
             if key == HALF_TURNS:
                 if real or (2 * imaginary).denominator != 1:
-                    raise NoValue("an angle that is no multiple of a right one")
+                    raise NoValue("an angle that is not a multiple of a right one")
                 product = product * pow(IMAGINARY, int(2 * imaginary), PRIME) % PRIME
                 continue
             for kind, fraction in (("grows", real * PARTS), ("turns", imaginary * PARTS)):

@@ -68,7 +68,7 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
         try:
             asked = np.asarray(t, dtype=float)
         except (TypeError, ValueError):
-            raise BadInput(f"{self._what}: {shown(t)} is no time; give a number, or an array of numbers") from None
+            raise BadInput(f"{self._what}: {shown(t)} is not a time; give a number, or an array of numbers") from None
         begin, end = float(self._times[0]), float(self._times[-1])
         room = ROUNDING * (end - begin)
         outside = asked[~((asked >= begin - room) & (asked <= end + room))]

@@ -192,7 +192,7 @@ def as_case(given: Instance | str | Path) -> Instance:
     if isinstance(given, str | Path):
         return load(given)
     raise BadInput(
-        f"{shown(given)} is no instance; make one with Instance.of(model, initial=..., tf=...), or load(...) one"
+        f"{shown(given)} is not an instance; make one with Instance.of(model, initial=..., tf=...), or load(...) one"
     )
 
 
@@ -216,5 +216,5 @@ def _kernels(model: Any) -> Kernels | None:
 def _checked(name: str) -> str:
     """A name that files of results can have."""
     if not isinstance(name, str) or not _NAME.match(name):
-        raise BadInput(f"name: {shown(name)} is no name for an instance; write letters, digits, hyphens and dots")
+        raise BadInput(f"name: {shown(name)} is not a name for an instance; write letters, digits, hyphens and dots")
     return name

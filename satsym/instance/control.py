@@ -56,7 +56,7 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
     switched = (
         c for part in spec.control_parts if part.branch in SWITCHED and part.kind == "box" for c in part.controls
     )
-    needed |= dict.fromkeys(switched, "this control enters without a square")
+    needed |= dict.fromkeys(switched, "the square of this control is not in the cost")
     for name, reason in needed.items():
         if not math.isfinite(lower[name]) or not math.isfinite(upper[name]):
             raise BadInput(f"[control] {name}: {reason}, so it needs both bounds; write {name} = [lower, upper]")
@@ -82,7 +82,7 @@ def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
     for part in spec.control_parts:
         if part.branch != "quadratic" and part.normed and part.name not in norms:
             raise BadInput(
-                f"[control.{part.name}]: nothing limits {', '.join(part.controls)}, which cost no square; "
+                f"[control.{part.name}]: nothing limits {', '.join(part.controls)}, whose squares are not in the cost; "
                 f"write {MAX_NORM} = a number"
             )
 

@@ -162,7 +162,7 @@ def text(path: Path) -> str:
     except UnicodeDecodeError as error:
         raise BadInput(f"not UTF-8 text (byte {error.start}); save it as UTF-8") from None
     if "\0" in found:
-        raise BadInput("holds NUL characters, so it is no text; give the path of a TOML file")
+        raise BadInput("holds NUL characters, so it is not text; give the path of a TOML file")
     return found
 
 

@@ -108,7 +108,7 @@ def _model(model: str, folder: Path) -> Kernels:
     from satsym import kernels
 
     if not model or not model.isprintable():
-        raise BadInput(f'model: {shown(model)} is no name; write a model\'s name, such as "polar_orbit"')
+        raise BadInput(f'model: {shown(model)} is not a name; write a model\'s name, such as "polar_orbit"')
     try:
         return kernels.load(model, folder)
     except BadInput as error:
@@ -169,9 +169,11 @@ def _refuse_beside_limits(instance: Instance) -> None:
     for name in instance.end_limits:
         if instance.free:
             key = instance.free[0].key
-            raise BadInput(f'{key}: "{resolve.FREE}" is not solved beside limits of the end ({name}); write a number')
+            raise BadInput(
+                f'{key}: "{resolve.FREE}" cannot be combined with limits at the end ({name}); write a number'
+            )
         if instance.continuation:
-            raise BadInput(f"[continuation]: is not done beside limits of the end ({name}); leave it out")
+            raise BadInput(f"[continuation]: cannot be combined with limits at the end ({name}); leave it out")
 
 
 def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptions | None:
@@ -271,7 +273,7 @@ def driven(table: DrivenTable | None, spec: ProblemSpec) -> DrivenOptions | None
         have = ", ".join(spec.control_names) or "none"
         raise BadInput(f"[driven] control: the model has no control {shown(table.control)}; controls here: {have}")
     if not table.by:
-        raise BadInput("[driven] by: an empty list; name at least one instance that works the control out")
+        raise BadInput("[driven] by: an empty list; name at least one instance that determines the control")
     return DrivenOptions(table.control, tuple(table.by))
 
 

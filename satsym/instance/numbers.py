@@ -71,7 +71,7 @@ class Key:
         place = place or self.text
         if isinstance(given, str) and given.lstrip().startswith("["):
             raise BadInput(
-                f"{place}: {shown(given)} is no number; ranges and bounds are set in the instance file alone"
+                f"{place}: {shown(given)} is not a number; ranges and bounds are set in the instance file alone"
             )
         if self.table is Table.TIME:
             return time(given, place, spec)
@@ -91,7 +91,7 @@ class Key:
         else:
             number = quantity(given, self.unit(spec), self.text)
         if number <= 0.0:
-            raise BadInput(f"{self.text}: {shown(given)} is no standard deviation; write a positive number")
+            raise BadInput(f"{self.text}: {shown(given)} is not a standard deviation; write a positive number")
         return number
 
     def of(self, instance: Instance) -> float | None:

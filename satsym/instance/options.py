@@ -25,7 +25,7 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
     for name in options.free_angles:
         if name not in [v.symbol for v in angles]:
             have = ", ".join(v.symbol for v in angles) or "none"
-            raise BadInput(f"[solver] free_angles: {shown(name)} is no angle among the states; angles here: {have}")
+            raise BadInput(f"[solver] free_angles: {shown(name)} is not an angle among the states; angles here: {have}")
     _no_repetition(options.free_angles, "[solver] free_angles")
     refuse_too_many_steps(options, spec)
     return options

@@ -134,7 +134,7 @@ def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
     key, given = f"[lqr.allowed] {variable.symbol}", allowed[variable.symbol]
     deviation = quantity(given, variable.unit, key)
     if not 1e-100 < deviation < 1e100:
-        raise BadInput(f"{key}: {shown(given)} is no allowed deviation; write a positive one")
+        raise BadInput(f"{key}: {shown(given)} is not an allowed deviation; write a positive one")
     return 1.0 / deviation**2
 
 

@@ -272,7 +272,7 @@ class Body:
 def _kind(node: ast.AST) -> str:
     """What a reader calls a node, as far as Python has a word for it."""
     if isinstance(node, ast.Constant):
-        return f"a constant that is no float, but {type(node.value).__name__}"
+        return f"a constant that is not a float, but {type(node.value).__name__}"
     if isinstance(node, ast.Name):
         return "a name without a value here"
     return type(node).__name__

@@ -47,9 +47,9 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
             warnings.simplefilter("ignore")  # they would print lines of the file
             body = ast.parse(text).body
     except SyntaxError as error:
-        raise Unexpected(error.lineno or 1, f"is no Python ({error.msg})") from None
+        raise Unexpected(error.lineno or 1, f"is not Python ({error.msg})") from None
     except ValueError:  # NUL characters, up to Python 3.11
-        raise Unexpected(1, "or a later one is no text") from None
+        raise Unexpected(1, "or a later one is not text") from None
     opening = len(_IMPORTS) + 2
     docstring, *imports = body[: opening - 1] or [ast.Pass()]
     _docstring(docstring)
@@ -91,7 +91,7 @@ def _literal(node: ast.AST) -> None:
         case ast.Dict(keys=keys, values=values):
             for key in keys:
                 if not (isinstance(key, ast.Constant) and isinstance(key.value, str)):
-                    refuse(node, "has a table with a key that is no text")
+                    refuse(node, "has a table with a key that is not text")
             for value in values:
                 _literal(value)
         case ast.Tuple(elts=values):
@@ -108,7 +108,7 @@ def _literal(node: ast.AST) -> None:
         case ast.Constant(value=None):
             pass
         case _:
-            refuse(node, "has something in MODEL that is no plain value")
+            refuse(node, "has something in MODEL that is not a plain value")
 
 
 def _fault(spec: ProblemSpec) -> str:
@@ -153,7 +153,7 @@ def _functions(nodes: list[ast.stmt], spec: ProblemSpec) -> list[ast.FunctionDef
     simple, looping, counts = pointwise(spec), loops(spec), sizes(spec)
     for node in nodes:
         if not isinstance(node, ast.FunctionDef):
-            refuse(node, "is no function")
+            refuse(node, "is not a function")
         name = node.name.removesuffix(BATCH)
         batch = name != node.name
         if node.name in found or (name not in simple and (batch or name not in looping)):

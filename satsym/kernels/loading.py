@@ -113,12 +113,13 @@ def check_name(name: str) -> None:
 
 
 def _unknown(model: str) -> str:
-    return f"{shown(model)} is no shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
+    return f"{shown(model)} is not a shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
 
 
 def _refuse_ending(model: str) -> NoReturn:
     raise BadInput(
-        f"{shown(model)}: leave out the ending .py; a model is a module that `satsym derive` wrote, no derivation file"
+        f"{shown(model)}: leave out the ending .py; a model is a module that `satsym derive` wrote, "
+        "not a derivation file"
     )
 
 

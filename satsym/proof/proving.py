@@ -179,7 +179,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR:
-        raise NotProved("the answer is no extremal: the nearest one has other costates")
+        raise NotProved("the answer is not an extremal: the nearest one has other costates")
     return shooting, place
 
 

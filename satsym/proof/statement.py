@@ -292,7 +292,7 @@ def refuse(case: Instance) -> None:
     if spec.control_set not in ("free", "box", "ball", "product"):
         raise BeyondProof(f"a control set of the kind {spec.control_set}")
     if spec.switching and spec.control_set != "box":
-        raise BeyondProof("controls that switch in a set that is no box")
+        raise BeyondProof("controls that switch in a set that is not a box")
     if spec.control_set != "product":
         return
     if len(spec.control_parts) != 1 or len(spec.control_parts[0].controls) != len(spec.controls):

@@ -108,7 +108,7 @@ def _decoded(path: Path, _: int, __: int) -> Record:
         why = printable(" ".join(str(error).split()))
         raise BadInput(f"{printable(str(path), 200)}: no record of a derivation ({why}); derive it again") from None
     if found.format != FORMAT:
-        raise BadInput(f"{printable(str(path), 200)}: is of another version of satsym; derive it again")
+        raise BadInput(f"{printable(str(path), 200)}: comes from another version of satsym; derive it again")
     return found
 
 

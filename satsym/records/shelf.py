@@ -28,12 +28,12 @@ def place_of(model: str, beside: Path) -> tuple[Path | None, str]:
     folder, slash, name = model.removesuffix(record.SUFFIX).rpartition("/")
     if not is_name(name):
         raise BadInput(
-            f'{shown(model)} is no model; write the name of one, or "DIR/NAME" after satsym derive --out DIR'
+            f'{shown(model)} is not a model; write the name of one, or "DIR/NAME" after satsym derive --out DIR'
         )
     try:
         return (beside / folder if slash else None), name
     except (OSError, ValueError):
-        raise BadInput(f"{shown(model)} is no path") from None
+        raise BadInput(f"{shown(model)} is not a path") from None
 
 
 @contextmanager

@@ -140,7 +140,8 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
         for name in (study.table.file, TRAJECTORIES.format(0), LIST):
             if (folder / name).exists() and name not in known:  # it would be lost
                 raise BadInput(
-                    f"{printable(str(folder))}: holds {name}, which is of no study; give another folder, or remove it"
+                    f"{printable(str(folder))}: holds {name}, which belongs to no study; "
+                    "give another folder, or remove it"
                 )
         return
     if not resume:
@@ -203,10 +204,12 @@ def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[di
     from satsym.report.plots import studies as plots
 
     if sets.written_at(folder) is None:
-        raise BadInput(f"{printable(str(folder))}: that study is not done; go on with it: `satsym study X --resume`")
+        raise BadInput(
+            f"{printable(str(folder))}: that study is not finished; go on with it: `satsym study X --resume`"
+        )
     found = sets.read(folder)
     if found.command != STUDY or path_of(folder).name not in found.listed:
-        raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, and no study")
+        raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, not a study")
     said: dict[str, Any] = json.loads(found.result)
     pictures = plots.pictures(studies.numbers(path_of(folder), said), look)
     if out is None or out.resolve() == folder.resolve():

@@ -119,7 +119,7 @@ def _option(name: str, command: Command, given: StudyTable, stated: StudyTable) 
             return value
         if value and binding:
             wanted = " or ".join(f'"{each.value}"' for each in OF_COMMANDS[name])
-            raise BadInput(f'{name}: is for {wanted}, and this study is of "{command.value}"; remove it')
+            raise BadInput(f'{name}: applies to {wanted}, but this study runs "{command.value}"; remove it')
     return None
 
 

@@ -56,7 +56,7 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     logarithmic = text.startswith("log:")
     parts = text.removeprefix("log:").split(":")
     if len(parts) != 3 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is no range; write {RANGE}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a range; write {RANGE}")
     low, high = (_value(key, part, instance) for part in parts[:2])
     count = _count(parts[2], f"{key.text}: {shown(text)}")
     if logarithmic and not min(low, high) > 0.0:
@@ -70,7 +70,7 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
     key = keys.find(name, instance)
     parts = text.split(",")
     if len(parts) != 2 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is no {kind} distribution; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a {kind} distribution; write {PAIR[kind]}")
     first = _value(key, parts[0], instance)
     if kind == "normal":
         return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
@@ -82,7 +82,7 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
 
 def _sample(asked: StudyTable, distributions: tuple[Distribution, ...]) -> Sample:
     if asked.sample is None:
-        raise BadInput("how many rows to draw is not said; write --sample N")
+        raise BadInput("the number of rows to draw is missing; write --sample N")
     return Sample(distributions, asked.sample, Sampling(asked.method or Sampling.SOBOL), asked.seed or 0)
 
 
@@ -113,7 +113,7 @@ def _count(text: str, place: str) -> int:
     except ValueError:
         count = 0
     if not 1 <= count <= MOST_ROWS:
-        raise BadInput(f"{place}: {shown(text)} is no number of values; write a whole number from 1 to {MOST_ROWS}")
+        raise BadInput(f"{place}: {shown(text)} is not a number of values; write a whole number from 1 to {MOST_ROWS}")
     return count
 
 

@@ -102,7 +102,9 @@ def _refuse_interior(problem: Problem) -> None:
     """Refuse points on the way that are stated otherwise than by name, or beside what excludes them."""
     stated, what = problem.interior, f"{problem.name}: interior"
     if not isinstance(stated, Mapping) or not all(isinstance(one, tuple) and one for one in stated.values()):
-        raise DerivationError(f'{what}: write a name for each and what vanishes there, {{"flyby": (x - a, y - b)}}')
+        raise DerivationError(
+            f'{what}: give each point a name and the expressions that vanish there, such as {{"flyby": (x - a, y - b)}}'
+        )
     for name, conditions in stated.items():
         if not is_name(name) or "__" in name:
             raise DerivationError(f"{what}: got {shown(name)}; a point's name is {NAMES}", ("interior",))

@@ -29,7 +29,7 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
         Those of controls, which have their own place in a law.
     """
     if isinstance(e, Boolean) and not e.is_Symbol:
-        return f"is {e}, a condition and no number; one of time alone may stand in a Piecewise((1, ...), (0, True))"
+        return f"is {e}, a condition, not a number; one of time alone may stand in a Piecewise((1, ...), (0, True))"
     names = {s.name for s in moving}
     if found := _first(e, sp.Derivative, sp.Subs):
         return (

@@ -267,7 +267,8 @@ def test_a_model_without_an_equilibrium_says_so():
 def test_a_model_that_rests_for_an_instant_has_no_equilibrium():
     model = pendulum()
     forced = {"dynamics": lambda t, x, u, p: (x[1], -np.sin(x[0]) + np.sin(t) + (u[0] if u else 0.0))}
-    with pytest.raises(BadInput, match=r"rests at \(0, 0\) only at t = 0, which is no equilibrium; state a reference"):
+    only_then = r"rests at \(0, 0\) only at t = 0, which is not an equilibrium; state a reference"
+    with pytest.raises(BadInput, match=only_then):
         linearise(replace(model, functions=model.functions | forced))
 
 

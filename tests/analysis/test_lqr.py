@@ -480,7 +480,7 @@ def test_a_standing_pendulum_is_held_up_from_nearby_only():
         ("[lqr.allowed]\nr = 0.1\nu1 = 1.0\nu2 = 1.0\n", None),
         ("[lqr.allowed]\nr = 0.1\nu1 = 1.0\n", r"\[lqr.allowed\] u2: missing"),
         ("[lqr.allowed]\nu1 = 1.0\nu2 = 1.0\n", "no state has an allowed deviation"),
-        ("[lqr.allowed]\nr = 0.0\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] r: 0 is no allowed deviation"),
+        ("[lqr.allowed]\nr = 0.0\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] r: 0 is not an allowed deviation"),
         ('[lqr.allowed]\nr = "1 s"\nu1 = 1.0\nu2 = 1.0\n', r"\[lqr.allowed\] r:"),
         ("[lqr.allowed]\nx = 0.1\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] x: the model has no such state or active"),
         ("[lqr]\nR = [1]\n[lqr.allowed]\nr = 0.1\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr\] R: \[lqr.allowed\] gives"),

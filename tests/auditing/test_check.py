@@ -173,7 +173,7 @@ def test_unknown_letters_are_undecided_and_named() -> None:
 
 
 def test_a_letter_may_be_said_to_be_what_there_is_not() -> None:
-    with pytest.raises(BadInput, match='"nope" is no name of hill'):
+    with pytest.raises(BadInput, match='"nope" is not a name of hill'):
         satsym.check("x = 1", "hill", {"x": "nope"})
 
 

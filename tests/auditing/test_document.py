@@ -121,7 +121,7 @@ HOSTILE = [
     ),
     ("$$" + "{" * 5000 + "x" + "}" * 5000 + "$$", ""),
     ("$$" + "(" * 200 + "x" + ")" * 200 + "$$", "nested more than"),
-    (r"$$x^{x^{x^x}} = 1$$", "an exponent that is no number"),
+    (r"$$x^{x^{x^x}} = 1$$", "an exponent that is not a number"),
     (r"$$\begin{pmatrix}1&2\\3\end{pmatrix} = A$$", "the rows of a matrix differ in length"),
     (r"\input{../../etc/passwd}", "is not in the folder"),
     (r"\input{paper}", "goes round in a circle"),

@@ -100,9 +100,9 @@ def test_a_record_older_than_its_model_is_refused(own: Path) -> None:
     ("model", "reason"),
     [
         ("made/nope", "no derivation"),
-        ("made/../sled:1", "is no model"),
+        ("made/../sled:1", "is not a model"),
         ("nowhere/sled", "no derivation"),
-        ("made/\\u0000", "is no model"),
+        ("made/\\u0000", "is not a model"),
     ],
 )
 def test_a_model_that_is_not_there_is_told_in_one_line(own: Path, model: str, reason: str) -> None:

@@ -164,13 +164,13 @@ def test_what_is_refused_in_a_file_is_refused_in_python_by_the_same_line(
     ("refused", "line"),
     [
         (lambda: satsym.solve("soft-retur"), 'soft-retur: no instance of this name; did you mean "soft-return"'),
-        (lambda: satsym.solve(PUSH), "a Problem is no instance; make one with Instance.of"),
+        (lambda: satsym.solve(PUSH), "a Problem is not an instance; make one with Instance.of"),
         (lambda: satsym.Instance.of(3), "3 cannot be derived from; give a Problem"),
         (
             lambda: satsym.Instance.of("polar_orbi", initial={}, tf=1),
-            'model: "polar_orbi" is no shipped model; did you mean',
+            'model: "polar_orbi" is not a shipped model; did you mean',
         ),
-        (lambda: pushed().with_(name="../a"), "is no name for an instance"),
+        (lambda: pushed().with_(name="../a"), "is not a name for an instance"),
         (lambda: pushed().with_(initial=3), "initial: got 3; write a table"),
         (lambda: satsym.derive("polar"), 'did you mean "polar_orbit"'),
         (lambda: satsym.derive(PUSH)["costates.q"], 'no step "costates"; did you mean "costate_equations"'),

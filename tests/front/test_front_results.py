@@ -109,7 +109,7 @@ def test_at_nodes_it_is_what_it_is_there_and_it_indexes_like_an_array() -> None:
         (lambda s: s.x(6.3), "x: 6.3 is not in the time from 0 to 6.283185307"),
         (lambda s: s.u["u1"]([1.0, -0.5]), 'u["u1"]: -0.5 is not in the time'),
         (lambda s: s.lam(float("nan")), "lam: nan is not in the time"),
-        (lambda s: s.x("soon"), 'x: "soon" is no time'),
+        (lambda s: s.x("soon"), 'x: "soon" is not a time'),
         (lambda s: s.x["q"], 'x: has no "q"; known here: r, r_dot'),
         (lambda s: s.plot()["orbits"], 'no picture "orbits"; did you mean "orbit"'),
     ],

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+import satsym
 from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -132,6 +133,12 @@ def test_the_notebook_runs_from_top_to_bottom_and_shows_what_each_cell_ends_with
     assert verdict == ("certified", pytest.approx(0.0031946551089, rel=1e-10))  # of CasADi with Ipopt
     assert equation._repr_latex_().startswith("$")
     assert costlier
+
+
+def test_the_reference_of_python_has_a_place_for_every_public_name() -> None:
+    text = (DOCS / "_ext" / "reference.py").read_text("utf-8")
+    groups = ast.literal_eval(re.search(r"^GROUPS = (\{.*?^\})", text, re.MULTILINE | re.DOTALL)[1])
+    assert set(satsym.__all__) <= set(" ".join(groups.values()).split())
 
 
 def test_all_notebooks_are_pages() -> None:

@@ -104,7 +104,7 @@ def test_the_working_folder_is_where_paths_start_by_default(repository: Path, mo
 
 def test_an_unknown_name_is_refused_with_the_nearest_one():
     with pytest.raises(
-        BadInput, match=r'"polar_orbt" is no shipped model; did you mean "polar_orbit".*`satsym models`'
+        BadInput, match=r'"polar_orbt" is not a shipped model; did you mean "polar_orbit".*`satsym models`'
     ):
         load("polar_orbt")
 

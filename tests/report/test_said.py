@@ -101,12 +101,12 @@ UNDECIDED = ("the value of <a>", "the norm of a vector")
 COMPOSED = (
     *(f"<a> has <b> in it{what}" for what in UNSUPPORTED),
     "<a> has the function <b> in it, which is not supported",
-    "<a> is <b>, a condition and no number",
+    "<a> is <b>, a condition, not a number",
     *(f"for some time nothing decides {what}, and no law is known there" for what in UNDECIDED),
     "the entries are not known well enough to decide. Either <verdict>: <reason>; or <other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
-    "<said_which> does not close: without a period there are no monodromy matrix and no multipliers.",
+    "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
     *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
     "estimated error <error> on <n> intervals, by the search",
@@ -115,7 +115,8 @@ COMPOSED = (
     "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",
     "[control] <key>: the model bounds its controls one by one; write <name> = [lower, upper], and so on",
     "bounds are <lower> and <upper>",
-    "[control] <name>: this control enters without a square, so it needs both bounds; write <again> = [lower, upper]",
+    "[control] <name>: the square of this control is not in the cost, "
+    "so it needs both bounds; write <again> = [lower, upper]",
     *(f"<place>: terminal inequality <name>: it is met at no final time {when}" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
     *(f"[time] <key>: <value> is {why} t0 = <start>; write a later, reachable time" for why in TOO_EARLY),
@@ -250,7 +251,10 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
     [
         ("k.py:3: 'Newton' is not defined; write `from m import Newton`", "tulislah `from m import Newton`"),
         ("k.py:3: Newton has no field 'rate'; did you mean \"rates\"?", "tidak mempunyai isian 'rate'"),
-        ("k.py:3: powers are written **, as in x**3; ^ is none in Python", "^ bukan pangkat dalam Python"),
+        (
+            "k.py:3: powers are written **, as in x**3; ^ is not the power operator in Python",
+            "^ bukan pangkat dalam Python",
+        ),
         ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),
         ('x.toml: [final] r: got "a list of 2"; write a number', 'tertulis "a list of 2"'),
         ("l.toml:3: row 1: got a table; write an expression in quotes", "tertulis tabel"),

@@ -195,7 +195,7 @@ def test_sets_are_minimised_over_side_by_side(tmp_path: Path):
 
 
 def test_what_nothing_limits_is_refused(tmp_path: Path):
-    complaint = r"\[control\.jet\]: nothing limits ux, uy, which cost no square; write max_norm = a number"
+    complaint = r"\[control\.jet\]: nothing limits ux, uy, whose squares are not in the cost; write max_norm = a number"
     with pytest.raises(BadInput, match=complaint):
         build(tmp_path, product(), TASK)
 

@@ -129,7 +129,7 @@ def test_an_angle_may_be_measured_from_anywhere():
     [
         (steered(beta**2, PUSHED), "is not a sum a cos(beta) + b sin(beta) + c"),
         (steered(cos(beta) ** 2, PUSHED), "is not a sum a cos(beta) + b sin(beta) + c"),
-        (steered(sympify(1), PUSHED, control_sets={"way": Angle("bet")}), "'bet' is no control; there are beta"),
+        (steered(sympify(1), PUSHED, control_sets={"way": Angle("bet")}), "'bet' is not a control; there are beta"),
         (steered(sympify(1), PUSHED, control_sets={"way": Angle()}), 'name one control, as in Angle("beta")'),
         (steered(sympify(1), PUSHED, control_sets={"a": Angle("beta"), "b": Ball("beta")}), "'beta' is in several"),
         (steered(sympify(1), PUSHED, control_set="box"), "the control sets are stated one by one; leave it out"),

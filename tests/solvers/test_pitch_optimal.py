@@ -162,7 +162,7 @@ def test_compare_prints_a_table_and_draws_a_page(tmp_path: Path, capsys: pytest.
     assert main(["compare", *names, "--range", "--out", str(tmp_path), "--plot"]) == 0
     said = capsys.readouterr().out
     assert "transition_time" in said
-    assert "past the limit of wheel_speed" in said
+    assert "beyond the limit of wheel_speed" in said
     assert (tmp_path / "comparison.png").stat().st_size > 20_000
     assert main(["compare", *names, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)

@@ -160,7 +160,7 @@ def test_a_file_of_somebody_else_is_not_written_over(name: str, tmp_path: Path) 
     (tmp_path / "main.py").write_text("mine", encoding="utf-8")
     (tmp_path / name).write_text("mine", encoding="utf-8")
     never = Here()
-    with pytest.raises(BadInput, match=f"holds {name}, which is of no study; give another folder, or remove it"):
+    with pytest.raises(BadInput, match=f"holds {name}, which belongs to no study; give another folder, or remove it"):
         reports.carry_out(asked(), tmp_path, lambda: never, 1, resume=True)
     assert not never.given
     assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == dict.fromkeys(

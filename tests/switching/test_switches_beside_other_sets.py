@@ -166,7 +166,8 @@ def test_a_magnitude_is_not_negative():
 
 
 def test_what_switches_needs_bounds():
-    with pytest.raises(BadInput, match=r"\[control\] k: this control enters without a square, so it needs both bounds"):
+    needs = r"\[control\] k: the square of this control is not in the cost, so it needs both bounds"
+    with pytest.raises(BadInput, match=needs):
         satsym.Instance.of(cart(), initial={"x": 0, "v": 0, "y": 0}, tf=4)
 
 

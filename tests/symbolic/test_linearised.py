@@ -181,7 +181,7 @@ hanging = Linearised(
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"about": {q1: 1, q2: 0}}, "is no motion of pendulum"),
+        ({"about": {q1: 1, q2: 0}}, "is not a motion of pendulum"),
         ({"about": {q1: 0}}, "no value for q2"),
         ({"about": {q1: 0, q2: 0, f1: 1}}, "f1 is not zero along the motion; name its deviation otherwise"),
         ({"about": {q1: d1, q2: 0}}, "cannot depend on d1|undeclared symbols: d1"),

@@ -37,7 +37,11 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         ),
         ("rates=", "rate=", "mine.py:9: FirstOrder has no field 'rate'; did you mean \"rates\"?"),
         ("positive=True", "postive=True", "mine.py:6: Variable has no field 'postive'; did you mean \"positive\"?"),
-        ("c * speed**2", "c * speed^2", "mine.py:12: powers are written **, as in x**3; ^ is none in Python"),
+        (
+            "c * speed**2",
+            "c * speed^2",
+            "mine.py:12: powers are written **, as in x**3; ^ is not the power operator in Python",
+        ),
         (", model=walk", "", "mine.py:12: Problem needs 'model'; its fields are name, title, model, "),
         (
             '"speed"),)',

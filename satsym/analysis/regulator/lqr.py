@@ -171,7 +171,7 @@ def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regula
         raise BadInput(f"model {given.name} has no control, so there is nothing to regulate it with")
     if not about.constant:
         raise BadInput(
-            f"the linearisation of {given.name} depends on time, and a constant gain is optimal for none such; "
+            f"the linearisation of {given.name} depends on time, and no constant gain is optimal for such a system; "
             "linearise about another motion"
         )
     if options is None:

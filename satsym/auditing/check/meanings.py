@@ -201,7 +201,7 @@ def given_letters(texts: Sequence[str], derived: Derived) -> dict[Letter, str]:
             raise BadInput(f"--let {shown(text)}: write a printed letter and a name of the model, such as n=omega")
         names = {*derived.record.names, *derived.definitions}
         if name not in names:
-            message = f"{shown(name)} is no name of {derived.record.name}; {suggestion(name, names)}"
+            message = f"{shown(name)} is not a name of {derived.record.name}; {suggestion(name, names)}"
             raise BadInput(f"--let {shown(text)}: {message}")
         found[_letter(printed) or of_word(printed)] = name
     return found

@@ -241,7 +241,7 @@ class Bench:
         shared = self.names
         if name not in shared.symbols and name not in shared.definitions and name not in ("I", "pi"):
             raise BadInput(
-                f"{shown(name)} is no name of {' or '.join(self.ledger.models) or 'a derivation'}; "
+                f"{shown(name)} is not a name of {' or '.join(self.ledger.models) or 'a derivation'}; "
                 f"{suggestion(name, sorted(shared.symbols))} (a symbol of your own: [symbols])"
             )
         return shared.tree(name) if kind is Calculus else shared.expression(name)

@@ -51,7 +51,7 @@ def _of_relation(bench: Bench, row: Row, printed: Node | Equality, target: Both)
         return [Equal(bench, row, (printed,), ("",), (rhs,))]
     meanings = bench.meanings(row)
     if unbound(printed.lhs, meanings) | unbound(printed.rhs, meanings):
-        raise BadInput("a symbol that means a matrix stands in an equation between expressions")
+        raise BadInput("a symbol for a matrix stands in an equation between numbers")
     if ZERO not in (relation.lhs, relation.rhs):
         for mine, other in ((printed.lhs, printed.rhs), (printed.rhs, printed.lhs)):
             if Equal(bench, row, (mine,), ("",), (lhs,)).may_hold((mine,)):

@@ -56,7 +56,7 @@ class Equal(Plan):
         """Whether one cell would be right."""
         found, target = self.both(cell), self.target[index]
         if isinstance(found.exact, Matrix):
-            raise BadInput("a symbol that means a matrix stands where it is held against an expression")
+            raise BadInput("a symbol for a matrix is compared with an expression that is a number")
         return self.vanish(difference(found.trees, target.trees), found.exact - target.exact)
 
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:

@@ -110,7 +110,7 @@ def text_before(ledger: Path) -> str:
     try:
         return ledger.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
-        raise BadInput(f"{ledger}: is there, and no text; give another --out") from None
+        raise BadInput(f"{ledger}: exists, and is not text; give another --out") from None
 
 
 def as_object(ledger: Path, found: Draft) -> dict[str, Any]:

@@ -90,7 +90,7 @@ def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome
         formulas.as_number(value) for value in (target.exact, formulas.from_tree(target.trees, bench.names.expression))
     )
     if by_sympy is None or by_sympy != by_trees:
-        raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is none")
+        raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is not a number")
     how, derived = fit_of_range(float(by_sympy), float(by_sympy), printed), str(by_sympy)
     right = how is Fit.INSIDE if by_sympy.denominator != 1 else by_sympy == printed.value
     remark = "" if right else say("wrong_number", derived)

@@ -177,7 +177,7 @@ class Parser(QuotientCursor):
         if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:
-            raise Unread("an exponent that is no number is not read", at)
+            raise Unread("an exponent that is not a number is not read", at)
         if abs(value) > MAX_EXPONENT:
             raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
         return Pow(base, exponent)

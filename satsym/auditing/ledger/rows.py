@@ -82,7 +82,7 @@ def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None 
     """Refuse symbols that the notation lacks; where the ledger's own names are given, those of derivations will do."""
     for name in sorted(names_in(formula)):
         if not scope.knows(name) and (own is None or name not in own):
-            raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
+            raise BadInput(f"{shown(name)} is not a symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
 
 
 def _with(formula: Formula, derived: Mapping[str, Node]) -> Any:

@@ -98,7 +98,8 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
     for key, entries in orders.items():
         for entry in entries:
             if entry not in meanings:
-                raise WrongScope(name, key, f"{shown(entry)} is no symbol of this scope; {suggestion(entry, meanings)}")
+                hint = suggestion(entry, meanings)
+                raise WrongScope(name, key, f"{shown(entry)} is not a symbol of this scope; {hint}")
     return Scope(name, meanings, orders)
 
 

@@ -85,7 +85,7 @@ def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float
 
 def _letter(of: Any, by: Any) -> Any:
     if is_exact(by) and not getattr(by, "is_Symbol", False):
-        raise BadInput(f"{shown(str(by))} is no letter")
+        raise BadInput(f"{shown(str(by))} is not a letter")
     name = by if isinstance(by, str) else by.name
     from satsym.symbolic.lookup import formulas
 
@@ -97,6 +97,6 @@ def _exact(value: Any) -> Any:
 
     if isinstance(value, Quantity):
         if value.dimension:
-            raise BadInput(f"{value} is no plain number; divide it by its unit")
+            raise BadInput(f"{value} is not a plain number; divide it by its unit")
         value = value.value
     return formulas.exact(value)

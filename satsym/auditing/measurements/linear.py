@@ -204,7 +204,7 @@ def _eigenvalue(value: Any, of: Any) -> Any:
     for entry in _spectrum(system(of).part("A")).eigenvalues:
         if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
             return entry
-    raise BadInput(f"{value} is no eigenvalue of {system(of).name}")
+    raise BadInput(f"{value} is not an eigenvalue of {system(of).name}")
 
 
 def _place(whole: Record, of: str, name: str) -> int:

@@ -124,7 +124,7 @@ def _start(of: Any, velocity: ArrayLike | None, mu: float | None) -> tuple[Array
 def _of_instance(name: str) -> tuple[Array, Array, float]:
     case = motion.loaded(name)
     if not case.model.spec.keplerian:
-        raise BadInput(f"{shown(name)} is no motion about a centre; name an instance such as itb-earth")
+        raise BadInput(f"{shown(name)} is not a motion about a centre; name an instance such as itb-earth")
     state = case.model.inertial_state(case.t0, case.initial, case.parameters)
     return np.asarray(state[:3]), np.asarray(state[3:6]), float(state[6])
 

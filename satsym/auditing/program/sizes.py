@@ -69,4 +69,4 @@ def _refuse_others(value: Any) -> None:
         for entry in value:
             _refuse_others(entry)
     elif not isinstance(value, int | float | complex | np.number | np.ndarray):
-        raise BadInput(f"an array of what is no number ({type(value).__name__}) is not known here")
+        raise BadInput(f"an array of entries that are not numbers ({type(value).__name__}) is not known here")

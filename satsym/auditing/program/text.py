@@ -52,7 +52,7 @@ def read(lines: Sequence[object]) -> Program:
             warnings.simplefilter("ignore")
             return Program(text, tuple(ast.parse(text).body))
     except SyntaxError as error:
-        raise BadInput(f"line {error.lineno} of the program, {shown(error.text or '')}: no Python") from None
+        raise BadInput(f"line {error.lineno} of the program, {shown(error.text or '')}: not Python") from None
     except (RecursionError, MemoryError, ValueError):
         raise BadInput("the program is nested too deep") from None
 

@@ -277,7 +277,7 @@ def _iterated(part: ast.comprehension, family: Any) -> Iterable[Any]:
             return list(family)
     except TypeError:
         pass
-    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
+    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, not a family or list")
 
 
 def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:

@@ -177,7 +177,7 @@ class _Check(ast.NodeVisitor):
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         if node.attr.startswith("_"):
-            raise BadInput(f"{shown(node.attr)} is no part of anything{_column(node)}")
+            raise BadInput(f"{shown(node.attr)} is not a part of anything{_column(node)}")
         self.visit(node.value)
 
     def visit_Subscript(self, node: ast.Subscript) -> None:

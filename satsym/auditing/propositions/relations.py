@@ -199,7 +199,7 @@ def _has_floats(value: Any) -> bool:
 def _real(value: Any) -> float:
     number = complex(value)
     if math.isnan(abs(number)):
-        raise Undecided(f"{in_words(value)} is no number")
+        raise Undecided(f"{in_words(value)} is not a number")
     if abs(number.imag) > max(RELATIVE * abs(number), ABSOLUTE):
         raise BadInput(f"{in_words(value)} is complex, and neither less nor greater than anything")
     return number.real
@@ -215,4 +215,4 @@ def _entries(value: Any) -> list[Any]:
             return list(value.tolist() if hasattr(value, "tolist") else value)
     except TypeError:
         pass
-    raise BadInput(f"{in_words(value)} is no list")
+    raise BadInput(f"{in_words(value)} is not a list")

@@ -20,7 +20,7 @@ Examples:
   satsym audit --html audit.html        a page of all of them, for people
   satsym audit my_ledger.toml --latex report.tex --lang id
   satsym audit --coverage               which numbers of the documents have no row
-  satsym audit its_thesis --coverage --text thesis.txt   what of a text has no row"""
+  satsym audit its_thesis --coverage --text thesis.txt   what in a text has no row"""
 
 
 @command(epilog=EXAMPLES)

@@ -36,7 +36,7 @@ SIGNATURE = "Written by satsym from "
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
-@click.option("--fresh", is_flag=True, help="Derive everything anew, also what has not changed since it was derived.")
+@click.option("--fresh", is_flag=True, help="Derive everything anew, even what has not changed.")
 @click.option(
     "--max-seconds",
     type=click.FloatRange(min=0.0, min_open=True),
@@ -86,7 +86,7 @@ def _checked_in(paths: Sequence[Path]) -> Path:
     """The checkout's generated/, if that is where the results of all these files belong."""
     home = checkout()
     if home is None:
-        raise click.UsageError("--out DIR is needed, because this satsym is no checkout.")
+        raise click.UsageError("--out DIR is needed, because this satsym is not a checkout.")
     for path in paths:
         if path.resolve().parent not in (home / "derivations", home / "derivations" / "examples"):
             raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
@@ -124,7 +124,7 @@ def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
             said = (
                 "removed: no derivation leads to it"
                 if ours
-                else "is not from satsym; remove it: no derivation leads to it"
+                else "was not written by satsym; remove it: no derivation leads to it"
             )
             lines.append(f"{path}  {say(said)}")
     return lines

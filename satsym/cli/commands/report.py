@@ -33,7 +33,7 @@ Examples:
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
-@click.option("--interactive", is_flag=True, help="With sliders, values where one points, and motion in space.")
+@click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
 @place_option(
     "--study", "study", metavar="DIR", help="With --interactive: a study of X, whose answers a slider chooses."
 )

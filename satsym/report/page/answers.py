@@ -56,7 +56,7 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
             f"--study: {place}: holds no study of solutions; `satsym study X --trajectories --out DIR` makes one"
         )
     if (said["model"], said["instance"]) != (instance.model.spec.name, instance.name):
-        raise BadInput(f"--study: {place}: is of {printable(said['instance'])}, not of {instance.name}")
+        raise BadInput(f"--study: {place}: belongs to {printable(said['instance'])}, not to {instance.name}")
     kept = _trajectories(study, sorted(listing.listed))
     if not kept:
         raise BadInput(f"--study: {place}: kept no trajectories; make it again with --trajectories")

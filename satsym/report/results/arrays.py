@@ -93,6 +93,6 @@ def _array(content: bytes) -> NDArray[Any]:
     found: NDArray[Any] = np.frombuffer(content, kind, offset=stream.tell())
     found = found.reshape(shape, order="F" if by_columns else "C")
     if kind.kind == "U":
-        found.tolist()  # raises for what is no text
+        found.tolist()  # raises for what is not text
         return found
     return found.astype(np.float64)

@@ -145,9 +145,9 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
     result, spec = _result(listing, found.result), instance.model.spec
     if (result.model, result.instance) != (spec.name, instance.name):
         theirs = printable(f"{result.instance} (model {result.model})")
-        raise unusable(listing, f"is of {theirs}, not of {instance.name} (model {spec.name})")
+        raise unusable(listing, f"belongs to {theirs}, not to {instance.name} (model {spec.name})")
     if result.command not in COMMANDS or ARRAYS not in found.contents:
-        raise unusable(listing, f"is of `satsym {printable(result.command)}`, which leaves no trajectory")
+        raise unusable(listing, f"was made by `satsym {printable(result.command)}`, which writes no trajectory")
     with_options = [f" --set {printable(name)}={value!r}" for name, value in result.settings.items()]
     again = partial(unusable, command=result.command, more="".join(with_options))
     if not _LAW.match(result.method if result.command == "solve" else result.feedback):
@@ -167,7 +167,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
         {k: v for k, v in result.ends_met.items() if v is not None and k in instance.end_limits}
     )
     if not _starts_at(stored["x"], _begun(instance, result.feedback)):
-        raise again(place, f"starts elsewhere than {instance.name}, which has changed since")
+        raise again(place, f"starts from another state than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight
     return make(instance, result, stored), found
 

@@ -49,7 +49,7 @@ def drafted_text(ledger: Path, found: Draft) -> str:
             rows=len(found.rows),
             kept=found.kept,
         ),
-        say("seen at once: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]),
+        say("judged at once: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]),
     ]
     lines += [say("<place>: not read: <said_why>", place=place, said_why=message(why)) for place, why in found.unread]
     lines += [

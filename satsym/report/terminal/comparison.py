@@ -28,7 +28,7 @@ MEANINGS = {
     "_effort": "integral of the square; infinite with an impulse",
     "_energy": "integral of the power; infinite with an impulse",
     "_final": "value at the final time",
-    "_driven": "largest departure from the motion that is not driven",
+    "_driven": "largest departure from the undriven motion",
     "_share": "rate that the driving control causes, relative to the largest such rate",
 }
 """What metrics measure, by their names or by what these end with."""
@@ -124,7 +124,7 @@ def _range(case: Case, over: Range) -> list[str]:
                 (
                     *(figure(v) for v in (damping, command, over.control_peak[i, j], over.impulse[i, j])),
                     *(figure(over.peaks[name][i, j]) for name in watched),
-                    say("past the limit of <names>", names=", ".join(beyond)) if beyond else "",
+                    say("beyond the limit of <names>", names=", ".join(beyond)) if beyond else "",
                 )
             )
     return [

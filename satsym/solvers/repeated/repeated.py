@@ -86,15 +86,17 @@ class Repeated:
         instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
-                f"{instance.called}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
-                "and again; solve each instance by itself"
+                f"{instance.called}: the controls of {instance.model.spec.name} switch, which repeated solving does "
+                "not support; solve each instance by itself"
             )
         if instance.end_limits:
             name = next(iter(instance.end_limits))
-            raise BadInput(f"{instance.called}: whether {name} is active at the end is not looked for again and again")
+            raise BadInput(
+                f"{instance.called}: whether {name} is active at the end is not determined in repeated solving"
+            )
         if instance.solver.free_angles:
             raise BadInput(
-                f"{instance.called}: [solver] free_angles: turns are not looked for again and again; remove it"
+                f"{instance.called}: [solver] free_angles: turns are not searched for in repeated solving; remove it"
             )
         compiled = find_spec("numba") is not None if compiled is None else compiled
         self._means = _shooting() if compiled else ByCollocation()

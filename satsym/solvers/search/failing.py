@@ -61,7 +61,7 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     if near is None or near.arrives or limits.expired:
         return Status.NOT_CONVERGED, message
     if near.undecided:
-        return Status.NOT_CONVERGED, f"{message}; {near.message}, but others may arrive"
+        return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls may reach it"
     return Status.INFEASIBLE, f"{near.message}; {message}"
 
 

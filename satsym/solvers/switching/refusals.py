@@ -21,8 +21,8 @@ def refuse(instance: Instance) -> None:
     for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
         if not np.isfinite([low, high]).all():
             raise BadInput(
-                f"{instance.called}: [control] {name}: this control enters without a square, so it needs both bounds; "
-                f"write {name} = [lower, upper]"
+                f"{instance.called}: [control] {name}: the square of this control is not in the cost, "
+                f"so it needs both bounds; write {name} = [lower, upper]"
             )
     if instance.lower == instance.upper:
         raise BadInput(
@@ -31,13 +31,12 @@ def refuse(instance: Instance) -> None:
         )
     if instance.tf is not None and _free_of_charge(instance):
         raise BadInput(
-            f"{instance.called}: [time] tf: with a given final time no control costs more than another; write tf = "
-            '"free"'
+            f'{instance.called}: [time] tf: with a given final time all controls cost the same; write tf = "free"'
         )
     if instance.tf is None and instance.final and _there(instance):
         raise BadInput(
-            f"{instance.called}: [initial]: the motion starts where it is to end, so the best final time is none at "
-            "all; move the start, or give a final time"
+            f"{instance.called}: [initial]: the motion starts where it is to end, so the best final time is zero; "
+            "move the start, or give a final time"
         )
 
 

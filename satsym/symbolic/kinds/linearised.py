@@ -168,7 +168,7 @@ def reference(so_far: Derivation) -> Step:
     defects = [d.xreplace(definitions_of(model)) for d in _defects(so_far)]
     proof = identity("satisfies the equations with its controls", defects)
     if not proof.passed:
-        raise DerivationError(f"{model.name}: what it is linearised about is no motion of {model.of.name}")
+        raise DerivationError(f"{model.name}: what it is linearised about is not a motion of {model.of.name}")
     states, about = symbols_of(model.of.states), _about(model)
     controls = [u for u in symbols_of(model.of.controls) if about[u] != 0]
     equations = tuple(Equation(s.name, s, about[s]) for s in (*states, *controls))

@@ -41,7 +41,7 @@ class Multibody(Bodies):
             if not group.states or not known.issuperset(group.states):
                 yield f"the mode {group.name!r}: name some of the states, and nothing else"
             if group.vanishing and group.vanishing not in constants:
-                yield f"the mode {group.name!r}: {group.vanishing} is no parameter"
+                yield f"the mode {group.name!r}: {group.vanishing} is not a parameter"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
         """Named functions by coordinates, rates by states as well, what the bodies have by all of these."""

@@ -114,7 +114,10 @@ def scales(so_far: Derivation) -> Step:
     """The new time, states and controls, and the special case that is meant."""
     model = stated_as(Scaled, so_far)
     if any(e.rhs.has(t) for e in so_far.step("original_equations").equations):
-        raise DerivationError(f"{model.name}: the motion of {model.of.name} depends on time; only others are scaled")
+        raise DerivationError(
+            f"{model.name}: the motion of {model.of.name} depends on time; "
+            "only motions that do not depend on time can be scaled"
+        )
     special = {**model.where, **model.along}
     equations = [
         Equation("time", t, ORIGINAL_TIME / model.unit_of_time),

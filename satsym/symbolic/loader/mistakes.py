@@ -38,7 +38,7 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
     line, text = _line(path, error), " ".join(str(error).split())
     if isinstance(error, TypeError):
         if _POWER.match(text):
-            return line, "powers are written **, as in x**3; ^ is none in Python"
+            return line, "powers are written **, as in x**3; ^ is not the power operator in Python"
         if (found := _UNKNOWN.match(text)) and (known := _fields(found[1], names)):
             at = next(_keywords(path, line, found[2]), line)
             return at, f"{found[1]} has no field {found[2]!r}; {suggestion(found[2], known)}"

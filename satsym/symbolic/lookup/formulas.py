@@ -55,7 +55,7 @@ class NotAFormula(Exception):
 def function(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     """An elementary function of expressions."""
     if name not in _FUNCTIONS:
-        raise NotAFormula(f"{name}(...) is no elementary function")
+        raise NotAFormula(f"{name}(...) is not an elementary function")
     return _FUNCTIONS[name](*arguments)
 
 
@@ -77,7 +77,7 @@ def from_tree(tree: Node, symbols: Callable[[str], sp.Expr]) -> sp.Expr:
         return sp.Pow(from_tree(tree.base, symbols), rational(constant(tree.exponent) or Fraction(0)))
     if isinstance(tree, Call):
         return function(tree.function, [from_tree(argument, symbols) for argument in tree.arguments])
-    raise NotAFormula(f"{type(tree).__name__} is no formula")
+    raise NotAFormula(f"{type(tree).__name__} is not a formula")
 
 
 def to_tree(expression: Any) -> Node:

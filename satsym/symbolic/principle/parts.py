@@ -90,7 +90,8 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
         for control in one.controls:
             if control not in declared:
                 raise DerivationError(
-                    f"{problem.name}: control_sets {name!r}: {control!r} is no control; there are {', '.join(declared)}"
+                    f"{problem.name}: control_sets {name!r}: {control!r} is not a control; "
+                    f"there are {', '.join(declared)}"
                 )
         seen += one.controls
         mark = "" if single else name

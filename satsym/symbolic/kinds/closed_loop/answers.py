@@ -28,7 +28,7 @@ def step_response(so_far: Derivation) -> Step:
     states = symbols_of(model.states)
     answers = {x: _answer(so_far, x) for x in states}
     if any(impulse != 0 for impulse, _ in answers.values()):
-        raise DerivationError(f"{model.name}: a state answers to a step with an impulse")
+        raise DerivationError(f"{model.name}: a state answers a step with an impulse")
     special = [Equation(f"where_{symbol.name}", symbol, sp.sympify(value)) for symbol, value in model.where.items()]
     equations = (*special, *(Equation(x.name, n.answer_of(x), value) for x, (_, value) in answers.items()))
     check = _transformed(so_far, {x: (sp.Integer(0), value) for x, (_, value) in answers.items()})
@@ -115,7 +115,9 @@ def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     numerator, denominator = sp.fraction(image)
     quotient, rest = sp.div(sp.Poly(numerator, s), sp.Poly(denominator, s))
     if quotient.degree() > 0:
-        raise DerivationError(f"{model.name}: {symbol.name} answers to a step with worse than an impulse")
+        raise DerivationError(
+            f"{model.name}: {symbol.name} answers a step with something more singular than an impulse"
+        )
     value = sp.Integer(0)
     for part in sp.Add.make_args(sp.apart(as_factors((rest / denominator).as_expr()), s)):
         above, below = sp.fraction(sp.together(part))
