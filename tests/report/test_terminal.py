@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from satsym.report.subjects import INSTANCES, MODELS, OTHER, by_subject
 from satsym.report.terminal.arcs import in_words as arcs_in_words
 from satsym.report.terminal.certificate import _HOLDS, statement, verdict_text
 from satsym.report.terminal.comparison import _without_rounding
-from satsym.report.terminal.solution import solution_text, state_rows
+from satsym.report.terminal.solution import _metrics, control_rows, solution_text, state_rows
 from satsym.solution import Certificate, Check, Competitors, Kind, Solution
 from satsym.solvers.collocation.attempt import Reason
 from satsym.status import Status, Verdict
@@ -55,6 +56,23 @@ def test_a_final_value_that_is_nothing_beside_its_peak_is_zero() -> None:
     found = {"v_peak": [1.0, 1e-20, None], "v_final": [-3e-17, 3e-21, None], "w_final": [1e-30, 0.0, 1.0]}
     assert _without_rounding("v_final", found) == [0.0, 3e-21, None]
     assert _without_rounding("w_final", found) == found["w_final"]
+
+
+def test_a_metric_that_is_nothing_beside_its_variable_is_zero() -> None:
+    spec = SimpleNamespace(state_names=("q", "v"))
+    metrics = {"q_final": 2e-17, "v_residual": 3e-19, "v_peak": 1.0, "w_final": 1e-15, "w_peak": 100.0, "steps": 3.0}
+    found = SimpleNamespace(
+        instance=SimpleNamespace(model=SimpleNamespace(spec=spec)),
+        x=np.array([[0.0, 1e-16], [0.0, 1.0]]),
+        metrics=metrics,
+    )
+    assert _metrics(found) == {**metrics, "v_residual": 0.0, "w_final": 0.0}
+
+
+def test_an_extreme_control_that_is_nothing_beside_the_others_is_zero() -> None:
+    found = made("double-integrator-energy", ())
+    pushes = np.linspace(-3e-17, 2.0, len(T))[None, :]
+    assert control_rows(found.instance, T, pushes)[1][1:3] == ("0", "2")
 
 
 @pytest.mark.parametrize("language", ["en", "id"])

@@ -124,8 +124,8 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
     times = [t0 + ahead / (unit.rate * unit.size) for ahead in LOOKED_AT]
     if not (on_reference or spec.linear or all(_rests(model, p, unit, t, point) for t in times)):
         raise BadInput(
-            f"{where}: the model rests at ({', '.join(f'{v:.6g}' for v in point)}) only at t = {t0:.6g}, which is not an "
-            "equilibrium; state a reference in the model: an uncontrolled motion"
+            f"{where}: the model rests at ({', '.join(f'{v:.6g}' for v in point)}) only at t = {t0:.6g}, "
+            "which is not an equilibrium; state a reference in the model: an uncontrolled motion"
         )
     aside = [point + shift * (unit.states + np.abs(point)) for shift in SHIFTS]
     return replace(

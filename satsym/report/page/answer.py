@@ -8,8 +8,8 @@ from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.prose import scrolled
 from satsym.report.results.unit_names import time_unit
-from satsym.report.said import decimal, message, numbers, say
-from satsym.report.terminal.arcs import switching_together
+from satsym.report.said import decimal, message, say
+from satsym.report.terminal.arcs import in_words, rows_of_arcs
 from satsym.report.terminal.solution import control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
@@ -23,24 +23,25 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     unit = unit_text(time_unit(spec) or "1")
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
     span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""
-    switches = "; ".join(f"{names} {numbers(map(figure, times))}" for names, times in switching_together(solution))
+    arcs: dict[str, list[str]] = {}
+    for label, names, times in rows_of_arcs(solution, unit):
+        arcs.setdefault(label.rstrip(":").capitalize(), []).append(f"{names} {times}")
     events = "; ".join(
         f"{message(one.kind)} {one.name} {say('at <times>', times=f'{figure(one.t, 10)} {unit}'.rstrip())}"
         for one in solution.events
     )
     known = {
         "status": message(solution.status.value),
-        "message": message(solution.message),
+        "message": in_words(solution, solution.message),
         "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
         "final_time": span,
         "boundary": str(instance.boundary_type),
         "method": f"{solution.method} ({solution.iterations})",
-        "switching_times": f"{switches} {unit}" if switches else "",
-        "events": events,
     }
-    pairs = [
-        tag("dt", texts.get("page", key)) + tag("dd", decimal(value.strip())) for key, value in known.items() if value
-    ]
+    said = {texts.get("page", key): value.strip() for key, value in known.items() if value}
+    said |= {label: "; ".join(listed) for label, listed in arcs.items()}
+    said |= {texts.get("page", "events"): events} if events else {}
+    pairs = [tag("dt", title) + tag("dd", decimal(value)) for title, value in said.items()]
     return tag("dl", *map(Markup, pairs))
 
 

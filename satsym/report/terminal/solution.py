@@ -61,7 +61,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     unit = time_unit(instance.model.spec)
     facts = [(say("final time"), f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]
     kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in simulation.invariants.items()]
-    metrics = [(name, figure(value, 10)) for name, value in simulation.metrics.items()]
+    metrics = [(name, figure(value, 10)) for name, value in _metrics(simulation).items()]
     blocks = [
         _heading(instance, simulation.status, say("feedback <law>", law=message(simulation.feedback)), colour),
         _message(simulation.status, simulation.message, message(simulation.message)),
@@ -71,6 +71,18 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
         table([each("metric", "value"), *metrics], right=(1,)) if metrics else [],
     ]
     return joined(blocks)
+
+
+def _metrics(simulation: Simulation) -> dict[str, float]:
+    """Metrics by name; one of a variable is zero where it is nothing beside the largest value of that variable."""
+    names = simulation.instance.model.spec.state_names
+    sizes = {name: float(np.abs(row).max(initial=0.0)) for name, row in zip(names, simulation.x, strict=True)}
+    found = {}
+    for key, value in simulation.metrics.items():
+        variable, _, _ = key.rpartition("_")
+        size = max(sizes.get(variable, 0.0), abs(simulation.metrics.get(f"{variable}_peak", 0.0)))
+        found[key] = 0.0 if abs(value) <= ROUNDING * size else value
+    return found
 
 
 def with_files(text: str, saved: Sequence[Path]) -> str:
@@ -245,7 +257,7 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
     """Least and greatest value, the bounds, and how much of the time is spent at one of them."""
     if not len(row):
         return "-", "-", "", ""
-    extremes = figure(float(row.min())), figure(float(row.max()))
+    extremes = figure(_without_rounding(float(row.min()), row)), figure(_without_rounding(float(row.max()), row))
     finite = [bound for bound in limits if math.isfinite(bound)]
     if not finite:
         return *extremes, "", ""
