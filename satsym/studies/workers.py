@@ -107,7 +107,7 @@ def processes(wanted: int | None, chunks: int) -> int:
         If less than one is wanted.
     """
     if wanted is not None and (not isinstance(wanted, int) or wanted < 1):
-        raise BadInput(f"workers: {shown(wanted)} compute nothing; write a whole number from 1, or leave it out")
+        raise BadInput(f"workers: {shown(wanted)} can compute nothing; write a whole number from 1, or leave it out")
     able = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(wanted or able, chunks)
 

@@ -50,7 +50,7 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
         )
     if open_ended := [c for c in corners if t in c.free_symbols or isinstance(c, sp.Piecewise)]:
         return (
-            f"has {open_ended[0]} in it, which is not given by comparisons for all times; compare by < and >, and end "
+            f"has {open_ended[0]} in it, which comparisons do not give a value at all times; compare by < and >, and end "
             "it with (value, True)"
         )
     return ""

@@ -95,7 +95,7 @@ SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
 MISSHAPEN = ("it has <n> entries of the wrong number or mixed kinds", "row <i> has <n> numbers")
 UNSUPPORTED = (
     *("", ", a derivative that is not carried out", ", which is not carried out", ", an unknown function"),
-    *(", a value at another time", ", which is not given by comparisons for all times", ", whose derivatives jump"),
+    *(", a value at another time", ", which comparisons do not give a value at all times", ", whose derivatives jump"),
 )
 UNDECIDED = ("the value of <a>", "the norm of a vector")
 COMPOSED = (

@@ -32,7 +32,7 @@ SAID: list[tuple[sp.Basic, str]] = [
     (sp.sign(x), JUMPS),
     (sp.erf(x), "the function erf in it, which is not supported"),
     (sp.floor(t), "the function floor in it, which is not supported"),
-    (sp.Piecewise((1, sp.Eq(t, 1)), (0, True)), "which is not given by comparisons for all times"),
+    (sp.Piecewise((1, sp.Eq(t, 1)), (0, True)), "which comparisons do not give a value at all times"),
     (x > 0, "is x > 0, a condition"),
 ]
 

@@ -262,4 +262,4 @@ def _message(instance: Instance, status: Status, metrics: dict[str, float]) -> s
     assert law is not None
     unsettled = math.isnan(metrics.get("settling_time", 0.0))
     said = [excesses(instance, metrics), f"{law.follows} has not settled by the final time" if unsettled else ""]
-    return "; ".join(filter(None, said)) or "simulated with small steps of order eight"
+    return "; ".join(filter(None, said)) or "simulated with small steps of a method of order eight"
