@@ -50,8 +50,8 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
         )
     if open_ended := [c for c in corners if t in c.free_symbols or isinstance(c, sp.Piecewise)]:
         return (
-            f"has {open_ended[0]} in it, which comparisons do not give a value at all times; compare by < and >, and end "
-            "it with (value, True)"
+            f"has {open_ended[0]} in it, which comparisons do not give a value at all times; compare by < and >, "
+            "and end it with (value, True)"
         )
     return ""
 
