@@ -21,6 +21,6 @@ def _put_right(app: Sphinx, failed: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """As Sphinx wants it."""
+    """Register the extension with Sphinx."""
     app.connect("build-finished", _put_right)
     return {"parallel_read_safe": True}

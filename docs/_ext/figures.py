@@ -158,6 +158,6 @@ def _write(app: Sphinx) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """As Sphinx wants it."""
+    """Register the extension with Sphinx."""
     app.connect("builder-inited", _write)
     return {"parallel_read_safe": True}

@@ -217,6 +217,6 @@ def _put(path: Path, text: str) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """As Sphinx wants it."""
+    """Register the extension with Sphinx."""
     app.connect("builder-inited", _write)
     return {"parallel_read_safe": True}

@@ -26,7 +26,7 @@ from satsym.version import __version__
 from satsym.wording import printable
 
 CLOSED_PIPE = 141
-"""As the shell reports programs that SIGPIPE ended."""
+"""Exit code with which the shell reports programs that SIGPIPE ended."""
 
 OVERVIEW = """\b
 Start here:
@@ -102,7 +102,7 @@ class Program(Explained, click.Group):
     """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options of the program, and its commands."""
+        """Write the options and the commands of the program."""
         super().format_options(ctx, formatter)
         with formatter.section(explained("Commands")):
             widest = max(map(len, self.commands))

@@ -68,16 +68,16 @@ class Explained(click.Command):
     """A command whose help is in the language asked for."""
 
     def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """How it is called."""
+        """Write how the command is called."""
         pieces = (explained(piece) for piece in self.collect_usage_pieces(ctx))
         formatter.write_usage(ctx.command_path, " ".join(pieces), f"{explained('Usage')}: ")
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """What it does."""
+        """Write what the command does."""
         _write(formatter, self.help)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options of a command."""
+        """Write the options of the command."""
         records = []
         for option in self.get_params(ctx):
             if isinstance(option, click.Option) and (record := option.get_help_record(ctx)) is not None:
@@ -92,7 +92,7 @@ class Explained(click.Command):
         _write(formatter, self.epilog)
 
     def get_short_help_str(self, limit: int = 45) -> str:
-        """What it does, in a line of the list of commands."""
+        """Return what the command does, for its line in the list of commands."""
         if language() == "en":
             return super().get_short_help_str(limit)
         first = _translated(_paragraphs(self.help or "")[0]).rstrip(".")

@@ -23,7 +23,7 @@ class Place(click.Path):
         super().__init__(path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """As of click.
+        """Convert a value as click does.
 
         Raises
         ------

@@ -25,7 +25,7 @@ class Voice(Enum):
 
 
 VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
-"""As it was asked for, in one run."""
+"""How much is printed in one run, as it was asked for."""
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
 MOST_PROGRESS_LINES, SHORTEST_PROGRESS_INTERVAL, LONGEST_PROGRESS_INTERVAL = 10, 5.0, 60.0

@@ -39,7 +39,7 @@ class Requirement:
 
 
 def requirements() -> list[Requirement]:
-    """All of them, as the installed package states them, or the checkout that runs without being installed."""
+    """Return all requirements, as the installed package states them, or the checkout that runs uninstalled."""
     return [Requirement(m[1], m[2].strip(), m[3]) for line in _stated() if (m := _REQUIREMENT.match(line))]
 
 

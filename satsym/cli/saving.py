@@ -88,7 +88,7 @@ def newest(name: str, command: str | None) -> Path | None:
 
 
 def saved_folder(name: str, command: str | None) -> Path:
-    """As :func:`newest`, but there must be results: what to run is said where there are none.
+    """Return the folder of :func:`newest`, or refuse with what to run where there are no results.
 
     Parameters
     ----------

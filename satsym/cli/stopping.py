@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 TERMINATED = 143
-"""As the shell reports programs that SIGINT or SIGTERM ended."""
+"""Exit codes with which the shell reports programs that SIGINT or SIGTERM ended."""
 
 STOP_INTERVAL = 0.05
 """Seconds after which a stop is repeated that nobody is answering."""

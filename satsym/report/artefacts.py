@@ -75,7 +75,7 @@ def renew(
     fresh: bool = False,
     max_seconds: float = MAX_SECONDS,
 ) -> dict[str, str | None]:
-    """As :func:`render`, but nothing is derived that a folder holds already, as the stamps of earlier runs tell.
+    """Render like :func:`render`, but derive nothing that a folder already holds, as stamps of earlier runs tell.
 
     Parameters
     ----------

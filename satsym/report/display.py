@@ -99,7 +99,7 @@ def engineering(unit: str, size: float) -> Scale:
 
 
 def together(quantities: Sequence[tuple[str, float]]) -> list[Scale]:
-    """Of quantities with a unit and a size, the units to read them in: components of a vector have one.
+    """Return the units in which to read quantities with a unit and a size: components of a vector have one.
 
     One that is far smaller than the largest with its unit has a unit of its own, for no tick would be a short number.
     """

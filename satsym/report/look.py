@@ -19,7 +19,7 @@ SIZES = {
 
 @dataclass(frozen=True)
 class Look:
-    """Of all pictures of a result.
+    """Format, size and titles of all pictures of a result.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ Examples:
 A derivation file is Python and is executed: derive only files that you trust."""
 
 MAX_SECONDS = 900.0
-"""As of :mod:`satsym.report.artefacts`; here once more, because ``--help`` loads none of it."""
+"""Time limit of :mod:`satsym.report.artefacts`, stated once more because ``--help`` does not load that module."""
 
 SIGNATURE = "Written by satsym from "
 """What the machine writes says so, and nothing else is ever removed."""

@@ -15,13 +15,13 @@ from satsym.report.plots import style
 from satsym.status import BadInput
 
 DEGREE = 5
-"""Of Lagrange's interpolation."""
+"""Degree of Lagrange's interpolation."""
 SHOWN = 60.0
 """Seconds that the whole motion takes on the screen."""
 GLOBE = "Earth"
 """The body that Cesium shows."""
 OTHER = "#C8C8C8"
-"""Of the reference, on black."""
+"""Colour of the reference, on black."""
 
 
 def czml(motion: Ephemeris) -> str:

@@ -139,7 +139,7 @@ class Ephemeris:
 
     @property
     def times(self) -> Array:
-        """Of all arcs, shape (M,); where one arc ends and another begins the time occurs once."""
+        """Return the times of all arcs, shape (M,); where one arc ends and another begins the time occurs once."""
         return self._joined([arc.times for arc in self.arcs])
 
     @property

@@ -14,7 +14,7 @@ ORIGINATOR = "SATSYM"
 UNKNOWN = "UNKNOWN"
 """The international designator of an object that has none, as the standard wants it."""
 DEGREE = 7
-"""Of Hermite's interpolation."""
+"""Degree of Hermite's interpolation."""
 
 
 def oem(motion: Ephemeris) -> str:

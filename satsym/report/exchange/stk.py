@@ -10,7 +10,7 @@ SYSTEMS = {"EME2000": "J2000", "ICRF": "ICRF", "GCRF": "ICRF"}
 MONTHS = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()
 """Whatever language the system speaks."""
 DEGREE = 7
-"""Of the polynomials that readers are to put through points; with velocities four points determine one."""
+"""Degree of the polynomials that readers put through points; with velocities four points determine one."""
 
 
 def stk(motion: Ephemeris) -> str:

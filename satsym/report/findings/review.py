@@ -53,7 +53,7 @@ class Review:
 
     @property
     def key(self) -> str:
-        """Of the document."""
+        """Return the key of the document."""
         return self.ledger.document.key
 
     @property
@@ -64,7 +64,7 @@ class Review:
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """Those on which most depends first."""
+        """Return the findings, those on which most depends first."""
         return findings(self.rows)
 
     @cached_property
@@ -156,7 +156,7 @@ class Review:
         return sentences
 
     def _conclusions(self) -> list[str]:
-        """Those that fall, with the reason of each, and those that stand."""
+        """Say which conclusions fall, with the reason of each, and which stand."""
         conclusions = [row for row in self.rows if row.role == "conclusion" and row.verdict not in OPEN]
         causes = [(number, found) for number, found in enumerate(self.findings, start=1) if found.overturned]
         falling = {row.key for _, found in causes for row in found.overturned}
@@ -193,13 +193,13 @@ class Review:
 
 
 def title(reviews: Sequence[Review]) -> str:
-    """Of a report."""
+    """Return the title of a report."""
     texts, documents = reviews[0].texts, reviews[0].ledger.document.title
     return texts.counted("audit", "title", len(reviews), documents=documents)
 
 
 def where(row: Judged) -> str:
-    """Where it stands, unless its name says so."""
+    """Return where a finding stands, unless its name says so."""
     return "" if row.key.startswith(row.where) else row.where
 
 

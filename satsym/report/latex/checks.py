@@ -18,7 +18,7 @@ def checked(texts: Texts, check: Check) -> str:
 
 
 def listed(derivation: Derivation, texts: Texts) -> str:
-    """All of them, step by step; what was found of every step is said once."""
+    """List the checks of all steps; what was found of every step is said once."""
     steps = derivation.steps
     common = [c for c in steps[0].checks if all(c.claim in {other.claim for other in s.checks} for s in steps)]
     paragraphs = [texts.get("methods", "all", **_measures(texts, LIMIT))]

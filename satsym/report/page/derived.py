@@ -64,7 +64,7 @@ class Derived:
         self._ends: dict[str, tuple[str, str]] = {}
 
     def render(self) -> Markup:
-        """All of it."""
+        """Return the whole section."""
         kind = "problem" if self._derivation.problem else "model"
         return joined(tag("h3", self._texts.get("sections", kind)), self.statement(), self.steps())
 

@@ -18,7 +18,7 @@ from satsym.report.said import decimal
 from satsym.report.texts import Texts
 
 SIDE = 400.0
-"""Of the picture, in its own units."""
+"""Side of the picture, in its own units."""
 FRAMES = 120
 TURNS, SECONDS = 40, 10.0
 """Pictures of a body that turns, and how long all of them take, as the style sheet has it."""
@@ -32,7 +32,7 @@ EDGES = [
     for other in _CORNERS[k + 1 :]
     if np.count_nonzero(one != other) == 1
 ]
-"""Of the box, shape (3, 2) each."""
+"""Edges of the box, shape (3, 2) each."""
 
 Placing: TypeAlias = Callable[[Array], Array]
 """From points of a plane to points of the picture, shapes (2, N)."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 DIGITS = 10
-"""Of what is given."""
+"""Significant digits of given numbers."""
 
 
 def problem(instance: Instance, statement: Derived | None, values: Sequence[str], texts: Texts) -> Markup:

@@ -33,7 +33,7 @@ class Switching:
 
 
 def of(scene: Scene) -> list[Switching]:
-    """Those of a solution, of controls that are bounded on both sides, and of norms that are."""
+    """Return the switching functions of a solution: of controls bounded on both sides, and of bounded norms."""
     if scene.lam is None:
         return []
     case = scene.instance

@@ -46,7 +46,7 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
 
 
 def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Figure]:
-    """The same as figures of matplotlib, by name, for people who go on drawing."""
+    """Return the pictures as figures of matplotlib, by name, for people who go on drawing."""
     from satsym.report.plots import style
 
     with style.applied(look):

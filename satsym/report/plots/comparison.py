@@ -40,7 +40,7 @@ def pictures(cases: Sequence[Case], look: Look = SCREEN) -> dict[str, files.Cont
 
 
 def page(cases: Sequence[Case]) -> Figure | None:
-    """All of it, for the cases that have answers; nothing where there are none."""
+    """Draw the comparison of the cases that have answers; ``None`` where there are none."""
     answered = [case for case in cases if case.answered]
     if not answered:
         return None

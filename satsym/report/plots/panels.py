@@ -50,7 +50,7 @@ def small_multiples(
 
 
 def _read(quantities: Sequence[tuple[Series, str]]) -> list[Reading]:
-    """Those of each colour have one unit, where they can."""
+    """Return readings of which those of each colour have one unit, where they can."""
     shown: dict[int, Reading] = {}
     for colour in dict.fromkeys(colour for _, colour in quantities):
         places = [i for i, (_, own) in enumerate(quantities) if own == colour]

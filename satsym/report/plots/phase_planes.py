@@ -52,7 +52,7 @@ class Plane:
 
 
 def of(scene: Scene) -> list[Plane]:
-    """Of each state that another one is the rate of; of a system with two states these, whatever they are."""
+    """Return a plane for each state and its rate; for a system with two states theirs, whatever they are."""
     if not scene.drawable:
         return []
     states, rated = series.states(scene), scene.rated or ([(0, 1)] if len(scene.spec.states) == 2 else [])
@@ -96,7 +96,7 @@ def _switching(scene: Scene, i: int, j: int) -> Field | None:
 
 
 def entries(planes: list[Plane]) -> list[legend.Entry]:
-    """Of a legend: what only these pictures have."""
+    """Return the entries of a legend that only these pictures have."""
     from matplotlib.patches import Patch
 
     found: list[legend.Entry] = [(legend.line(color=style.STATE, **style.START), say("start"))]

@@ -23,7 +23,7 @@ class WithPowers(ScalarFormatter):
         self._power = 0
 
     def set_locs(self, locs: Iterable[float]) -> None:
-        """As of matplotlib, which tells it all ticks before it asks for the text of each."""
+        """Take all ticks, which matplotlib tells before it asks for the text of each."""
         places = list(locs)
         super().set_locs(places)
         largest = max((abs(place) for place in places), default=0.0)

@@ -38,12 +38,12 @@ class Reading:
     target: float | None
     lower: float
     upper: float
-    """As in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum."""
+    """Values as in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum."""
     low: float
     high: float
     """Ends of the axis."""
     deviation: bool
-    """Whether it is the deviation from the reference."""
+    """Whether the reading is the deviation from the reference."""
     turns: bool
     """Whether to mark multiples of pi."""
     scale: float
@@ -89,7 +89,7 @@ class _Counted:
 
     @property
     def from_datum(self) -> bool:
-        """Whether it is counted from something else than zero."""
+        """Whether the reading is counted from another value than zero."""
         return self.deviation or bool(np.any(self.datum))
 
     @property
@@ -100,7 +100,7 @@ class _Counted:
         return 0.0 if flat else max(abs(self.low), abs(self.high))
 
     def shown(self, measure: Scale) -> Reading:
-        """As it is shown, in a unit."""
+        """Return the series as it is shown, in a unit."""
         scale, series, datum = 1.0 / measure.divisor, self.series, self.datum
 
         def placed(values: Array | None) -> Array | None:

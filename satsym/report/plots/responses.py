@@ -44,11 +44,11 @@ class Curve:
     title: str
     """Under which law it is."""
     prefix: str = ""
-    """Of its symbol."""
+    """Prefix of the symbol of the curve."""
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of its axis without a margin: zero, all of the linear response, and of the exact one what is near that."""
+        """Return the ends of the axis without a margin: zero, the linear response, and the exact one where near."""
         low, high = min(float(self.linear.min()), 0.0), max(float(self.linear.max()), 0.0)
         width = high - low or 1.0
         exact = np.zeros(1) if self.exact is None else curves.clean(self.exact)
@@ -140,7 +140,7 @@ def page(design: Design, seen: Responded) -> Figure:
 
 
 def _beside(design: Design, seen: Responded) -> Figure:
-    """The same on a page that cannot grow downwards: all in one order, with as many side by side as it takes."""
+    """Draw the responses on a page that cannot grow downwards, with as many side by side as it takes."""
     shown = [*seen.free, *seen.steered, *seen.inputs, seen.cost]
     columns = style.columns(len(shown), 2, SMALL_ROW, 1.4)
     rows = -(-len(shown) // columns)
@@ -191,7 +191,7 @@ def differences(design: Design, seen: Responded) -> Figure | None:
 
 
 def _measures(shown: Sequence[Curve]) -> list[display.Scale]:
-    """Of each curve: those of one colour, which are states or inputs, have one unit."""
+    """Return the unit of each curve; those of one colour, which are states or inputs, have the same unit."""
     found: dict[int, display.Scale] = {}
     for colour in dict.fromkeys(curve.colour for curve in shown):
         own = [k for k, curve in enumerate(shown) if curve.colour == colour]

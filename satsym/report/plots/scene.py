@@ -36,7 +36,7 @@ class Scene:
     x: Array
     u: Array
     lam: Array | None
-    """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a simulation."""
+    """Values of the result, NaN where they cannot be drawn; ``lam`` is ``None`` for a simulation."""
     reference: Array | None
     free: Array | None
     """States of the reference curve and of the uncontrolled motion at the nodes; ``None`` where there is none or,

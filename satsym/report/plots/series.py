@@ -29,7 +29,7 @@ STEADY = 1e-6
 """A Hamiltonian that ought to be constant varies by less, relative to its terms, or by something to be seen."""
 
 STEP = 1e-30
-"""Of complex steps, relative."""
+"""Relative size of complex steps."""
 
 SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
 """What is said of times of a quantity, in English."""
@@ -44,15 +44,15 @@ class Series:
 
     latex: str
     name: str
-    """As a formula, and in letters where that cannot be set."""
+    """Name as a formula, and in letters where a formula cannot be set."""
     unit: str
     meaning: str
-    """As in :class:`~satsym.spec.Variable`."""
+    """Unit and meaning as in :class:`~satsym.spec.Variable`."""
     values: Array
     """At the nodes, NaN where there is nothing to draw."""
     reference: Array | None = None
     free: Array | None = None
-    """The same quantity on the reference curve, and in the uncontrolled motion."""
+    """Values on the reference curve, and in the uncontrolled motion."""
     target: float | None = None
     """The value that is required at the end."""
     angle: bool = False

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 WIDTH = 10.0
-"""Of a page on a screen, in inches."""
+"""Width of a page on a screen, in inches."""
 HIGHEST = 40.0
-"""Of any page, in inches: it grows downwards with what is on it."""
+"""Greatest height of a page, in inches; a page grows downwards with what is on it."""
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Sheet:
     """What a size of pages means."""
 
     width: float
-    """Of the widest page, in inches."""
+    """Width of the widest page, in inches."""
     letters: float
     """Letters and lines, and heights, relative to those on a screen."""
     across: int = 3

@@ -30,7 +30,7 @@ PANEL = 3.6
 SHORT = 1e3
 """Last value by first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
-"""Of cells without a number, a grey for each way to end."""
+"""Greys of cells without a number, one for each way to end."""
 FEWEST, LEVELS = 4, 8
 """Rows and columns from which a map of the cost has contours, and how many of them about."""
 OUTER = (0.01, 0.99)
@@ -124,7 +124,7 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
 
 
 def _colours(values: Any) -> dict[str, Any]:
-    """Of a map: from white to either side where values have both signs."""
+    """Return the colours of a map: from white to either side where values have both signs."""
     known = values.compressed()
     if not known.size or not known.min() < 0.0 < known.max():
         return {"cmap": "viridis"}

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
 SKY = "#56B4E9"
-"""Of the same palette, on dark ground."""
+"""Colour of the same palette that is read on a dark ground."""
 INK, SOFT, GREY, FAINT, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
 SHADE = 0.12
 STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE
@@ -87,20 +87,20 @@ GRID = 241
 MARGIN = 1.3
 """Inches on a screen beside a panel, for its ticks and its label."""
 TITLE = 9.5
-"""Of the title of a panel, in points on a screen."""
+"""Size of the title of a panel, in points on a screen."""
 NARROWEST = 3.0
-"""Of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
+"""Least width of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
 HINTED = 1.1
 """Letters on a coarse grid of pixels are wider than their outlines by up to this factor."""
 FEWEST = 12
 """Letters of a line."""
 SHORTEST = 0.8
-"""Of the room above a panel, in inches on a screen."""
+"""Least height of the room above a panel, in inches on a screen."""
 DPI = 160
 _SCALED: tuple[Any, ...] = tuple(
     "font.size axes.labelsize axes.titlesize axes.titlepad xtick.labelsize ytick.labelsize legend.fontsize".split()
 )
-"""Of what follows, what is in points."""
+"""Settings below that are in points."""
 _UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _RC: dict[Any, Any] = {
     "font.size": 10.5,
@@ -148,7 +148,7 @@ _RC: dict[Any, Any] = {
 _LOOK: ContextVar[Look] = ContextVar("look", default=SCREEN)
 """While a style is applied."""
 _LETTERS: ContextVar[float] = ContextVar("letters", default=1.0)
-"""Of the page that was begun last."""
+"""Size of letters of the page that was begun last, relative to a screen."""
 _BEGUN: WeakKeyDictionary[Figure, float] = WeakKeyDictionary()
 """The letters of each page."""
 

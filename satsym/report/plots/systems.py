@@ -109,7 +109,7 @@ def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], look: Look) -> P
 
 
 POINTS = 41
-"""Of the grid on which directions are computed, along each axis."""
+"""Points along each axis of the grid on which directions are computed."""
 
 
 def portrait(found: Analysis) -> Figure | None:

@@ -46,7 +46,7 @@ class Stored(msgspec.Struct):
     because: str = ""
 
     def certificate(self, spec: ProblemSpec) -> Certificate:
-        """The same as solving handed it back, but for infinite numbers, which JSON lacks."""
+        """Return the certificate as solving returned it, except for infinite numbers, which JSON lacks."""
         return Certificate(
             verdict=self.verdict,
             boundary_residual=absent(self.boundary_residual),

@@ -54,7 +54,7 @@ def file_of(instance: Instance) -> dict[str, str] | None:
 
 
 def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
-    """The same for what is about an instance, or about a model as such."""
+    """Return the head of an object that is about an instance, or about a model as such."""
     from satsym.kernels import Kernels
 
     if isinstance(given, Kernels):

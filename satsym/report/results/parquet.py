@@ -52,7 +52,7 @@ def write(stream: IO[bytes], names: Sequence[str], kinds: Sequence[type], rows: 
 
 
 def names_of(path: Path) -> list[str]:
-    """Of the columns, with their units."""
+    """Return the names of the columns, with their units."""
     require()
     names: list[str] = import_module("pyarrow.parquet").read_schema(path).names
     return names

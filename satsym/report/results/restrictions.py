@@ -105,7 +105,7 @@ def of(instance: Instance, times: Array, x: Array, u: Array) -> list[Restriction
 
 
 def within(restrictions: Sequence[Restriction], states: Sequence[int], timed: bool = False) -> list[Restriction]:
-    """Those that depend on nothing but these states, and on time where that may be."""
+    """Return the restrictions that depend on these states alone, and on time where that is allowed."""
     return [one for one in restrictions if one.states and one.states <= set(states) and (timed or not one.timed)]
 
 

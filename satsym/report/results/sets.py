@@ -42,15 +42,15 @@ class Found:
     """A set that was read."""
 
     folder: Path
-    """Where it is."""
+    """Folder of the set."""
     command: str
-    """That wrote it."""
+    """Command that wrote the set."""
     result: bytes
     """The text of its result.json."""
     listed: Mapping[str, Listed]
-    """Its other files."""
+    """Names of the other files of the set."""
     contents: Mapping[str, bytes]
-    """Of those that were wanted, the content."""
+    """Contents of the files that were asked for."""
 
 
 def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:

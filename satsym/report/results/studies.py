@@ -92,7 +92,7 @@ class Merged:
         return row if label is None else replace(row, numbers={**row.numbers, Column.BRANCH: float(label)})
 
     def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
-        """Of a chunk, by the place of the row in it."""
+        """Return the trajectories of a chunk, by the place of the row in it."""
         found, (start, count) = self.parts.trajectories(number), self.study.place(number)
         changed = {} if self.branches is None else self.branches.changed
         return found | {k: dict(changed[start + k].trajectory) for k in range(count) if start + k in changed}

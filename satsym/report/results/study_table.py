@@ -156,7 +156,7 @@ def labels(path: Path) -> dict[str, str]:
 
 
 def labels_of(header: Sequence[str]) -> dict[str, str]:
-    """The same of the first line of a table."""
+    """Return the labels of the columns that the first line of a table names."""
     return {label.partition(" [")[0]: label for label in header}
 
 

@@ -33,7 +33,7 @@ Stored = dict[str, NDArray[Any]]
 
 ARRAYS = "trajectory.npz"
 COMMANDS = ("solve", "simulate")
-"""Those whose results hold a trajectory."""
+"""Commands whose results hold a trajectory."""
 
 _LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
 """How methods and feedbacks are called."""

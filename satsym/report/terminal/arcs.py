@@ -117,7 +117,7 @@ def _span(begin: float, end: float) -> str:
 
 
 def _listed(parts: Sequence[str], unit: str) -> str:
-    """As many parts as are shown, with their unit, and how many there are besides."""
+    """List as many parts as are shown, with their unit, and say how many there are besides."""
     listed = f"{', '.join(parts[:SHOWN_TIMES])} {unit}".rstrip()
     left = len(parts) - SHOWN_TIMES
     return say("<listed> and <number> more", listed=listed, number=left) if left > 0 else listed

@@ -47,7 +47,7 @@ class Texts:
         return _HOLE.sub(lambda hole: fill.get(hole[1], hole[0]), text)
 
     def counted(self, table: str, key: str, number: int, **fill: str) -> str:
-        """Likewise of a text that says something of one or, after a bar, of many; ``<number>`` is the number."""
+        """Return a text that speaks of one or, after a bar, of many, with ``<number>`` filled in."""
         one, _, many = self.get(table, key).partition("|")
         text = many if many and number != 1 else one
         return _HOLE.sub(lambda hole: {"number": str(number), **fill}.get(hole[1], hole[0]), text)

@@ -41,7 +41,7 @@ FARTHEST: dict[str, Any] = {"marker": "^", "markersize": 7.0, "color": style.GRE
 CONIC: dict[str, Any] = {"color": style.GREY, "linewidth": 1.1, "linestyle": (0, (5, 3)), "zorder": 2.1}
 ASYMPTOTE: dict[str, Any] = {"color": style.GREY, "linewidth": 0.9, "linestyle": ":", "zorder": 1.9}
 SIDE = 5.4
-"""Of a panel, in inches."""
+"""Side of a panel, in inches."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,12 +51,12 @@ EXACT: dict[str, Any] = {
 MARGIN = 1.25
 """Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
 SIDE = 6.6
-"""Of the page, in inches."""
+"""Side of the page, in inches."""
 APART, NOUGHT = 100.0, 1e-8
 """How many times further from zero than the nearest eigenvalue the furthest lies where decades are as long as each
 other, and relative to the furthest what counts as zero, being so by rounding only."""
 MARKED = 3
-"""Of the decades, as many at most are named on each side."""
+"""Largest number of decades that are named on each side."""
 
 
 def of_analysis(found: Analysis) -> Figure:

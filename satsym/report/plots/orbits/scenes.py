@@ -27,7 +27,7 @@ MOST_VIEWS = 4
 FREE = 1.5
 """Up to so many widths of the path the uncontrolled motion is shown whole."""
 LENGTH = 0.4
-"""Of the axes of space at most, relative to half the size of the picture."""
+"""Largest length of the axes of space, relative to half the size of the picture."""
 LONGEST = 0.13
 """Length of the longest arrow, relative to the size of the picture."""
 CLOSED = 0.05
@@ -57,7 +57,7 @@ class Orbit:
     by_states: bool = False
     """Whether states tell where it is, and no position vector."""
     target: Array | None = None
-    """Where it has to end, shape (2 or 3, 1)."""
+    """Where the motion has to end, shape (2 or 3, 1)."""
     around: Surroundings = NOTHING
     thrusts: bool = True
     """Whether what the controls add is called thrust."""
@@ -160,7 +160,7 @@ class Orbit:
 
 
 def entries(orbit: Orbit) -> list[legend.Entry]:
-    """Of a legend: what only pictures in space have."""
+    """Return the entries of a legend that only pictures in space have."""
     arrow = legend.line(
         color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
     )

@@ -29,11 +29,11 @@ BURNING = 0.02, 0.98
 ALIKE = 1e-9
 """Relative to its size, what differs by less is the same."""
 MOST_TURNS = 20
-"""As many times the duration at most another orbit is followed until it closes."""
+"""Another orbit is followed until it closes, for this many times the duration at most."""
 STEPS = 720
-"""Of a motion that is followed, in each of these times."""
+"""Steps in which a motion is followed, over each duration."""
 SMALLEST = 0.02
-"""Of the body that is drawn to scale, its radius relative to the size of the path."""
+"""Smallest radius of a body that is drawn to scale, relative to the size of the path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class Surroundings:
     burns: Array | None = None
     """The path where there is thrust, NaN elsewhere; ``None`` where there always is some."""
     radius: float = 0.0
-    """Of the body at the origin; 0 where it is not known, or too small to be seen."""
+    """Radius of the body at the origin; 0 where it is not known, or too small to be seen."""
     body: str = ""
 
     @classmethod
@@ -161,7 +161,7 @@ def draw_from_reference(axes: Axes, around: Surroundings, scale: float) -> None:
 
 
 def entries(around: Surroundings) -> list[legend.Entry]:
-    """Of a legend."""
+    """Return the entries of a legend."""
     from matplotlib.patches import Patch
 
     found: list[legend.Entry] = []
@@ -181,7 +181,7 @@ def entries(around: Surroundings) -> list[legend.Entry]:
 
 
 def _radius(radius: float, path: Array) -> float:
-    """Of a body that is no mere dot beside the path; 0 of one that is."""
+    """Return the radius of a body, or 0 where it would be a mere dot beside the path."""
     return radius if radius > SMALLEST * float(np.nanmax(np.abs(path))) else 0.0
 
 
