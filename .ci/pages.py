@@ -14,7 +14,8 @@ from pathlib import Path
 BUILT = Path(__file__).parents[1] / "docs" / "_build" / "html"
 PAGES = (
     "index start howto theory gallery gallery/transfer-fuel instances models glossary documents comparison asked "
-    "notebook developers reference/commands reference/python tutorials/judge tutorials/return"
+    "notebook notebook_class notebook_system notebook_study models_without_cost studies developers reference/commands "
+    "reference/python tutorials/judge tutorials/return"
 )
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 QUIET = (
