@@ -138,7 +138,7 @@ def page(known: dict[str, str], root: Path) -> str:
     call = python.get(known["command"], "found = satsym.analyse")
     code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
     parts = [
-        f"---\norphan: true\n---\n\n{WRITTEN}# {known['title']}\n",
+        f"---\norphan: true\n---\n\n{WRITTEN}# {known['title'].replace('^2', '²')}\n",
         "Back to the [gallery](../gallery.md).\n",
         f"{picture(known, '../')}\n" if known["drawn"] else "",
         f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
@@ -170,7 +170,7 @@ def picture(known: dict[str, str], up: str = "") -> str:
 
 def card(known: dict[str, str]) -> str:
     """An example in the overview."""
-    name, title = known["name"], escape(known["title"])
+    name, title = known["name"], escape(known["title"].replace("^2", "²"))
     image = f"<img src='_static/gallery/{name}.svg' alt='' loading='lazy'>" if known["drawn"] else ""
     return (
         f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"

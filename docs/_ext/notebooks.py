@@ -3,6 +3,7 @@
 import ast
 import io
 import json
+import re
 from pathlib import Path
 from pprint import pformat
 from typing import Any
@@ -42,8 +43,16 @@ def shown(source: str, known: dict[str, object]) -> str:
         return f"```{{raw}} html\n<div class='cell wide' tabindex='0'>{value._repr_html_()}</div>\n```"
     if hasattr(value, "_repr_latex_"):
         tex = value._repr_latex_().strip("$").removeprefix(r"\displaystyle ")
-        return f"$$\n{tex}\n$$"
+        return f"$$\n{in_one_row(tex)}\n$$"
     return "" if value is None else f"```text\n{value if isinstance(value, str) else pformat(value, width=100)}\n```"
+
+
+def in_one_row(tex: str) -> str:
+    """A formula without the alignment that it does not need, and with names as MathML has them."""
+    alone = re.fullmatch(r"\\begin\{aligned\}(.*)\\end\{aligned\}", tex, re.DOTALL)
+    if alone and r"\\" not in alone[1]:
+        tex = alone[1].replace("&", "", 1).strip()
+    return re.sub(r"\\text\{[^}]*\}", lambda words: words[0].replace(r"\_", "_"), tex)
 
 
 def drawn(figure: Any) -> str:

@@ -14,6 +14,9 @@ from satsym.arrays import Array
 from satsym.choices import Sampling
 from satsym.instance.numbers import Key
 
+ROUNDING = 1e-15
+"""Share of the largest value of a grid by which rounding moves another one."""
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -31,9 +34,16 @@ class Axis:
         if self.logarithmic:
             found = np.exp(np.linspace(math.log(self.low), math.log(self.high), self.count))
         else:
-            found = np.linspace(self.low, self.high, self.count)
+            size = max(abs(self.low), abs(self.high))
+            found = np.array([_decimal(v, size) for v in np.linspace(self.low, self.high, self.count)])
         found[0], found[-1] = self.low, self.high if self.count > 1 else self.low
         return found
+
+
+def _decimal(value: float, size: float) -> float:
+    """Return the short decimal number that a value of a grid is but for rounding, such as 0.95; else the value."""
+    short = float(f"{value:.12g}")
+    return short if abs(short - value) <= ROUNDING * size else float(value)
 
 
 @dataclass(frozen=True)

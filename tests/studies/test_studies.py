@@ -29,7 +29,7 @@ from satsym.solvers.improving import goes_on
 from satsym.status import BadInput, Verdict
 from satsym.studies import reading, rows, solving
 from satsym.studies.asking import asked
-from satsym.studies.design import Grid, Sample
+from satsym.studies.design import Axis, Grid, Sample
 from tests.support.chunks import Here, failing
 
 NAME = "return-to-orbit"
@@ -382,3 +382,10 @@ def test_what_is_rounding_or_the_same_in_each_row_is_not_drawn() -> None:
     assert list(distinguishing(given, {})) == ["objective"]
     assert list(distinguishing({"t_final": steady, "x_final.v": rounding}, {})) == ["t_final"]
     assert list(distinguishing({name: np.arange(3.0) ** k for k, name in enumerate("abcd", 1)}, {})) == ["a", "b", "c"]
+
+
+def test_values_of_a_grid_are_the_decimals_that_they_are_meant_to_be() -> None:
+    key = numbers.Key(numbers.Table.INITIAL, "r")
+    assert Axis(key, 0.9, 1.1, 9).values.tolist() == [0.9, 0.925, 0.95, 0.975, 1.0, 1.025, 1.05, 1.075, 1.1]
+    assert Axis(key, 0.0, 1.0, 4).values[1] == 1 / 3
+    assert Axis(key, -1e-5, 2e-5, 7).values.tolist() == [-1e-5, -5e-6, 0.0, 5e-6, 1e-5, 1.5e-5, 2e-5]
