@@ -43,7 +43,7 @@ def test_a_circle_is_coasted_along_at_a_constant_rate():
 
 
 def test_what_moves_about_no_centre_has_no_orbit():
-    with pytest.raises(BadInput, match="no motion about a centre"):
+    with pytest.raises(BadInput, match="not a motion about a centre"):
         orbits.orbit("double-integrator-time")
 
 

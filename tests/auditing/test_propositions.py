@@ -146,9 +146,9 @@ def test_what_is_off_by_the_factor_of_a_unit_is_told_from_what_is_wrong() -> Non
 
 BAD = {
     "__import__('os').system('true')": "plain name",
-    "double.__globals__": "no part of anything",
+    "double.__globals__": "not a part of anything",
     "double == 1": "is a measurement",
-    "s.__class__ == 1": "no part of anything",
+    "s.__class__ == 1": "not a part of anything",
     "lambda: 1": "lambda",
     "[x for x in NUMBERS][0].n == y": "means nothing",
     "double(1, 2) == 3": "arguments",

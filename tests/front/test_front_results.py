@@ -200,7 +200,7 @@ def test_a_result_is_not_loaded_for_an_instance_that_has_changed(
     solution = solved("soft-return")
     solution.save(tmp_path)
     assert satsym.Solution.load(tmp_path, solution.instance.with_(title="anew", solver={"steps": 7}))
-    with pytest.raises(BadInput, match=f"is of another soft-return: {what} differ"):
+    with pytest.raises(BadInput, match=f"was made from another soft-return: {what} differ"):
         satsym.Solution.load(tmp_path, solution.instance.with_(**changes))
 
 

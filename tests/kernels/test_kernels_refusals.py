@@ -350,10 +350,10 @@ def house(tmp_path: Path, legal: str) -> Path:
         ("mi\0ne/mine", "no such file"),
         ("./" + "a" * 5000, "small letter"),
         ("a" * 5000 + "/a", "no such file"),
-        ("", "no shipped model"),
-        ("mi\nne", "no shipped model"),
-        ("__init__", "no shipped model"),
-        ("Polar_orbit", "no shipped model"),
+        ("", "not a shipped model"),
+        ("mi\nne", "not a shipped model"),
+        ("__init__", "not a shipped model"),
+        ("Polar_orbit", "not a shipped model"),
     ],
 )
 def test_names_and_paths_that_lead_elsewhere_are_refused_in_one_line(house: Path, model: str, reason: str):

@@ -212,7 +212,7 @@ def test_the_answers_of_a_study_are_chosen_by_what_it_varies(run: Run, returned:
     assert answers[0].solution.objective == pytest.approx(returned.objective)
     assert [answer.own for answer in answers] == [True, False, False], "the instance begins at 1.1"
     assert data([answers[2], answers[0]])["begin"] == 1
-    with pytest.raises(BadInput, match="is of return-to-orbit, not of soft-return"):
+    with pytest.raises(BadInput, match="belongs to return-to-orbit, not to soft-return"):
         explored(solve(instance.load("soft-return")), tmp_path / "kept")
     assert run("study", "return-to-orbit", *vary, "--out", str(tmp_path / "bare"))[0] == 0
     with pytest.raises(BadInput, match="kept no trajectories; make it again with --trajectories"):

@@ -131,8 +131,8 @@ def test_what_is_of_something_else_is_not_drawn(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.chdir(tmp_path)
     assert json.loads(plotted("run", "--out", tmp_path / "named", "--json"))["instance"] == "own"
-    refused("uny-lqr", "is of own .*, not of uny-lqr .*; `satsym lqr X")
-    refused("clohessy_wiltshire", "is of own .*, not of clohessy_wiltshire .*; `satsym lqr X")
+    refused("uny-lqr", "belongs to own .*, not to uny-lqr .*; `satsym lqr X")
+    refused("clohessy_wiltshire", "belongs to own .*, not to clohessy_wiltshire .*; `satsym lqr X")
     case.write_text(case.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
     refused(str(case), "is of own before its file was changed; `satsym lqr X")
     listing = run / "result.json"
@@ -228,7 +228,7 @@ def test_a_result_that_is_none_is_refused(solution: Solution, folder: Path, cont
 
 
 def test_results_of_another_instance_are_refused(folder: Path) -> None:
-    with pytest.raises(BadInput, match=f"is of {NAME} .*, not of its-thesis"):
+    with pytest.raises(BadInput, match=f"belongs to {NAME} .*, not to its-thesis"):
         trajectory.read(instance.load("its-thesis"), folder)
 
 

@@ -156,7 +156,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
         ({"vary": {"r": "1:2:3"}}, 'did you mean "initial.r"'),
         ({"vary": {"initial.r": "-1:2:3"}}, "outside the domain"),
         ({"vary": {"initial.r": "1:2"}}, "is not a range"),
-        ({"vary": {"initial.r": "1:2:0"}}, "no number of values"),
+        ({"vary": {"initial.r": "1:2:0"}}, "not a number of values"),
         ({"vary": {"initial.r": "1:1:2"}}, "LOW and HIGH must differ"),
         ({"vary": {"initial.r": "1:inf:2"}}, "not finite"),
         ({"vary": {"initial.r_dot": "log:0:1:3"}}, "no logarithm"),
@@ -169,7 +169,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
         ({"vary": {"final.theta": "1:2:3"}}, "gives no number for it"),
         ({"uniform": {"initial.r": "1,2"}}, "--sample N"),
         ({"uniform": {"initial.r": "2,1"}, "sample": 3}, "is not below HIGH"),
-        ({"normal": {"initial.r": "1,-1"}, "sample": 3}, "no standard deviation"),
+        ({"normal": {"initial.r": "1,-1"}, "sample": 3}, "not a standard deviation"),
     ],
 )
 def test_what_cannot_be_varied_is_one_line(said: dict[str, Any], line: str) -> None:
