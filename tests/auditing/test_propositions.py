@@ -183,7 +183,7 @@ def test_what_is_no_proposition_is_refused_in_one_line(text: str) -> None:
         ("length() == 3 + length()", "no value"),
         ("length() == '2 s'", "not measured in"),
         ("2 ** 1000 == 1", "at most"),
-        ("all(m == 1 for m in s)", "no family or list"),
+        ("all(m == 1 for m in s)", "not a family or list"),
         ("text['a'][7] == 'x'", "no such entry"),
     ],
 )

@@ -172,7 +172,7 @@ def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pyte
     assert Trajectory.load(tmp_path / "b").x(0.0)[0] == 1.1
     with pytest.raises(BadInput, match="holds the result of simulate, not of solve"):
         satsym.Solution.load(tmp_path / "b")
-    with pytest.raises(BadInput, match="of soft-return"):
+    with pytest.raises(BadInput, match="to soft-return"):
         satsym.Solution.load(tmp_path / "a", "its-thesis")
     capsys.readouterr()
 

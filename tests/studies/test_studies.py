@@ -198,9 +198,9 @@ DRAWN = {"normal": {"initial.r": (1.0, 0.1)}}
         (GRID | {"command": "drive"}, '"solve", "simulate", "lqr"'),
         (GRID | {"workers": -1}, "workers: -1"),
         (GRID | {"workers": 0}, "workers: 0"),
-        (GRID | {"command": "simulate", "certificate": "full"}, 'certificate: is for "solve"'),
+        (GRID | {"command": "simulate", "certificate": "full"}, 'certificate: applies to "solve"'),
         (GRID | {"command": "simulate", "feedback": "magic"}, "feedback: "),
-        (GRID | {"feedback": "none"}, 'feedback: is for "simulate"'),
+        (GRID | {"feedback": "none"}, 'feedback: applies to "simulate"'),
     ],
 )
 def test_what_cannot_be_asked_for_is_one_line_and_writes_nothing(said: Any, line: str, tmp_path: Path) -> None:
@@ -212,7 +212,7 @@ def test_what_cannot_be_asked_for_is_one_line_and_writes_nothing(said: Any, line
 
 
 def test_what_a_command_has_not_is_refused_unless_the_table_says_it_of_another(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="trajectories: is for"):
+    with pytest.raises(BadInput, match="trajectories: applies to"):
         study("geo-lqr", tmp_path, vary={"initial.r": (42000, 42200, 2)}, command="lqr", trajectories=True)
     with pytest.raises(BadInput, match="folder: "):
         study(NAME, None, **GRID)  # type: ignore[arg-type]
