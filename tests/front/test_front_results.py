@@ -208,7 +208,7 @@ def test_a_changed_instance_does_not_come_back_as_the_shipped_one(tmp_path: Path
     found = satsym.solve(satsym.load("soft-return").with_(initial={"r": 1.05}), steps=20)
     found.save(tmp_path)
     assert satsym.Solution.load(tmp_path).instance.case.initial[0] == 1.05
-    with pytest.raises(BadInput, match="starts elsewhere"):
+    with pytest.raises(BadInput, match="starts from another state"):
         satsym.Solution.load(tmp_path, "soft-return")
 
 

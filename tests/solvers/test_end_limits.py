@@ -322,7 +322,7 @@ def test_what_is_saved_comes_back_with_its_ends(tmp_path: Path):
         ({"x": ["free", "free"]}, {}, r"\[final\] x: both ends are free; leave the state out"),
         ({"x": ["reference", 1.0]}, {}, r'\[final\] x: a range cannot end at "reference"'),
         ({"x": [0.0, 1.0, 2.0]}, {}, r"\[final\] x: got"),
-        ({"x": [0.0, 1.0]}, {"initial": {"x": "free", "v": 0.0}}, "is not solved beside"),
+        ({"x": [0.0, 1.0]}, {"initial": {"x": "free", "v": 0.0}}, "cannot be combined with"),
         ({"x": [0.0, 1.0]}, {"solver": {"free_angles": ["x"]}}, "angle|turn"),
         ({"x": [0.0, 1.0]}, {"solver": {"method": "sweep"}}, "cannot be swept for"),
     ],

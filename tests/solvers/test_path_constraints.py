@@ -199,7 +199,7 @@ def test_a_beam_under_a_ceiling_has_twice_the_effort():
         (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall is 0.1 there"),
         (WALL, {"initial": {"x": 0.1, "v": 1.0}}, "violated right after the start"),
         (WALL, {"final": {"x": 0.1, "v": -1.0}}, "violated right before the end"),
-        (WALL, {"parameters": {"l": "free"}}, "is not solved beside path constraints"),
+        (WALL, {"parameters": {"l": "free"}}, "cannot be combined with path constraints"),
     ],
 )
 def test_what_cannot_be_kept_at_the_ends_is_refused(of: Problem, given: dict[str, Any], message: str):
