@@ -140,6 +140,9 @@ class Point:
         """The value of a function of something."""
         name = node.function
         if name in ("sin", "cos", "tan"):
+            inner = node.arguments[0]
+            if isinstance(inner, Call) and inner.function in ("asin", "acos", "atan"):
+                return self._of_an_inverse(name, inner.function, self.value(inner.arguments[0]))
             turn = self._exponential(_terms(node.arguments[0]).times_i())
             return _circular(name, turn)
         if name == "exp":
@@ -162,6 +165,18 @@ class Point:
             return (one + other + gap) * _HALF % PRIME
         # any other function is known by its arguments alone
         return _random(self._seed, f"{name}({','.join(map(str, arguments))})")
+
+    def _of_an_inverse(self, name: str, inverse: str, value: int) -> int:
+        """The sine, cosine or tangent of an angle that is given by one of these."""
+        if inverse == "atan":
+            cosine = self._power((1 + value * value) % PRIME, Fraction(-1, 2))
+            sine = value * cosine % PRIME
+        else:
+            other = self._power((1 - value * value) % PRIME, Fraction(1, 2))
+            sine, cosine = (value, other) if inverse == "asin" else (other, value)
+        if name == "tan":
+            return value if inverse == "atan" else sine * _inverse(cosine) % PRIME
+        return sine if name == "sin" else cosine
 
     def _size(self, value: int) -> int:
         return self._power(value * value % PRIME, Fraction(1, 2)) if value % PRIME else 0

@@ -290,7 +290,9 @@ class Subject:
             if free and symbols(residual) & {*self.derived.controls, *self.derived.costates}:
                 continue
             if vanishes(residual, self.derived, besides):
-                return Fit(guess, self._likest(residual, besides), free, 1.0)
+                left = substituted(named.lhs, self.meant(named.lhs, derivatives, guess))
+                same = (t for t in self.derived.targets if t.always and t.equation.lhs == left and not besides)
+                return Fit(guess, self._likest(residual, besides) or next(same, None), free, 1.0)
         for target in self.derived.targets:
             if not target.always and likeness(residual, target.residual) >= _SAME:
                 for extra in solved(target, self.derived):
@@ -319,7 +321,10 @@ class Subject:
     def _likest(self, residual: Node, besides: Mapping[str, Node]) -> Target | None:
         """The equation that is most like one that is right."""
         best: tuple[float, Target | None] = 0.7, None
+        inside = symbols(residual)
         for target in self.derived.targets:
+            if not symbols(target.equation.lhs) <= inside | {*besides}:
+                continue
             there = substituted(target.residual, besides) if besides else target.residual
             alike = likeness(residual, there) if target.always else 0.0
             if alike > best[0] + 1e-9:

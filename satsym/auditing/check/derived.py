@@ -19,6 +19,7 @@ _GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations",
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps that are named first where several state the same."""
 _ANGLED = frozenset(("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"))
+_COST = ("L", "S")
 _DEEPEST = 12
 
 
@@ -120,10 +121,19 @@ class Derived:
                     name = substituted(name, self._one_name)
                 if isinstance(name, Sym) and name.name not in self.base and name.name not in symbols(tree):
                     found.setdefault(name.name, tree)
-        for letter in ("L", "S"):
-            text = self.record.declared.get(letter)
-            if isinstance(text, str):
-                found.setdefault(letter, record.formula(text))
+        found |= {name: tree for name, tree in self._declared if name not in found}
+        return found
+
+    @cached_property
+    def _declared(self) -> list[tuple[str, Node]]:
+        """The cost, and outputs that are functions of the states of this motion: of a linearised one they are not."""
+        known = self.base | {name for name, text in self.record.definitions.items() if text} | {"t"}
+        found = []
+        for name in (*_COST, *record.variables(self.record, "output")):
+            text = self.record.declared.get(name)
+            tree = record.formula(text) if isinstance(text, str) else None
+            if tree is not None and (name in _COST or symbols(tree) <= known):
+                found.append((name, tree))
         return found
 
     @cached_property
@@ -142,10 +152,9 @@ class Derived:
                     sides = [sides[1], ZERO]
                 address = f"{self.record.name}:{step.name}.{equation.name}"
                 found.append(Target(address, Equality(sides[0], sides[1]), step.name not in _GIVEN))
-        for name in ("L", "S"):
-            if name in self.definitions and name not in self.record.names:
-                address = f"{self.record.name}:{record.DECLARED}.{name}"
-                found.append(Target(address, Equality(Sym(name), self.definitions[name]), True))
+        for name, tree in self._declared:
+            if self.definitions[name] == tree:
+                found.append(Target(f"{self.record.name}:{record.DECLARED}.{name}", Equality(Sym(name), tree), True))
         return found
 
     def opened(self, tree: Node, depth: int = _DEEPEST) -> Node:

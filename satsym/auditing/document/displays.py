@@ -19,12 +19,14 @@ _MOST_FILES = 200
 _MARKDOWN = (".md", ".markdown", ".qmd", ".rmd", ".txt")
 _COMMENT = re.compile(r"(?<!\\)%[^\n]*")
 _VERBATIM = re.compile(r"\\begin\{(verbatim\*?|lstlisting|comment|minted)\}.*?\\end\{\1\}", re.DOTALL)
-_CODE = re.compile(r"^(```|~~~)(?!\s*math).*?^\1[^\n]*$|(?<!`)`[^`\n]+`(?!`)", re.DOTALL | re.MULTILINE)
+_CODE = re.compile(r"^(```|~~~)(?!\s*\{?math).*?^\1[^\n]*$|(?<![`}])`[^`\n]+`(?!`)", re.DOTALL | re.MULTILINE)
 _INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
 _NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
 _DISPLAY = re.compile(
     rf"\\begin\{{(?P<env>(?:{_NUMBERED})\*?|displaymath|math)\}}(?P<body>.*?)\\end\{{(?P=env)\}}"
-    r"|\\\[(?P<brackets>.*?)\\\]|(?<!\\)\$\$(?P<dollars>.*?)(?<!\\)\$\$|^```math[^\n]*\n(?P<fence>.*?)^```",
+    r"|\\\[(?P<brackets>.*?)\\\]|(?<!\\)\$\$(?P<dollars>.*?)(?<!\\)\$\$"
+    r"|^(?P<rail>```+|:::+) *\{?math\}?[^\n]*\n(?P<options>(?:[ \t]*:[a-z-]+:[^\n]*\n)*)(?P<fence>.*?)"
+    r"^(?P=rail)[ \t]*$",
     re.DOTALL | re.MULTILINE,
 )
 _SECTION = re.compile(
@@ -36,7 +38,8 @@ _MACRO = re.compile(
     r"|\\DeclareMathOperator\*?\s*\{\\(?P<operator>[A-Za-z]+)\}"
 )
 _LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
-_REFERENCE = re.compile(r"\\(?:eq|c|C|auto)?ref\s*\{([^{}\n]{1,100})\}")
+_REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100})[}`]")
+_OPTION = re.compile(r":(?:label|name):[ \t]*(\S{1,100})")
 _UNNUMBERED = re.compile(r"\\(?:nonumber|notag)\b")
 _CONTINUES = re.compile(r"[\s&{}]*(?:[-+=]|\\(?:quad|qquad|times|cdot|equiv)\b)")
 _NEAR = 400
@@ -54,6 +57,8 @@ class Display:
     label: str
     section: str
     refers: tuple[str, ...]
+    columns: str = ""
+    """The environment whose ``&`` divide it; empty where none do."""
 
 
 @dataclass
@@ -110,11 +115,13 @@ def displays(source: Source) -> Iterator[Display]:
         numbered = match["env"] is not None and not match["env"].endswith("*") and "math" not in match["env"][1:]
         refers = tuple(_REFERENCE.findall(text, max(0, match.start() - _NEAR), match.start()))
         for row_start, row in _equations(body, match["env"] or ""):
-            label = _LABEL.search(row)
+            label = _LABEL.search(row) or _OPTION.search(match["options"] or "")
             tag = _TAG.search(row)
             item = ""
             if tag:
                 item = tag[1].strip("() ")
+            elif label and label.re is _OPTION:
+                item = label[1]
             elif numbered and not _UNNUMBERED.search(row):
                 counted += 1
                 item = f"{head}.{counted}" if head else str(counted)
@@ -124,7 +131,15 @@ def displays(source: Source) -> Iterator[Display]:
                 item += "'"
             seen.add(item)
             section = f"section {number} {title}".replace("  ", " ").strip() if title or number else ""
-            yield Display(row, start + row_start, line, item, label[1] if label else "", section, refers)
+            yield Display(
+                row, start + row_start, line, item, label[1] if label else "", section, refers, _columns(match["env"])
+            )
+
+
+def _columns(environment: str | None) -> str:
+    """The name without a star of an environment that has columns."""
+    name = (environment or "").rstrip("*")
+    return name if name.startswith(("align", "flalign", "eqnarray", "IEEE")) else ""
 
 
 def _include(source: Source, path: Path, home: Path, asking: tuple[Path, ...]) -> None:

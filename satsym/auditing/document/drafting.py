@@ -18,19 +18,19 @@ from typing import Any
 from satsym.auditing.check import remedies
 from satsym.auditing.check.answer import Subject
 from satsym.auditing.check.derived import Derived, vanishes
-from satsym.auditing.check.meanings import Meanings, given_letters
+from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.told import Answer
 from satsym.auditing.document import displays
 from satsym.auditing.document.displays import Display, Source
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.grammar import CONSTANT, read
 from satsym.auditing.latex.letters import Letter, of_word
-from satsym.auditing.latex.tokens import Unread, tokens
+from satsym.auditing.latex.tokens import Token, Unread, tokens
 from satsym.formula import reading as safe
 from satsym.formula.calculus import derivative, difference
 from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Sym, Text, substituted, symbols
 from satsym.formula.writing import written
-from satsym.records import shelf
+from satsym.records import record, shelf
 from satsym.status import BadInput
 
 SUFFIX = ".ledger.toml"
@@ -124,6 +124,9 @@ def _readings(source: Source) -> Iterator[tuple[Display, Reading]]:
     for display in displays.displays(source):
         try:
             found = tokens(display.text, source.macros, display.start)
+            if display.columns:
+                begin, end = (Token(kind, display.columns, display.start) for kind in ("begin", "end"))
+                found = [begin, *found, end]
             yield display, read(found, display.text, display.start)
         except Unread as error:
             source.unread.append((source.place(min(error.at, len(source.text) - 1)), error.message))
@@ -175,7 +178,8 @@ def _fill(entry: _Entry) -> None:
         _fill_matrix(entry)
         return
     named, derivatives = remedies.with_names(entry.statement, subject)
-    if fit is None or not entry.answer.address or entry.answer.verdict == "undecided":
+    follows = fit is not None and entry.answer.verdict == "right" and isinstance(named, Equality)
+    if fit is None or not (entry.answer.address or follows) or entry.answer.verdict == "undecided":
         entry.table |= {"original": display.text.strip(), "printed": written(named)}
         return
     names = {name: _called(tree, k) for k, (name, tree) in enumerate(derivatives.items(), start=1)}
@@ -190,7 +194,7 @@ def _fill(entry: _Entry) -> None:
         elif rate_of and letter and letter.dots == 1 and isinstance(tree, Sym):
             text = f"d_{rate_of}"  # else the row would say nothing
         else:
-            text = written(tree)
+            text = _of_output(letter, fit.guess, subject) or written(tree)
         entry.letters[names.get(name, name)] = text
     renamed: dict[str, Node] = {name: Sym(new) for name, new in names.items()}
     shown = (
@@ -202,6 +206,11 @@ def _fill(entry: _Entry) -> None:
     safe.statement(entry.table["printed"])  # what the ledger could not read is told now
     controls = ", ".join(f"{name}=0" for name in subject.derived.controls)
     address = entry.answer.address
+    if follows and not address and isinstance(shown, Equality):
+        # it holds without being one of the equations: the right-hand side is held against what the left-hand side is
+        entry.table["printed"] = written(shown.rhs)
+        meanings = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
+        address = written(substituted(shown.lhs, meanings))
     entry.table["holds"] = f"subs('{address}', {controls})" if fit.free else address
 
 
@@ -225,6 +234,20 @@ def _derivative(tree: Node, subject: Subject) -> str:
     of, by = [subject.meanings.tree(letter, meaning) for letter in letters] if len(letters) == 2 else (None, None)
     target = next((t for t in subject.derived.targets if t.equation.lhs == of), None)
     return f"diff(at('{target.address}'), {by.name})" if target and isinstance(by, Sym) else ""
+
+
+def _of_output(letter: Letter | None, guess: Guess, subject: Subject) -> str:
+    """An output, or a rate that the model has no name for, as a ledger has it; else empty."""
+    derived = subject.derived
+    name = (guess.meaning.get(letter.still) or subject.meanings.named(letter.still) or "") if letter else ""
+    address, times = f"{derived.record.name}:{record.DECLARED}.{name}", letter.dots if letter else 0
+    if name in derived.states and times > 1 and name not in derived.speeds:
+        address, times = f"{derived.record.name}:first_order.{name}", times - 1
+    elif name not in record.variables(derived.record, "output"):
+        return ""
+    if times > 1:
+        raise BadInput("a second derivative of an output; state by hand what it is held against")
+    return f"{'d(' * times}at('{address}'){')' * times}"
 
 
 def _called(tree: Node, k: int) -> str:
@@ -259,7 +282,7 @@ def _origin(entry: _Entry, other: _Entry, derived: Derived) -> str:
     if not isinstance(mine, Equality) or not isinstance(theirs, Equality):
         return ""
     row: Node = Call("row", tuple(map(Text, filter(None, (other.display.item, other.part)))))
-    meant = {name: safe.expression(text) for name, text in entry.letters.items()}
+    meant = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
     letters = {name: tree.name for name, tree in meant.items() if isinstance(tree, Sym)}
     tries: list[tuple[Node, Node]] = [(row, theirs.rhs)]
     for name, ours in letters.items():
@@ -278,7 +301,7 @@ def _origin(entry: _Entry, other: _Entry, derived: Derived) -> str:
 def _ours(entry: _Entry) -> Node | Equality | None:
     try:
         tree = safe.statement(str(entry.table["printed"]))
-        values = {name: safe.expression(text) for name, text in entry.letters.items()}
+        values = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
     except BadInput:
         return None
     if isinstance(tree, Equality):

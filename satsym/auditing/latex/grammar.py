@@ -19,7 +19,7 @@ from satsym.auditing.latex.rows import lines, split, without_remarks
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FREQUENCIES, FUNCTIONS, KEPT_GROUPS, MARKS, MATRICES
 from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -45,7 +45,7 @@ def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False)
     """
     reading = Reading([])
     for line in lines(without_remarks(found)):
-        sides = [Parser(part, reading, start, plain).whole() for part in line]
+        sides = [Parser(part, reading, start, plain).side() for part in line]
         if len(sides) == 1:
             reading.statements.append(sides[0])
         reading.statements += [Equality(one, other) for one, other in pairwise(sides)]
@@ -65,6 +65,20 @@ class Parser(QuotientCursor):
         if self._i < len(self._found):
             self._refuse()
         return tree
+
+    def side(self) -> Node:
+        """The whole side of an equation, which may be a letter with what it depends on: ``V(x)``, ``p(s)``."""
+        if not self._plain:
+            letter = self._letter()
+            if letter is not None and self._is("("):
+                begin = self._i
+                end = self._bracket_end()
+                inside = self._found[begin + 1 : end]
+                alone = self._letter_in(inside) is not None
+                if self._i == len(self._found) and alone:
+                    return self._symbol(letter, self._found[0].at)
+            self._i = 0
+        return self.whole()
 
     def _sum(self) -> Node:
         self._depth += 1
@@ -97,6 +111,8 @@ class Parser(QuotientCursor):
                     break
                 self._i += 1
                 chain.append(self._signed_factor())
+                if token.text in words.OF_VECTORS and self._is_vector(chain[-2]) and self._is_vector(chain[-1]):
+                    raise Unread("a product of vectors is not read", token.at)
             elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
                 if argument and not self._plain:
                     break
@@ -123,6 +139,15 @@ class Parser(QuotientCursor):
             token.text in words.TIMES_OF_ANGLES
             or (stem in FREQUENCIES and token.text in words.PLACES)
             or last == Sym("pi")
+        )
+
+    def _is_vector(self, node: Node) -> bool:
+        """Whether something has a letter that is set as a vector, or is a matrix."""
+        letters = self._reading.letters
+        return any(
+            isinstance(part, Grid)
+            or (isinstance(part, Sym) and part.name in letters and letters[part.name].style == "vector")
+            for _, part in walk(node)
         )
 
     def _is_function(self, token: Token) -> bool:
@@ -170,6 +195,8 @@ class Parser(QuotientCursor):
                 return base
 
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
+        if not script:
+            return base
         if script and script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf"):
             return Call("transpose", (base,))
         exponent = self._inner(script, at)
@@ -262,6 +289,8 @@ class Parser(QuotientCursor):
         if letter is None:
             self._refuse()
         assert letter is not None
+        if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
+            raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
 
     def _root(self) -> Node:
@@ -318,8 +347,13 @@ class Parser(QuotientCursor):
         return [self._inner(part, self._found[begin - 1].at) for part in parts]
 
     def _bracket(self) -> Node:
-        at = self._found[self._i].at
+        at, square = self._found[self._i].at, self._is("[")
+        begin = self._i
         arguments = self._arguments()
+        if square and not self._plain:
+            inside = self._found[begin + 1 : self._i - 1]
+            if len(inside) > 1 and all(token.kind == "letter" for token in inside):
+                raise Unread("letters in square brackets, which may be one name, are not read", at)
         if len(arguments) > 1:
             return Grid(tuple(arguments))
         if not arguments:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import EQUALS, RELATIONS, SKIPPED_GROUPS, SPACES, SYSTEMS, UPRIGHT
+from satsym.auditing.latex.words import EQUALS, RELATIONS, SKIPPED_GROUPS, SPACES, SYSTEMS, TIMES, UPRIGHT
 
 
 def without_remarks(found: Sequence[Token]) -> list[Token]:
@@ -34,9 +34,7 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
 
 def lines(found: Sequence[Token]) -> list[list[list[Token]]]:
     """Equations, each as its sides: split at ends of lines, wide spaces and commas between equations."""
-    pieces: list[list[Token]] = []
-    for part in _rows(found):
-        pieces += _at_commas(part)
+    pieces = [piece for row in _rows(found) for part in _equations(row) for piece in _at_commas(part)]
     done: list[list[list[Token]]] = []
     for piece in pieces:
         sides = _sides(piece)
@@ -80,7 +78,9 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
                     i += 1
                 i += 1
         elif token.kind == "sign" and token.text == "&" and not inside:
-            continue
+            if not systems:
+                raise Unread('a "&" outside of lines that are aligned', token.at)
+            rows[-1].append(token)
         elif token.kind == "macro" and token.text in ("quad", "qquad"):
             if not inside and depth == 0:
                 rows.append([])
@@ -88,6 +88,24 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
             depth += (token.kind == "open" or token.text in "([") - (token.kind == "close" or token.text in ")]")
             rows[-1].append(token)
     return [row for row in rows if row]
+
+
+def _equations(row: Sequence[Token]) -> list[list[Token]]:
+    """The equations that stand side by side in a line whose columns are aligned."""
+    pieces: list[list[Token]] = [[]]
+    for cell in split(row, lambda token: token.kind == "sign" and token.text == "&"):
+        before, first = pieces[-1], cell[0] if cell else None
+        begun = first is None or _is_equals(first) or first.text in RELATIONS or first.text in TIMES | {"+", "-", ","}
+        complete = _has_equality(before) and not _is_equals(before[-1])
+        if complete and (_has_equality(cell) or _is_remark(cell)):
+            pieces.append(list(cell))
+        elif begun or not before or _is_equals(before[-1]):
+            pieces[-1] += cell
+        else:
+            assert first is not None
+            raise Unread("what stands in this column is no part of an equation", first.at)
+    equations = [piece for piece in pieces if _has_equality(piece)]
+    return equations if len(pieces) > 1 else pieces
 
 
 def _is_system(found: Sequence[Token], i: int) -> bool:

@@ -36,6 +36,8 @@ SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom co
 KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel ensuremath smash".split())
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
+OF_VECTORS = frozenset(("times", "cdot", "bullet"))
+"""Signs that are products of another kind between vectors."""
 RELATIONS = {"<", ">", "le", "ge", "leq", "geq", "ll", "gg", "neq", "ne", "approx", "sim", "simeq", "propto", "in"}
 RELATIONS |= {"to", "rightarrow", "Rightarrow", "implies", "iff", "leqslant", "geqslant", "mapsto", "cong", "prec"}
 REFUSED = {
@@ -59,7 +61,10 @@ REFUSED = {
     "exists": "a quantifier",
 }
 MATRICES = frozenset("pmatrix bmatrix matrix Bmatrix vmatrix Vmatrix smallmatrix array".split())
-SYSTEMS = frozenset("aligned split gathered alignedat cases dcases align align* gather gather*".split())
+SYSTEMS = frozenset(
+    "aligned split gathered alignedat cases dcases rcases align align* gather gather* alignat alignat* flalign "
+    "flalign* eqnarray eqnarray* IEEEeqnarray equation equation* multline multline*".split()
+)
 STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf", "dagger"))
 NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
