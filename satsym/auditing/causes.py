@@ -113,7 +113,8 @@ def _weight(places: Sequence[Judged], spoiled: Sequence[Judged]) -> Weight:
     if any(map(_falls, (*places, *spoiled))):
         return Weight.OVERTURNS
     false = [row for row in (*places, *spoiled) if row.verdict in _FALSE]
-    if spoiled or any(row.kind in _RESULTS or row.role == "result" for row in false):
+    carried_on = any(row.by_formula and row.verdict == "wrong" for row in places)  # into rows that may not be looked at
+    if spoiled or carried_on or any(row.kind in _RESULTS or row.role == "result" for row in false):
         return Weight.RESULT
     if all(row.verdict == "notation" for row in places):
         return Weight.NOTATION

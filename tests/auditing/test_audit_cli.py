@@ -68,7 +68,7 @@ def test_what_is_right_is_said_first(audited: Run, tmp_path: Path) -> None:
     assert (code, err) == (0, "")
     assert out.startswith("small: A small document (A. Writer, 2024)\n")
     assert (
-        out.index("checked 1 are confirmed") < out.index("Slips without consequence") < out.rindex("The sign of `u2`")
+        out.index("checked one is confirmed") < out.index("Slips without consequence") < out.rindex("The sign of `u2`")
     )
     assert "1. 2 again: The sign of `u2` is reversed." in out
     assert (

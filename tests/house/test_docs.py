@@ -42,7 +42,9 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
 
 def files(text: str) -> Iterator[tuple[str, str]]:
     """Each file that is shown whole, by the name that its first line says."""
-    yield from re.findall(r"```toml\n# (\w+\.toml)\n(.*?)```", text, re.DOTALL)
+    yield from re.findall(r"```(?:toml|python)\n# (\w+\.(?:toml|py))\n(.*?)```", text, re.DOTALL)
+    for name, content in re.findall(r"```latex\n% (\w+\.tex)\n(.*?)```", text, re.DOTALL):
+        yield name, f"% {name}\n{content}"
 
 
 @pytest.mark.slow

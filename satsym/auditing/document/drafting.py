@@ -34,6 +34,8 @@ from satsym.records import record, shelf
 from satsym.status import BadInput
 
 SUFFIX = ".ledger.toml"
+_UNSEEN = re.compile(r"\\(?:label|tag)\*?\s*\{[^{}]*\}|(?<!\\)&|\\(?:nonumber|notag)\b")
+"""What of a display is not seen on the page."""
 _BLOCK = re.compile(r"^\[\[row\]\]\s*$", re.MULTILINE)
 
 
@@ -393,7 +395,7 @@ def _other_scope(letters: Mapping[str, str], old: Mapping[str, Any]) -> str:
 
 def _block(entry: _Entry) -> str:
     """A row; one that is not understood stands in a remark, to be completed by hand."""
-    shown = " ".join(entry.display.text.split())[:300]
+    shown = " ".join(_UNSEEN.sub(" ", entry.display.text).split())[:300]
     lines = [f"{key} = {_toml(value)}" for key, value in entry.table.items() if key != "original"]
     if entry.table.get("holds"):
         return "\n".join(["[[row]]", "draft = true", *lines, f"original = {_toml(shown)}"]) + "\n"

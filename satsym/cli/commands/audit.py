@@ -33,6 +33,7 @@ Examples:
 @place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
 @place_option("--keep", metavar="FILE", help="With --text: write what was found there, to be kept with the ledger.")
 @click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
+@click.option("--code", is_flag=True, help="Also give what claims were tested as, and what was measured, as code.")
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
 def audit(
     ledgers: tuple[str, ...],
@@ -44,6 +45,7 @@ def audit(
     text: Path | None,
     keep: Path | None,
     rows: bool,
+    code: bool,
     fresh: bool,
 ) -> ExitCode:
     """Judge what documents print.
@@ -83,7 +85,7 @@ def audit(
         from satsym.report.latex.audit import render
         from satsym.report.results.files import write_text
 
-        write_text(latex, render(read, judged, language()))
+        write_text(latex, render(read, judged, language(), code))
     drafts = sum(row.table.draft for ledger in read for row in ledger.rows)
     remark = [
         "",
@@ -91,7 +93,7 @@ def audit(
     ]
 
     def text_of_it() -> str:
-        whole = reporting.audit_text(read, judged, rows=rows or bool(items), language=language())
+        whole = reporting.audit_text(read, judged, rows=rows or bool(items), code=code, language=language())
         return "\n".join([whole.rstrip("\n"), *(remark if drafts else ())])
 
     answer(as_json, objects.audit_object([row for found in judged.values() for row in found]), text_of_it)

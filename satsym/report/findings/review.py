@@ -11,6 +11,7 @@ from typing import Any
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
 from satsym.auditing.sentences import measured_in_indonesian, say
+from satsym.report.findings import terms
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
@@ -21,6 +22,12 @@ _PLACES, _ITEMS = 3, 6
 """Rows, and items, that are named before the rest is counted."""
 _QUOTES = 5
 """Conclusions that stand, if they are more than those, are named without their words."""
+STANDS = ("confirmed", "imprecise", "notation", "unsound")
+"""Verdicts of what is so, if only by another reason, in other letters or but for its last digits."""
+KINDS = ("equation", "matrix", "algorithm", "number", "unit", "table", "claim")
+IN_WORDS = ("claim", "algorithm", "table", "number")
+"""Kinds of rows whose measured terms are put in words."""
+_PLACE_WORD = re.compile(r"[a-z]{3,}")
 _END = re.compile(r"[.](?=\s+[`A-Z0-9])")
 
 
@@ -88,6 +95,19 @@ class Review:
         """How many rows have each verdict."""
         return counts(self.rows)
 
+    @property
+    def chart(self) -> list[tuple[str, int, int, int]]:
+        """Of each kind of row, conclusions first, how many stand, fall, and could not be judged."""
+        groups = [("conclusion", [row for row in self.rows if row.role == "conclusion"])]
+        groups += [(kind, [row for row in self.rows if row.kind == kind]) for kind in KINDS]
+        counted = []
+        for name, rows in groups:
+            stand, undecided = (sum(r.verdict in verdicts for r in rows) for verdicts in (STANDS, OPEN))
+            if rows:
+                named = self.texts.get("row_kinds", name)
+                counted.append((named, stand, len(rows) - stand - undecided, undecided))
+        return counted
+
     @cached_property
     def formulas(self) -> dict[str, Any]:
         """Key of a row -> the formula or matrix that it prints, if it prints one."""
@@ -106,11 +126,11 @@ class Review:
 
     def places(self, rows: Sequence[Judged]) -> str:
         """Where a finding shows; of many the first."""
-        return self._named([row.key for row in rows])
+        return self._named([self.placed(row.key) for row in rows])
 
     def spoiled(self, found: Finding) -> str:
         """What is wrong because of a finding, by item."""
-        return self._named(items(found.spoiled), _ITEMS)
+        return self._named([self.placed(name) for name in items(found.spoiled)], _ITEMS)
 
     def _named(self, names: Sequence[str], most: int = _PLACES) -> str:
         if len(names) <= most:
@@ -124,7 +144,24 @@ class Review:
             return row.why
         denied = say("denied")
         said = row.diagnosis.removeprefix(f"{denied}: ").removeprefix(f"{denied.indonesian}: ")
+        if not row.by_formula and row.derived and row.kind in IN_WORDS:
+            said = said.replace(row.derived, self.in_words(row).rstrip("."))
         return f"{said} {row.why}".rstrip()
+
+    def in_words(self, row: Judged) -> str:
+        """What was measured, as sentences and mathematics."""
+        return terms.sentences(row.derived, self.texts)
+
+    def chosen(self, row: Judged) -> str:
+        """The numbers that the auditor chose for judging a row, each named; empty where there are none."""
+        code = f"{flat(row.printed) if row.kind == 'claim' else ''} {row.evidence}"
+        return "; ".join(terms.chosen(code, self.texts))
+
+    def placed(self, name: str) -> str:
+        """The name of a place in the language of the report: "section 4.2" as "bagian 4.2"."""
+        if self.texts.language == "en":
+            return name
+        return _PLACE_WORD.sub(lambda word: self.texts.find("places", word[0]) or word[0], name)
 
     def brief(self, found: Finding) -> str:
         """The first sentence of what is wrong, without its end; of few places that differ, that of each."""
@@ -136,9 +173,11 @@ class Review:
     @cached_property
     def summary(self) -> list[str]:
         """Which conclusions fall, which stand, and why: at most six sentences."""
-        right = sum(row.verdict == "confirmed" for row in self.rows)
-        rest = self._say("rest", len(self.findings)) if self.findings else ""
-        sentences = [self._say("checked", len(self.rows), right=str(right), rest=rest), *self._conclusions()]
+        right, total = sum(row.verdict == "confirmed" for row in self.rows), len(self.rows)
+        rest = self._say("rest", len(self.findings)) if self.findings and total > 1 else ""
+        how = {0: "right_none", total: "right_all"}.get(right, "right_some")
+        confirmed = self._say(how, right if how == "right_some" else total)
+        sentences = [self._say("checked", total, right=confirmed, rest=rest), *self._conclusions()]
         overturns = any(found.weight is Weight.OVERTURNS for found in self.findings)
         if self.findings and not overturns:
             first = self.findings[0]
@@ -167,7 +206,9 @@ class Review:
             falls = self._say("falls", len(falling))
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
-            named = [f"{_quoted(row)} ({row.key})" if len(standing) <= _QUOTES else row.key for row in standing]
+            keys = [self.placed(row.key) for row in standing]
+            quoted = len(standing) <= _QUOTES
+            named = [f"{_quoted(row)} ({key})" if quoted else key for row, key in zip(standing, keys, strict=True)]
             parts = [f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
             said.append(self._say(key, number, quoted="; ".join(parts)))
@@ -182,10 +223,10 @@ class Review:
     def _fallen(self, found: Finding) -> str:
         """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
         first = found.overturned[0]
-        places = "; ".join(row.key for row in found.overturned)
+        places = "; ".join(self.placed(row.key) for row in found.overturned)
         why = _first_sentence(self.fact(first)) if first.why else self.brief(found)
         if not first.why and first not in found.places and not any(row.why for row in found.places):
-            why = self._say("because", 1, place=found.places[0].key, statement=why)
+            why = self._say("because", 1, place=self.placed(found.places[0].key), statement=why)
         return f"{_quoted(first)} ({places}): {why}"
 
     def _say(self, key: str, number: int, **fill: str) -> str:

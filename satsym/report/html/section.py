@@ -42,10 +42,26 @@ class Section:
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
-        summary = tag("div", *(tag("p", self._sentence(text)) for text in review.summary), class_="summary")
+        summary = tag(
+            "div", *(tag("p", self._sentence(text)) for text in review.summary), self._chart(), class_="summary"
+        )
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
+
+    def _chart(self) -> Markup:
+        """How much of each kind stands, falls and is open, as a table with bars."""
+        names = [self._word(key) for key in ("of_kind", "stands", "falls_here", "open_here")]
+        head = tag("tr", *(tag("th", name, scope="col") for name in names), tag("td", ""))
+        lines = []
+        for name, *counts in self._review.chart:
+            widths = [f"width: {100.0 * count / sum(counts):.1f}%" for count in counts]
+            classes = ("stands", "falls", "open")
+            bars = [tag("span", "", class_=c, style=w) for c, w, n in zip(classes, widths, counts, strict=True) if n]
+            cells = [tag("td", str(count)) for count in counts]
+            lines.append(tag("tr", tag("th", name, scope="row"), *cells, tag("td", *bars, class_="bar")))
+        caption = tag("caption", self._word("chart"))
+        return tag("table", caption, tag("thead", head), tag("tbody", *lines), class_="chart")
 
     def users(self, address: str) -> list[Markup]:
         """Links to the rows that are held against a derived thing."""
@@ -66,8 +82,7 @@ class Section:
         }
         facts |= {"spoils": self._links(r.key for r in found.spoiled), **self._sources(row.key)}
         evidence, command = recompute(row)
-        facts |= {"evidence": "" if measured(row) else evidence, "claims": self._proposition(row)}
-        facts |= {"recompute": tag("code", command)}
+        facts |= {"recompute": tag("code", command), "code": self._code(row, evidence)}
         return tag(
             "details",
             summary,
@@ -83,14 +98,25 @@ class Section:
     def _facts(self, row: Judged) -> dict[str, str]:
         """What is printed and what is so instead."""
         right = correction(row)
+        derived = _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else Markup()
+        printed = Markup() if row.kind == "claim" else self._printed(row)
+        beside = bool(printed and right and row.by_formula)
+        stands = tag("small", f" ({self._review.placed(where(row))})") if where(row) else Markup()
         return {
-            "says": self._original(row),
+            "says": Markup(self._original(row) + stands) if row.original else Markup(),
             "about": self._about(row) if row.says and not row.original else "",
-            "printed": "" if row.kind == "claim" else self._printed(row),
-            "in_fact": joined(*_formulas(self._review.fact(row))),
-            "measured": measured(row),
-            "right": _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else "",
+            "printed": "" if beside else printed,
+            "in_fact": self._beside(row, printed, derived) if beside else joined(*_formulas(self._review.fact(row))),
+            "measured": joined(*_formulas(self._review.in_words(row))) if measured(row) else "",
+            "chosen": self._review.chosen(row),
+            "right": "" if beside else derived,
         }
+
+    def _beside(self, row: Judged, printed: Markup, right: Markup) -> Markup:
+        """What is printed, what is derived, and what differs, beside one another."""
+        head = tag("tr", *(tag("th", self._word(key), scope="col") for key in ("printed", "right", "difference")))
+        said = tag("td", *_formulas(self._review.fact(row)))
+        return tag("table", tag("thead", head), tag("tbody", tag("tr", tag("td", printed), tag("td", right), said)))
 
     def _about(self, row: Judged) -> Markup:
         """What a row is about, marked as English on a page in another language if it is."""
@@ -119,8 +145,8 @@ class Section:
         found = tag("a", f"{self._word('finding')} {number}", href=f"#{self._finding_anchor(number)}") if number else ""
         return tag(
             "tr",
-            tag("th", row.key, " ", tag("small", where(row)), scope="row"),
-            tag("td", self._original(row), self._printed(row)),
+            tag("th", self._review.placed(row.key), " ", tag("small", self._review.placed(where(row))), scope="row"),
+            tag("td", self._original(row) or self._about(row) if row.kind == "claim" else self._printed(row)),
             tag("td", self._verdict(row), " ", found),
             *(tag("td", links, data_label=self._word(key)) for key, links in self._sources(row.key).items()),
             id=self._anchors[row.key],
@@ -129,9 +155,12 @@ class Section:
             data_verdict=row.verdict,
         )
 
-    def _proposition(self, row: Judged) -> Markup:
-        """What a claim is tested as, for readers of code."""
-        return self._printed(row) if row.kind == "claim" else Markup()
+    def _code(self, row: Judged, evidence: str) -> Markup:
+        """What a claim was tested as and what was measured, for readers of code, who open it."""
+        tested = self._printed(row) if row.kind == "claim" else Markup()
+        if not tested and (row.by_formula or not evidence):
+            return Markup()
+        return tag("details", tag("summary", self._word("claims")), tested, tag("code", evidence), class_="code")
 
     def _original(self, row: Judged) -> Markup:
         """The document's own words."""
@@ -167,7 +196,8 @@ class Section:
         return joined(*map(self._link, keys), by=", ")
 
     def _link(self, key: str) -> Markup:
-        return tag("a", key, href=f"#{self._anchors[key]}") if key in self._anchors else joined(key)
+        named = self._review.placed(key)
+        return tag("a", named, href=f"#{self._anchors[key]}") if key in self._anchors else joined(named)
 
     def _finding_anchor(self, number: int) -> str:
         return f"{self._review.key}-finding-{number}"

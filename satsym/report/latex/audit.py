@@ -28,16 +28,22 @@ from satsym.report.texts import Texts, load
 
 _CODE = re.compile(r"`([^`]*)`")
 _LONGEST_WORD = 12
+_BAR, _COLOURS = 12.0, ("green!45!black", "red!70!black", "black!30")
+"""The width of a bar in em, and the colours of what stands, falls and is open."""
 _MACROS = r"""\usepackage{graphicx}
 % {width}{body}: a column of a finding
 \newcommand\satsymcolumn[2]{\parbox[t]{#1\linewidth}{\raggedright\hbadness=10000 #2}}
 % {what is said}{the same as a proposition}
 \newcommand\satsymbeside[2]{\par\noindent\satsymcolumn{0.44}{#1}\hfill\satsymcolumn{0.53}{#2}\par\smallskip}
+% {what is printed}{what is right}{what differs}
+\newcommand\satsymthree[3]{\par\noindent\satsymcolumn{0.32}{#1}\hfill\satsymcolumn{0.32}{#2}\hfill\satsymcolumn{0.32}{#3}\par\smallskip}
 \newcommand\satsymfact[2]{\par\noindent\satsymcolumn{0.16}{\textcolor{black!60}{#1}}\satsymcolumn{0.84}{#2}\par}
 """
 
 
-def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], language: str = "en") -> str:
+def render(
+    ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], language: str = "en", code: bool = False
+) -> str:
     """A document with a section for each ledger.
 
     Parameters
@@ -46,6 +52,8 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
         Key of a document -> its rows with their verdicts.
     language
         Of all but what the documents print and of what is measured.
+    code
+        Whether what claims were tested as, and what was measured, is given as code, too.
 
     Returns
     -------
@@ -59,7 +67,7 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
         rf"{escape(texts.get('audit', 'made'))}\end{{center}}",
         *_legend(texts, reviews),
     ]
-    body = "\n\n".join([*head, *(part for review in reviews for part in _section(review))])
+    body = "\n\n".join([*head, *(part for review in reviews for part in _section(review, code))])
     source = "% Written by satsym audit. Do not edit.\n"
     opening = preamble(texts, bookmark(title(reviews)))
     return f"{source}{opening}{_MACROS}\\begin{{document}}\n{body}\n\\end{{document}}\n"
@@ -85,21 +93,48 @@ def _legend(texts: Texts, reviews: Sequence[Review]) -> Iterator[str]:
         yield f"{pairs}."
 
 
-def _section(review: Review) -> Iterator[str]:
+def _section(review: Review, code: bool) -> Iterator[str]:
     texts = review.texts
     yield rf"\section*{{{_breakable(review.ledger.document.title)}}}"
     yield _breakable(review.byline)
     yield " ".join(map(_sentence, review.summary))
+    yield _chart(review)
     if not review.findings:
         yield escape(texts.get("audit", "nothing"))
     for weight, group in review.by_weight:
         yield rf"\subsection*{{{escape(texts.get('weights', weight.value))}}}"
         for number, finding in group:
-            yield from (_in_full if weight in IN_FULL else _in_brief)(review, number, finding)
+            if weight in IN_FULL:
+                yield from _in_full(review, number, finding, code)
+            else:
+                yield from _in_brief(review, number, finding)
     for heading, listed in (("not_judged", items(review.open)), ("confirmed_items", review.confirmed_items)):
         if listed:
             yield rf"\subsection*{{{escape(texts.get('audit', heading))}}}"
             yield f"{', '.join(map(escape, listed))}."
+
+
+def _chart(review: Review) -> str:
+    """How much of each kind stands, falls and is open, as bars."""
+    names = [review.texts.get("audit", key) for key in ("stands", "falls_here", "open_here")]
+    lines = []
+    for kind, *counts in review.chart:
+        widths = [f"{_BAR * count / sum(counts):.2f}" for count in counts]
+        bars = "".join(
+            rf"\textcolor{{{colour}}}{{\rule{{{width}em}}{{1.2ex}}}}"
+            for colour, width, count in zip(_COLOURS, widths, counts, strict=True)
+            if count
+        )
+        lines.append(" & ".join([escape(kind), *map(str, counts), bars]))
+    heading = " & ".join([escape(review.texts.get("audit", "of_kind")), *map(escape, names), ""])
+    body = " \\\\\n".join(lines)
+    return "\n".join(
+        (
+            r"\begin{center}\begin{tabular}{@{}lrrrl@{}}\toprule",
+            rf"{heading} \\ \midrule",
+            rf"{body} \\ \bottomrule\end{{tabular}}\end{{center}}",
+        )
+    )
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
@@ -115,27 +150,41 @@ def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
     yield f"{said}\n{_fact(review.texts, key, printed)}" if printed else said
 
 
-def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
+def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Iterator[str]:
     row, texts = finding.places[0], review.texts
     verdict = escape(texts.get("verdicts", row.verdict))
     heading = rf"\paragraph{{{number}.~{escape(review.places(finding.places))}}} \emph{{{verdict}}}"
-    yield f"{heading}{f' ({escape(where(row))})' if where(row) else ''}"
+    yield f"{heading}{f' ({escape(review.placed(where(row)))})' if where(row) else ''}"
     spoiled = escape(review.spoiled(finding)) if finding.spoiled else ""
     evidence, command = recompute(row)
     right = formula_tex.read(correction(row)) if is_mathematical(row) else None
     original = rf"\textit{{{_breakable(row.original)}}}" if row.original else ""
-    beside = original if row.kind == "claim" else ""
+    claim = row.kind == "claim"
+    three = row.by_formula and bool(correction(row)) and not claim
+    beside = original if claim and code else ""
     if beside:
         yield rf"\satsymbeside{{{beside}}}{{{_printed(None, flat(row.printed))}}}"
+    if three:
+        heads = (escape(texts.get("audit", key)) for key in ("printed", "right", "difference"))
+        bodies = (
+            _printed(review.formulas.get(row.key), flat(row.printed)),
+            _printed(right, correction(row)),
+            _sentence(review.fact(row)),
+        )
+        columns = (
+            rf"{{\textcolor{{black!60}}{{{head}}}\newline {body}}}" for head, body in zip(heads, bodies, strict=True)
+        )
+        yield rf"\satsymthree{''.join(columns)}"
     facts = {
         "says": "" if beside else original,
         "about": "" if original else _breakable(row.says),
-        "printed": "" if beside else _printed(review.formulas.get(row.key), flat(row.printed)),
-        "in_fact": _sentence(review.fact(row)),
-        "measured": _breakable(measured(row)),
-        "right": _printed(right, correction(row)),
+        "printed": "" if claim or three else _printed(review.formulas.get(row.key), flat(row.printed)),
+        "in_fact": "" if three else _sentence(review.fact(row)),
+        "measured": _sentence(review.in_words(row)) if measured(row) else "",
+        "chosen": _breakable(review.chosen(row)),
+        "right": "" if three else _printed(right, correction(row)),
         "spoils": spoiled,
-        "evidence": "" if measured(row) else rf"\footnotesize {_breakable(evidence)}" if evidence else "",
+        "evidence": rf"\footnotesize {_breakable(evidence)}" if evidence and code else "",
         "recompute": rf"\footnotesize{_typewriter(command)}",
     }
     yield "\n".join(_fact(texts, key, text) for key, text in facts.items() if text)

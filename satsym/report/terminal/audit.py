@@ -28,6 +28,9 @@ WIDTH = 100
 _NARROWEST = 40
 _INDENT = "  "
 _LABEL = 10
+_BAR = 24
+_CHARTED = 3
+"""Rows from which on a chart says more than their list."""
 _SHORT = 30
 """Characters of what is printed that stand behind a verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
@@ -35,7 +38,12 @@ _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
 
 
 def audit_text(
-    ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], *, rows: bool = False, language: str = "en"
+    ledgers: Sequence[Ledger],
+    judged: Mapping[str, Sequence[Judged]],
+    *,
+    rows: bool = False,
+    code: bool = False,
+    language: str = "en",
 ) -> str:
     """The findings of some documents, for the terminal.
 
@@ -43,12 +51,14 @@ def audit_text(
     ----------
     rows
         Whether every row that is not confirmed follows in full.
+    code
+        Whether what claims were tested as, and what was measured, is given as code, too.
     language
         Of all but what the documents print and of what is measured.
     """
     texts = load(language)
     reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
-    return "\n\n".join("\n".join(_document(review, rows)) for review in reviews)
+    return "\n\n".join("\n".join(_document(review, rows, code)) for review in reviews)
 
 
 def coverage_text(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -> str:
@@ -79,35 +89,53 @@ def _of_text(text: Coverage) -> Iterator[str]:
         yield from _wrapped(f"not in the text: {row}: {printable(piece, 200)}", 1)
 
 
-def _document(review: Review, rows: bool) -> Iterator[str]:
+def _document(review: Review, rows: bool, code: bool) -> Iterator[str]:
     texts = review.texts
     by = f" ({review.byline})" if review.byline else ""
     yield from _wrapped(f"{review.key}: {review.ledger.document.title}{by}", hanging=1)
     yield ""
     for said in review.summary:
         yield from _wrapped(said, 1)
+    if len(review.rows) >= _CHARTED:
+        yield from ("", *_chart(review))
     if not review.findings:
         yield from ("", f"{_INDENT}{texts.get('audit', 'nothing')}")
     for weight, group in review.by_weight:
         yield from ("", f"{_INDENT}{texts.get('weights', weight.value)}")
         for number, finding in group:
-            yield from (_in_full if weight in IN_FULL else _in_brief)(review, number, finding)
+            yield from (
+                _in_full(review, number, finding, code) if weight in IN_FULL else _in_brief(review, number, finding)
+            )
     if review.open:
         listed = ", ".join(items(review.open))
         yield from ("", f"{_INDENT}{texts.get('audit', 'not_judged')}", *_wrapped(f"{listed}.", 2))
     if rows:
         for row in review.rows:
-            yield from _row(review, row) if row.verdict not in SILENT else ()
+            yield from _row(review, row, code) if row.verdict not in SILENT else ()
     elif review.findings:
         command = f"satsym audit {review.ledger.name} --rows"
         yield from ("", *_wrapped(texts.get("audit", "every_row", command=command), 1))
 
 
-def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
+def _chart(review: Review) -> Iterator[str]:
+    """How much of each kind stands, falls and is open, as bars."""
+    keys = ("stood", "fallen", "left_open")
+    yield f"{_INDENT}{review.texts.get('audit', 'chart')}"
+    widest = max(len(name) for name, *_ in review.chart)
+    for name, *counts in review.chart:
+        lengths = [-(-count * _BAR // sum(counts)) if count else 0 for count in counts]
+        lengths[0] = _BAR - lengths[1] - lengths[2]
+        bar = "".join(sign * length for sign, length in zip("#x?", lengths, strict=True))
+        said = ", ".join(review.texts.counted("audit", key, n) for key, n in zip(keys, counts, strict=True) if n)
+        yield f"{_INDENT * 2}{name:{widest}} {bar} {said}"
+
+
+def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Iterator[str]:
     """A finding with what is printed, what is true, and what it spoils."""
     row, texts = finding.places[0], review.texts
-    yield from _heading(review.texts, row, f"{number}. {review.places(finding.places)}", "", 2)
-    yield from _facts(review, row, short=True)
+    stands = f" ({review.placed(where(row))})" if where(row) else ""
+    yield from _heading(review.texts, row, f"{number}. {review.places(finding.places)}", stands, 2)
+    yield from _facts(review, row, short=True, code=code)
     if finding.spoiled:
         yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
@@ -117,12 +145,13 @@ def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
     return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
 
 
-def _row(review: Review, row: Judged) -> Iterator[str]:
+def _row(review: Review, row: Judged, code: bool) -> Iterator[str]:
     """A row in full."""
     yield ""
-    yield from _heading(review.texts, row, row.key, f" ({where(row)})" if where(row) else "", 1)
-    yield from _facts(review, row)
-    yield from _wrapped(row.evidence, 3)
+    stands = f" ({review.placed(where(row))})" if where(row) else ""
+    yield from _heading(review.texts, row, review.placed(row.key), stands, 1)
+    yield from _facts(review, row, code=code)
+    yield from _wrapped(row.evidence if code else recompute(row)[1], 3)
 
 
 def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -> list[str]:
@@ -132,17 +161,20 @@ def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -
     return _wrapped(heading + printed, 1, hanging)
 
 
-def _facts(review: Review, row: Judged, *, short: bool = False) -> Iterator[str]:
-    """What is printed and what is so instead, each once; if short, without what only a reader of code can follow."""
+def _facts(review: Review, row: Judged, *, short: bool = False, code: bool = False) -> Iterator[str]:
+    """What is printed and what is so instead, each once; code where it is asked for."""
     claim, found = row.kind == "claim", measured(row)
     said = row.original or row.says if claim or not row.printed else ""
     facts = {
         "says": said,
-        "claims" if claim else "printed": "" if _is_short(row) or (short and claim and said) else flat(row.printed),
+        "printed": "" if claim or _is_short(row) else flat(row.printed),
         "in_fact": review.fact(row),
-        "measured": "" if short else found,
+        "measured": "" if short or not found else review.in_words(row),
+        "chosen": review.chosen(row),
         "recompute": recompute(row)[1] if short and found else "",
         "right": "" if short and is_put_in_words(row) else correction(row),
+        "claims": flat(row.printed) if claim and code else "",
+        "code": row.derived if code and not row.by_formula else "",
     }
     for key, text in facts.items():
         if text:
@@ -154,7 +186,7 @@ def _is_short(row: Judged) -> bool:
 
 
 def _labelled(label: str, text: str) -> list[str]:
-    return _wrapped(f"{label:{_LABEL}}{text}", 3)
+    return _wrapped(f"{label:{_LABEL}}{text}" if len(label) < _LABEL else f"{label}: {text}", 3)
 
 
 def _wrapped(text: str, depth: int = 0, hanging: int = 1) -> list[str]:
