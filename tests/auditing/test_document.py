@@ -32,7 +32,7 @@ H = \half{(c_1u_1^2 + c_2u_2^2)} + \lambda_1x_2 + \lambda_2\left(x_1x_4^2-\frac{
 \end{equation}
 From \eqref{eq:H},
 \[ \dot\lambda_2 = -\lambda_1 + \frac{2\lambda_4 x_4}{x_1} \]
-\begin{equation} J = \int_0^{T} L\,dt \end{equation}
+\begin{equation} J = \int_0^{T} L \end{equation}
 \input{more}
 \end{document}
 """
@@ -69,7 +69,7 @@ def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pyte
     assert main(["read", "paper.tex", "--model", "polar_orbit"]) == 0
     out = capsys.readouterr().out
     assert "7 rows drafted, 0 confirmed ones kept" in out
-    assert "paper.tex:22: not read: an integral" in out
+    assert "paper.tex:22: not read: an integral without a differential" in out
     ledger = paper.with_suffix(".ledger.toml")
     found = {row.key: row.verdict for row in audit(auditing.read(ledger))}
     assert [key for key, verdict in found.items() if verdict != "confirmed"] == ["3"]
@@ -83,6 +83,15 @@ def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pyte
     again = ledger.read_text()
     assert 'says = "Newton"' in again
     assert again.count("draft = true\n") == 5
+
+
+def test_displays_of_myst_have_their_labels_as_items(tmp_path: Path) -> None:
+    path = tmp_path / "notes.md"
+    path.write_text(
+        "# Hill\n\nSee {eq}`out`.\n\n:::{math}\n:label: out\n\\ddot z = -n^2 z\n:::\n\n```{math}\n\\dot z = 0\n```\n"
+    )
+    found = [(d.item, d.label, d.text.strip(), d.refers) for d in displays.displays(displays.read(path))]
+    assert found == [("out", "out", r"\ddot z = -n^2 z", ("out",)), ("line 11", "", r"\dot z = 0", ("out",))]
 
 
 def test_markdown_is_read_too(tmp_path: Path) -> None:

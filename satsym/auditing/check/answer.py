@@ -280,7 +280,7 @@ class Subject:
         """How an equation is right, understood in one way; ``None`` where it is not."""
         residual = next(self.residuals(named, derivatives, guess))
         if not is_plain(residual):
-            raise BadInput("vectors, and what transposes them, are not compared; check their components")
+            raise BadInput("vectors, sums and integrals are not compared; check components, or what stands in them")
         if not isinstance(named, Equality):
             return self._right_expression(residual, guess)
         if says_nothing(residual, self.derived):

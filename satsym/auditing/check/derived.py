@@ -19,6 +19,7 @@ _GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations",
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps that are named first where several state the same."""
 _ANGLED = frozenset(("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"))
+_NOT_PLAIN = ("transpose", "det", "norm", "sat", "diff", "d", "cross", "dot", "sum", "integral")
 _COST = ("L", "S")
 _DEEPEST = 12
 
@@ -281,4 +282,4 @@ def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
 
 def is_plain(tree: Node) -> bool:
     """Whether a tree is made of arithmetic and elementary functions alone."""
-    return all(call.function not in ("transpose", "det", "norm", "sat", "diff", "d") for call in calls(tree))
+    return all(call.function not in _NOT_PLAIN for call in calls(tree))

@@ -21,6 +21,8 @@ class Reading:
     statements: list[Node | Equality]
     letters: dict[str, Letter] = field(default_factory=dict)
     """Name -> the letter that it stands for."""
+    taken_at: dict[str, str] = field(default_factory=dict)
+    """Name -> the letter of which it is printed as a function."""
     constants: bool = False
     """Whether something is said to be constant."""
 

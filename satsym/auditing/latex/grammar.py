@@ -13,8 +13,8 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
-from satsym.auditing.latex.letters import GREEK, of_word
-from satsym.auditing.latex.quotients import QuotientCursor
+from satsym.auditing.latex.letters import GREEK, Letter, cleaned, of_word
+from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
 from satsym.auditing.latex.rows import lines, split, without_remarks
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FREQUENCIES, FUNCTIONS, KEPT_GROUPS, MARKS, MATRICES
@@ -45,7 +45,7 @@ def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False)
     """
     reading = Reading([])
     for line in lines(without_remarks(found)):
-        sides = [Parser(part, reading, start, plain).side() for part in line]
+        sides = [Parser(part, reading, start, plain).whole() for part in line]
         if len(sides) == 1:
             reading.statements.append(sides[0])
         reading.statements += [Equality(one, other) for one, other in pairwise(sides)]
@@ -65,20 +65,6 @@ class Parser(QuotientCursor):
         if self._i < len(self._found):
             self._refuse()
         return tree
-
-    def side(self) -> Node:
-        """The whole side of an equation, which may be a letter with what it depends on: ``V(x)``, ``p(s)``."""
-        if not self._plain:
-            letter = self._letter()
-            if letter is not None and self._is("("):
-                begin = self._i
-                end = self._bracket_end()
-                inside = self._found[begin + 1 : end]
-                alone = self._letter_in(inside) is not None
-                if self._i == len(self._found) and alone:
-                    return self._symbol(letter, self._found[0].at)
-            self._i = 0
-        return self.whole()
 
     def _sum(self) -> Node:
         self._depth += 1
@@ -102,6 +88,7 @@ class Parser(QuotientCursor):
         """A term; of a function without brackets, what it is taken of."""
         result = self._signed_factor()
         chain: list[Node] = [result]
+        crossed = ""
         while True:
             token = self._peek()
             if token is None:
@@ -110,14 +97,21 @@ class Parser(QuotientCursor):
                 if argument:
                     break
                 self._i += 1
-                chain.append(self._signed_factor())
-                if token.text in words.OF_VECTORS and self._is_vector(chain[-2]) and self._is_vector(chain[-1]):
-                    raise Unread("a product of vectors is not read", token.at)
+                if (product := words.OF_VECTORS.get(token.text)) and self._is_vector(chain[-1]):
+                    if product == "cross" == crossed:
+                        raise Unread("cross products one after the other, without brackets", token.at)
+                    crossed = product
+                    chain[-1] = self._of_vectors(product, chain[-1], token)
+                else:
+                    chain.append(self._signed_factor())
             elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
                 if argument and not self._plain:
                     break
                 self._i += 1
                 chain = [Div(_times(chain), self._signed_factor())]
+                unit = self._peek()
+                if isinstance(chain[0].denominator, Num) and unit is not None and unit.text in words.UPRIGHT:
+                    raise Unread("a unit behind a slash is not read", unit.at)
             elif argument and not self._continues_argument(token, chain[-1]):
                 break
             elif self._begins_factor(token):
@@ -141,8 +135,22 @@ class Parser(QuotientCursor):
             or last == Sym("pi")
         )
 
+    def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
+        r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
+        right = [self._signed_factor()]
+        while not self._is_vector(right[-1]):
+            token = self._peek()
+            if token is None or not self._begins_factor(token):
+                if product == "cross":
+                    raise Unread("a product of a vector and what is none", sign.at)
+                return _times([left, *right])
+            right.append(self._factor())
+        return Call(product, (left, _times(right)))
+
     def _is_vector(self, node: Node) -> bool:
-        """Whether something has a letter that is set as a vector, or is a matrix."""
+        """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
+        if isinstance(node, Call):
+            return node.function in ("cross", "transpose")
         letters = self._reading.letters
         return any(
             isinstance(part, Grid)
@@ -197,10 +205,14 @@ class Parser(QuotientCursor):
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
         if not script:
             return base
+        if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
+            return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
         if script and script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf"):
             return Call("transpose", (base,))
         exponent = self._inner(script, at)
         value = constant(exponent)
+        if base == Sym("e") and not self._plain and len(script) == 1 and script[0].text in "ijklmn":
+            raise Unread("a power of e may be one of a number, or an exponential", at)
         if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:
@@ -222,10 +234,13 @@ class Parser(QuotientCursor):
             self._i -= 1
             at = token.at
             inner = self._group()
+            if not inner and self._is("^") and not self._plain:
+                self._i += 1
+                return self._in_a_frame(cleaned(self._said(self._script())))
             if not inner:
                 return self._factor()
             if letter := self._letter_in(inner):
-                return self._symbol(letter, at)
+                return self._symbol(self._scripts(letter), at)
             return self._inner(inner, at)
         if token.kind == "sign" and token.text in "([":
             self._i -= 1
@@ -241,6 +256,13 @@ class Parser(QuotientCursor):
         if token.kind == "macro":
             return self._macro(token)
         if token.kind == "letter":
+            if self._spells("const"):
+                self._reading.constants = True
+                return Sym(CONSTANT)
+            after = self._peek()
+            beside = after is not None and after.at == token.at + 1 and not self._plain
+            if token.text == "d" and beside and after is not None and (after.kind == "letter" or after.text in GREEK):
+                raise Unread("a differential is not read", token.at)
             self._i -= 1
             letter = self._letter()
             assert letter is not None
@@ -249,10 +271,30 @@ class Parser(QuotientCursor):
         self._refuse()
         raise AssertionError
 
+    def _in_a_frame(self, frame: str) -> Node:
+        """What a label of the frame in front is about: components in that frame."""
+        tree = self._factor()
+        if isinstance(tree, Sym) and (letter := self._reading.letters.get(tree.name)) and frame:
+            return self._symbol(replace(letter, marks=(*letter.marks, f"in_{frame}")), self._start)
+        return tree
+
+    def _spells(self, word: str) -> bool:
+        """Whether letters side by side, the first of which was taken, are a word; then it is taken."""
+        begin = self._i - 1
+        part = self._found[begin : begin + len(word)]
+        if [token.text for token in part] != list(word) or part[-1].at - part[0].at != len(word) - 1:
+            return False
+        self._i = begin + len(word)
+        return True
+
     def _macro(self, token: Token) -> Node:
         name = token.text
         if name in words.ROOTS:
             return self._root()
+        if name == "sum":
+            return self._sum_over(token)
+        if name == "int":
+            return self._integral(token)
         if name in ("frac", "tfrac", "dfrac", "cfrac"):
             above, below = self._group(), self._group()
             return Div(self._inner(above, token.at), self._inner(below, token.at))
@@ -262,6 +304,8 @@ class Parser(QuotientCursor):
                 self._i += 1
                 self._script()
             return inner
+        if name in words.STYLES and (zero := self._peek_number()) is not None:
+            return zero
         if name in ("{", "}", "lbrace", "rbrace", "langle", "rangle", "lbrack", "rbrack"):
             if name in ("{", "lbrace", "lbrack"):
                 return self._braces(token)
@@ -289,9 +333,67 @@ class Parser(QuotientCursor):
         if letter is None:
             self._refuse()
         assert letter is not None
+        after = self._peek()
+        short = name in words.UPRIGHT and letter in (Letter("s"), Letter("c"))
+        if short and after is not None and after.kind == "macro" and after.text in GREEK:
+            raise Unread("s and c may stand for sine and cosine", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
+
+    def _peek_number(self) -> Node | None:
+        """A number that is set as a vector, such as a bold zero; ``None``, with nothing taken, where none is next."""
+        begin, found = self._i, self._found
+        inside = self._group() if self._peek() else []
+        if len(inside) == 1 and inside[0].kind == "number":
+            return Num(Fraction(inside[0].text))
+        self._i, self._found = begin, found
+        return None
+
+    def _sum_over(self, token: Token) -> Node:
+        """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
+        limits = self._limits()
+        parts: list[Node] = [self._product()]
+        if below := limits.get("_"):
+            equation = split(below, lambda t: t.kind == "sign" and t.text == "=")
+            parts += [self._inner(side, token.at) for side in equation[:2]]
+        if "^" in limits:
+            parts.append(self._limit(limits["^"], token.at))
+        return Call("sum", tuple(parts))
+
+    def _limits(self) -> dict[str, list[Token]]:
+        limits: dict[str, list[Token]] = {}
+        while self._is("_") or self._is("^"):
+            sign = self._take().text
+            limits[sign] = self._script()
+        return limits
+
+    def _limit(self, part: Sequence[Token], at: int) -> Node:
+        endless = len(part) == 1 and part[0].text == "infty"
+        return Sym("infinity") if endless else self._inner(part, at)
+
+    def _integral(self, token: Token) -> Node:
+        """An integral: what stands up to the differential, its letter, and from where to where, as far as printed."""
+        limits = self._limits()
+        begin, depth = self._i, 0
+        while (now := self._peek()) is not None:
+            depth += (now.kind in ("open", "begin") or now.text in "([") - (
+                now.kind in ("close", "end") or now.text in ")]"
+            )
+            if depth < 0:
+                break
+            here = self._i
+            if depth == 0 and here > begin and is_differential(now):
+                self._i = here + len(self._found[here:]) - len(after_differential(list(self._found[here:])))
+                letter = self._letter()
+                behind = self._peek()
+                if letter is not None and (behind is None or behind.text in ("+", "-", ")", "]")):
+                    tree = self._inner(self._found[begin:here], token.at)
+                    parts = [tree, self._symbol(letter, now.at)]
+                    parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
+                    return Call("integral", tuple(parts))
+            self._i = here + 1
+        raise Unread("an integral without a differential at its end is not read", token.at)
 
     def _root(self) -> Node:
         degree: Node | None = None
@@ -316,8 +418,8 @@ class Parser(QuotientCursor):
             at = self._take().at
             script = self._script()
             power = self._inner(script, at)
-            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh"):
-                if name in ("sinh", "cosh"):
+            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh"):
+                if name in ("sinh", "cosh", "tanh"):
                     raise Unread("an inverse hyperbolic function is not read", at)
                 name, power = f"a{name}", None
         if self._is("_") and name in ("log", "min", "max"):
@@ -350,15 +452,22 @@ class Parser(QuotientCursor):
         at, square = self._found[self._i].at, self._is("[")
         begin = self._i
         arguments = self._arguments()
-        if square and not self._plain:
-            inside = self._found[begin + 1 : self._i - 1]
-            if len(inside) > 1 and all(token.kind == "letter" for token in inside):
-                raise Unread("letters in square brackets, which may be one name, are not read", at)
+        inner = arguments[0] if len(arguments) == 1 else None
+        if square and not self._plain and isinstance(inner, Mul) and self._may_be_a_name(inner):
+            raise Unread("letters in square brackets, which may be one name, are not read", at)
+        if len(arguments) > 1 and begin and not self._plain:
+            before = self._found[begin - 1]
+            if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
+                raise Unread("what something is taken at, in brackets behind it, is not read", at)
         if len(arguments) > 1:
             return Grid(tuple(arguments))
         if not arguments:
             raise Unread("an empty bracket", at)
         return arguments[0]
+
+    def _may_be_a_name(self, inner: Mul) -> bool:
+        letters = all(isinstance(factor, Sym | Call) for factor in inner.factors)
+        return letters and isinstance(inner.factors[0], Sym) and not self._is_vector(inner)
 
     def _braces(self, token: Token) -> Node:
         """What stands in printed braces."""
@@ -382,7 +491,8 @@ class Parser(QuotientCursor):
         inner = self._inner(self._found[begin : self._i - 1], token.at)
         if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
             return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
-        return Call("abs" if token.text in ("|", "lvert", "vert") and token.kind != "macro" else "norm", (inner,))
+        single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))
 
     def _environment(self, token: Token) -> Node:
         if token.text not in MATRICES:
@@ -398,6 +508,8 @@ class Parser(QuotientCursor):
         entries = []
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
+            if len(cells) == 1:  # a row may be printed with commas
+                cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
             entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
         if not entries or len({len(entry.entries) for entry in entries}) > 1:
             raise Unread("the rows of a matrix differ in length", token.at)

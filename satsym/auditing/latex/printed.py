@@ -9,7 +9,7 @@ from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
 from satsym.auditing.latex.rows import split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, MARKS, STARS, STYLES, UPRIGHT
+from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, INDICES, MARKS, STARS, STYLES, TRANSPOSED, UPRIGHT
 from satsym.formula.tree import Node, Sym
 
 
@@ -35,9 +35,12 @@ class LetterCursor(Cursor):
                 return replace(varied, before=token.text) if varied and not varied.before else letter
         elif token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS or token.text in STYLES):
             self._i += 1
-            inner = self._letter_in(self._group())
+            group = self._group()
+            inner = self._letter_in(group)
             if inner is not None:
                 letter = self._dressed(inner, token.text)
+            elif token.text in STYLES and len(group) > 1 and all(t.kind == "letter" for t in group):
+                letter = Letter("".join(t.text for t in group), style=STYLES[token.text])
         elif token.kind == "macro" and token.text in UPRIGHT:
             self._i += 1
             group = self._group()
@@ -76,6 +79,8 @@ class LetterCursor(Cursor):
     def _scripts(self, letter: Letter) -> Letter:
         """The letter with its index, stars and primes; a power is left where it is."""
         while True:
+            if self._is("^") and not self._plain:
+                self._index_first()
             if self._is("_") and not self._plain:
                 at = self._take().at
                 script = self._script()
@@ -87,10 +92,38 @@ class LetterCursor(Cursor):
             elif self._is("'"):
                 self._i += 1
                 letter = replace(letter, marks=(*letter.marks, "prime"))
-            elif self._is("^") and (mark := self._mark()):
+            elif self._is("^") and (mark := self._marked(letter)):
                 letter = replace(letter, marks=(*letter.marks, mark))
             else:
                 return letter
+
+    def _marked(self, letter: Letter) -> str:
+        self._bold = letter.style == "vector"
+        try:
+            return self._mark()
+        finally:
+            self._bold = False
+
+    def _index_first(self) -> None:
+        """Put an index that is printed behind a power in front of it."""
+        begin, found = self._i, self._found
+        self._i += 1
+        if self._peek() is None:
+            self._i = begin
+            return
+        self._script()
+        middle = self._i
+        if self._is("_") and self._peek(1) is not None:
+            self._i += 1
+            self._script()
+            now = self._found
+            self._found = [*now[:begin], *now[middle : self._i], *now[begin:middle], *now[self._i :]]
+        else:
+            self._found = found
+        self._i = begin
+
+    _bold = False
+    """Whether the letter that is read is set as a vector."""
 
     def _mark(self) -> str:
         """The mark that a superscript is; empty, with nothing taken, where it is a power."""
@@ -111,6 +144,8 @@ class LetterCursor(Cursor):
             return cleaned(word)
         if word.startswith("(") and word.endswith(")") and cleaned(word):
             return cleaned(word)
+        if self._bold and not word.isdigit() and word not in TRANSPOSED and (said := cleaned(self._said(script))):
+            return said  # a vector has no powers
         self._i, self._found = begin, found
         return ""
 
@@ -125,7 +160,7 @@ class LetterCursor(Cursor):
                 end = group_end(script, i) if i < len(script) and script[i].kind == "open" else i + 1
                 said.append(f" {self._said(script[i:end])} {token.text} ")
                 i = end
-            elif token.kind == "macro" and (token.text in GREEK or token.text in ("max", "min")):
+            elif token.kind == "macro" and (token.text in GREEK or token.text in INDICES):
                 said.append(f" {token.text} ")
             elif token.kind in ("letter", "number", "word"):
                 said.append(token.text)
@@ -136,9 +171,9 @@ class LetterCursor(Cursor):
         return "".join(said)
 
     def _symbol(self, letter: Letter, at: int) -> Node:
-        if self._plain is False:
-            self._timed()
         name = letter.name
+        if self._plain is False:
+            self._timed(name)
         if letter.base == "pi" and letter == Letter("pi"):
             return Sym("pi")
         if not is_name(name):
@@ -146,17 +181,33 @@ class LetterCursor(Cursor):
         self._reading.letters.setdefault(name, letter)
         return Sym(name)
 
-    def _timed(self) -> None:
-        """Go past ``(t)`` behind a letter, or a list of what it depends on."""
+    def _timed(self, name: str = "") -> None:
+        """Go past ``(t)`` behind a letter, or the letters that it depends on; they must be the same everywhere."""
         if not self._is("("):
             return
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        if words in AT_A_TIME or (len(split(inside, lambda t: t.text == ",")) > 1):
+        if words in AT_A_TIME:
             return
+        places = split(inside, lambda t: t.text == ",")
+        letters = [self._letter_in(place) for place in places]
+        bare = [letter for letter in letters if letter and not letter.dots and (not letter.index or letter.base == "t")]
+        if not self._plain and len(bare) == len(letters):
+            if self._reading.taken_at.setdefault(name, words) == words:
+                return
+            raise Unread("what it is taken at differs from place to place, and is not read", self._found[begin].at)
+        product = len(inside) > 1 and not self._plain and not any(t.text in "+-*/" and t.kind == "sign" for t in inside)
+        if len(places) > 1 or (product and self._is_product(inside)):
+            raise Unread("what it is taken at is not read", self._found[begin].at)
         self._i = begin
+
+    def _is_product(self, part: Sequence[Token]) -> bool:
+        """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""
+        inner = self._of(part)
+        first = inner._letter()
+        return first is not None and inner._i < len(part) and part[inner._i].kind in ("letter", "macro")
 
 
 def _in_tex(part: Sequence[Token]) -> str:

@@ -30,7 +30,7 @@ class QuotientCursor(LetterCursor):
         if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
             self._i += 1
             parts = self._group(), self._group()
-        elif _is_differential(token) or (token.kind == "word" and token.text.startswith("d")):
+        elif is_differential(token) or (token.kind == "word" and token.text.startswith("d")):
             parts = self._slashed()
         if parts is not None and (tree := self._quotient(*parts)) is not None:
             return tree
@@ -43,7 +43,7 @@ class QuotientCursor(LetterCursor):
         if slash is None or any(self._found[k].text in "+-=" for k in range(self._i, slash)):
             return None
         below = self._found[slash + 1 : slash + 2]
-        if not below or not (_is_differential(below[0]) or (below[0].kind == "word" and below[0].text[0] == "d")):
+        if not below or not (is_differential(below[0]) or (below[0].kind == "word" and below[0].text[0] == "d")):
             return None
         above = list(self._found[self._i : slash])
         self._i = slash + 1
@@ -51,7 +51,7 @@ class QuotientCursor(LetterCursor):
         if self._found[start].kind == "word":
             self._i += 1
         else:
-            while _is_differential(self._peek()):
+            while is_differential(self._peek()):
                 self._i += 1
                 if self._letter() is None:
                     return None
@@ -122,9 +122,9 @@ class QuotientCursor(LetterCursor):
                     False,
                 )
             )
-        if not above or not _is_differential(above[0]):
+        if not above or not is_differential(above[0]):
             return None
-        rest, order = _after_differential(above), 1
+        rest, order = after_differential(above), 1
         if len(rest) > 1 and rest[0].text == "^":
             end = group_end(rest, 1) if rest[1].kind == "open" else 2
             digits = "".join(t.text for t in rest[1:end] if t.kind == "number")
@@ -146,9 +146,9 @@ class QuotientCursor(LetterCursor):
         found: list[Letter] = []
         inner = self._of(below)
         while inner._i < len(below):
-            if not _is_differential(inner._peek()):
+            if not is_differential(inner._peek()):
                 return None
-            inner._i += len(below[inner._i :]) - len(_after_differential(below[inner._i :]))
+            inner._i += len(below[inner._i :]) - len(after_differential(below[inner._i :]))
             letter = inner._letter()
             if letter is None:
                 return None
@@ -163,7 +163,8 @@ class QuotientCursor(LetterCursor):
         return found or None
 
 
-def _is_differential(token: Token | None) -> bool:
+def is_differential(token: Token | None) -> bool:
+    """Whether a token is, or sets upright, the sign of a differential."""
     if token is None:
         return False
     return (token.kind == "letter" and token.text == "d") or (
@@ -171,7 +172,7 @@ def _is_differential(token: Token | None) -> bool:
     )
 
 
-def _after_differential(part: list[Token]) -> list[Token]:
+def after_differential(part: list[Token]) -> list[Token]:
     """What follows a differential sign, which may be set upright."""
     if part[0].text in ("mathrm", "text", "operatorname"):
         return part[group_end(part, 1) :] if len(part) > 1 and part[1].kind == "open" else part[2:]

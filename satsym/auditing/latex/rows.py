@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
 
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import EQUALS, RELATIONS, SKIPPED_GROUPS, SPACES, SYSTEMS, TIMES, UPRIGHT
@@ -20,6 +22,8 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
             i -= 1
         elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
+            if token.text == "hspace":  # parts equations, as a wide space does
+                kept.append(replace(token, text="quad"))
             i += 1 if i < len(found) and found[i].text == "*" else 0
             i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
         elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
@@ -44,11 +48,16 @@ def lines(found: Sequence[Token]) -> list[list[list[Token]]]:
         signed = first is not None and first.kind == "sign" and first.text in "+-"
         if done and not sides[0]:  # a line that begins with the equality sign goes on with the one before
             done[-1] += sides[1:]
-        elif done and len(sides) == 1 and signed:
-            done[-1][-1] += piece
+        elif done and signed and (len(sides) == 1 or len(done[-1]) == 1):
+            done[-1][-1] += sides[0]
+            done[-1] += sides[1:]
         else:
             done.append(sides)
     with_sides = [line for line in done if len(line) > 1]
+    if with_sides and (
+        asked := next((t for line in done if len(line) == 1 for t in line[0] if t.text in RELATIONS), None)
+    ):
+        raise Unread("a condition beside the equations is not read", asked.at)
     return with_sides or done
 
 
@@ -72,7 +81,8 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
             continue
         inside = not all(systems)
         if token.kind == "macro" and token.text in ("\\", "cr") and not inside:
-            rows.append([])
+            if depth <= 0:  # else a bracket goes on in the next line
+                rows.append([])
             if i < len(found) and found[i].text == "[":
                 while i < len(found) and found[i].text != "]":
                     i += 1
@@ -93,11 +103,14 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
 def _equations(row: Sequence[Token]) -> list[list[Token]]:
     """The equations that stand side by side in a line whose columns are aligned."""
     pieces: list[list[Token]] = [[]]
-    for cell in split(row, lambda token: token.kind == "sign" and token.text == "&"):
+    cells = split(row, lambda token: token.kind == "sign" and token.text == "&")
+    for place, cell in enumerate(cells):
+        after = cells[place + 1] if place + 1 < len(cells) else []
         before, first = pieces[-1], cell[0] if cell else None
         begun = first is None or _is_equals(first) or first.text in RELATIONS or first.text in TIMES | {"+", "-", ","}
         complete = _has_equality(before) and not _is_equals(before[-1])
-        if complete and (_has_equality(cell) or _is_remark(cell)):
+        begins = bool(cell) and bool(after) and _is_equals(after[0])
+        if complete and (begins or _has_equality(cell) or _is_remark(cell)):
             pieces.append(list(cell))
         elif begun or not before or _is_equals(before[-1]):
             pieces[-1] += cell
@@ -105,6 +118,9 @@ def _equations(row: Sequence[Token]) -> list[list[Token]]:
             assert first is not None
             raise Unread("what stands in this column is no part of an equation", first.at)
     equations = [piece for piece in pieces if _has_equality(piece)]
+    said = [token for piece in pieces if piece not in equations for token in piece if token.text in RELATIONS]
+    if equations and said:
+        raise Unread("a condition beside the equations is not read", said[0].at)
     return equations if len(pieces) > 1 else pieces
 
 
@@ -123,6 +139,10 @@ def _is_system(found: Sequence[Token], i: int) -> bool:
 def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     """Equations between which commas stand; ends of sentences are left out."""
     parts = split(found, lambda token: token.kind == "sign" and token.text in ",;")
+    for before, after in pairwise(part for part in parts if part):
+        digits = before[-1]
+        if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
+            raise Unread("a comma in a number may part thousands or decimals", after[0].at - 1)
     kept = [part for part in (_without_stop(part) for part in parts) if part]
     if len(kept) > 1 and not all(_has_equality(part) for part in kept[:2]):
         equations = [part for part in kept if _has_equality(part)]

@@ -36,15 +36,13 @@ SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom co
 KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel ensuremath smash".split())
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
-OF_VECTORS = frozenset(("times", "cdot", "bullet"))
-"""Signs that are products of another kind between vectors."""
+OF_VECTORS = {"times": "cross", "cdot": "dot", "bullet": "dot"}
+"""Signs that are products of another kind between vectors, and what these are called."""
 RELATIONS = {"<", ">", "le", "ge", "leq", "geq", "ll", "gg", "neq", "ne", "approx", "sim", "simeq", "propto", "in"}
 RELATIONS |= {"to", "rightarrow", "Rightarrow", "implies", "iff", "leqslant", "geqslant", "mapsto", "cong", "prec"}
 REFUSED = {
-    "int": "an integral",
     "iint": "an integral",
     "oint": "an integral",
-    "sum": "a sum over an index",
     "prod": "a product over an index",
     "lim": "a limit",
     "pm": "two signs at once",
@@ -70,8 +68,10 @@ NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
 FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 """Letters behind which a place, or an angle, is still part of what a function is taken of."""
+INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
+"""Macros that are read as words where they stand in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
-ATOMS = frozenset(("frac", "tfrac", "dfrac", "cfrac", "sqrt", "lvert", "lVert", "partial", "{", "lbrace", "lbrack"))
+ATOMS = frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack".split())
 ROOTS = frozenset(("sqrt",))
 OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))
 """Powers of e that are those of an eccentricity, not of the base of logarithms."""

@@ -10,7 +10,7 @@ from satsym.formula.writing import written
 Writer = Callable[["Node | Equality"], str]
 _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
-_WORDS = {"pi": r"\pi", "constant": r"\text{const}"}
+_WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty"}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 
 
@@ -89,6 +89,18 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
     if node.function == "diff" and len(node.arguments) == 2:
         by = whole(node.arguments[1])
         return rf"\frac{{\partial {whole(node.arguments[0])}}}{{\partial {by}}}", _ATOM
+    if node.function in ("cross", "dot") and len(node.arguments) == 2:
+        sign = {"cross": r"\times", "dot": r"\cdot"}[node.function]
+        return rf"{bound(node.arguments[0], _ATOM)} {sign} {bound(node.arguments[1], _ATOM)}", _PRODUCT
+    if node.function == "sum":
+        limits = [whole(part) for part in node.arguments[1:]]
+        below = f"_{{{'='.join(limits[:2])}}}" if limits else ""
+        above = f"^{{{limits[2]}}}" if len(limits) > 2 else ""
+        return rf"\sum{below}{above} {bound(node.arguments[0], _PRODUCT)}", _SUM
+    if node.function == "integral" and len(node.arguments) > 1:
+        inside, by, *limits = map(whole, node.arguments)
+        ends = "".join(f"{sign}{{{end}}}" for sign, end in zip("_^", limits, strict=False))
+        return rf"\int{ends} {inside} \, d{by}", _SUM
     if node.function in special:
         return special[node.function], _ATOM
     name = _NAMES.get(node.function) or (rf"\{node.function}" if node.function in _KNOWN else "")
