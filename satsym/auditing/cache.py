@@ -46,11 +46,12 @@ def audit(
     """As :func:`satsym.auditing.run.audit`, from the cache unless it is to be fresh; single items are never kept."""
     if items:
         return judge(ledger, items, announce)
-    before = None if fresh else _read(_place(ledger))
+    place = _place(ledger)  # of the files as they are now: they may change while it is judged
+    before = None if fresh else _read(place)
     if before is not None:
         return before
     found = judge(ledger, items, announce)
-    user_cache.write(_place(ledger), msgspec.json.encode(found))
+    user_cache.write(place, msgspec.json.encode(found))
     return found
 
 

@@ -130,6 +130,15 @@ def test_what_is_left_swinging_is_the_transform_of_the_torque():
     assert wheel.swinging(found) == pytest.approx(4.0 * 4.0 * P_C / 100.0**2, rel=1e-7)
 
 
+def test_an_impulse_at_the_start_swings_panels_too():
+    """A critically damped law: the transform of its acceleration, the impulse included, is that of its closed loop."""
+    found = wheel.classical(SATELLITE)
+    w = np.linspace(4.0, 200.0, 800) / found.part("duration")
+    s, damping = 1j * w, 0.01
+    swing = w * abs(P_C * s * (2.0 * damping * s + damping**2) / (s + damping) ** 2)
+    assert wheel.swinging(found) == pytest.approx(swing.max(), rel=1e-3)
+
+
 def test_forces_that_jump_are_quickest():
     assert wheel.crossing_time([0.0, 0.5, 0.5, 1.0], [1.0, 1.0, -1.0, -1.0]) == pytest.approx(2.0)
     assert wheel.crossing_time([0.0, 1.0], [1.0, -1.0]) == pytest.approx(math.sqrt(6.0), rel=1e-6)

@@ -87,17 +87,21 @@ def settled(motion: Record, aim: float, band: float) -> float:
 
 
 def swinging(motion: Record) -> float:
-    """How far panels swing after a motion, at most over their frequencies, as an acceleration of the body."""
+    """How far panels swing after a motion, at most over their frequencies, as an acceleration of the body.
+
+    An impulse with which the motion begins counts as a push, too.
+    """
     from scipy.optimize import minimize_scalar
 
     t, pushes = motion.part("t"), np.diff(motion.part("rate"))
     lengths = np.diff(t)
     kept = lengths > 0.0
     push, begin, end = pushes[kept] / lengths[kept], t[:-1][kept], t[1:][kept]
+    kick = float(motion.part("rate")[0]) if motion.part("impulse")[0] > 0.0 else 0.0
 
     def swing(w: float) -> float:
         wave = (np.exp(-1j * w * end) - np.exp(-1j * w * begin)) / (-1j * w)
-        return abs(complex((push * wave).sum())) * w
+        return abs(complex((push * wave).sum()) + kick * complex(np.exp(-1j * w * t[0]))) * w
 
     frequencies = _PHASES / motion.part("duration")
     found = [swing(w) for w in frequencies]
