@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from satsym.auditing.check import told as checking
+from satsym.auditing.check import answers as checking
 from satsym.auditing.check.answer import check_in
-from satsym.auditing.check.told import Answer, Verdict
+from satsym.auditing.check.answers import Answer, Verdict
 from satsym.front.refusals import in_one_line
 from satsym.report.terminal.checked import checked_text
 

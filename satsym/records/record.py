@@ -181,7 +181,7 @@ def formula(text: str) -> Node:
     return reading.expression(text)
 
 
-def resolve(found: Record, address: str) -> Found:
+def look_up(found: Record, address: str) -> Found:
     """The thing at ``model:step.equation``, ``model:step.A`` or ``model:declared.name``.
 
     Raises

@@ -135,7 +135,7 @@ def test_every_declared_name_is_an_address() -> None:
     names = [name for name, entry in found.names.items() if entry.kind in ("state", "control", "parameter", "output")]
     assert "u3" in names
     for name in names:
-        record.resolve(found, f"hill:declared.{name}")
+        record.look_up(found, f"hill:declared.{name}")
 
 
 @pytest.mark.parametrize("model", ["hill", "polar_orbit", "pitch_minimum_time", "transfer_fuel"])

@@ -9,11 +9,11 @@ from functools import cached_property
 from pathlib import Path
 
 from satsym.auditing.check import remedies
+from satsym.auditing.check.answers import Answer, Fit, Verdict
 from satsym.auditing.check.derived import Derived, Target, is_plain, says_nothing, solved, vanishes
 from satsym.auditing.check.matrices import matrix_answer
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.nearest import likeness
-from satsym.auditing.check.told import Answer, Fit, Verdict
 from satsym.auditing.latex.grammar import CONSTANT, Reading, read
 from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
@@ -116,9 +116,9 @@ class Subject:
             return self._of_equation(statement)
         except (BadInput, RecursionError) as error:
             why = "it is nested too deep" if isinstance(error, RecursionError) else str(error)
-            return self.told(statement, "undecided", why)
+            return self.answered(statement, "undecided", why)
 
-    def told(
+    def answered(
         self,
         statement: Node | Equality,
         verdict: Verdict,
@@ -161,7 +161,7 @@ class Subject:
         meanings = {name: tree for name in inside if (tree := self._meaning(name, guess)) is not None}
         verdict, address, diagnosis, correct = matrix_answer(statement, meanings, self.derived, self)
         fit = Fit(guess, None, False, 0.0)
-        return self.told(statement, verdict, diagnosis, fit=fit, address=address, correct=correct)
+        return self.answered(statement, verdict, diagnosis, fit=fit, address=address, correct=correct)
 
     def _of_equation(self, statement: Node | Equality) -> Answer:
         inside = self._inside(statement)
@@ -173,7 +173,7 @@ class Subject:
         for place, guess in enumerate(guesses):
             fit = self._right(named, derivatives, guess)
             if fit is not None and not (guess.oddity and fits and fits[0].likeness > fit.likeness + 0.3):
-                return self.told(statement, "right", fit=fit)
+                return self.answered(statement, "right", fit=fit)
             if place < _LOOKED_AT:
                 fits += self._near(named, derivatives, guess)
         fits.sort(key=lambda fit: fit.likeness - _ODD * fit.guess.oddity, reverse=True)
@@ -191,14 +191,14 @@ class Subject:
                 near.append(fit)
         if not near:
             why = f"no equation of {self.derived.record.name} comes near it"
-            return self.told(statement, "undecided", why, fit=fits[0] if fits else None)
+            return self.answered(statement, "undecided", why, fit=fits[0] if fits else None)
         best: tuple[float, Fit, remedies.Found] | None = None
         for fit in near:
             if best is not None and best[2].cost < 20 and fit.likeness < best[1].likeness - 0.15:
                 break
             found = remedies.sought(named, derivatives, fit, self)
             if found.right:
-                return self.told(statement, "right", fit=fit)
+                return self.answered(statement, "right", fit=fit)
             if found.cost >= remedies.NO_EDIT and fit.likeness < _SIMILAR:
                 continue
             cost = found.cost - 30.0 * (fit.likeness - _ODD * fit.guess.oddity)
@@ -206,10 +206,10 @@ class Subject:
                 best = cost, fit, found
         if best is None:
             why = f"no equation of {self.derived.record.name} comes near it"
-            return self.told(statement, "undecided", why, fit=near[0])
+            return self.answered(statement, "undecided", why, fit=near[0])
         _, fit, found = best
         besides = self.derivatives(True, derivatives), self.derivatives(False, derivatives)
-        return self.told(statement, "wrong", found.diagnosis, fit=fit, correct=found.correct, besides=besides)
+        return self.answered(statement, "wrong", found.diagnosis, fit=fit, correct=found.correct, besides=besides)
 
     def derivatives(self, latex: bool, derivatives: Mapping[str, Node]) -> dict[str, str]:
         """How derivatives that are one letter in the tree are written."""
@@ -221,7 +221,7 @@ class Subject:
         odd = self.meanings.unknown(letters, self.given)
         written = ", ".join(letter.latex if self.latex else letter.name for letter in odd)
         why = f"{written} may mean nothing in {self.derived.record.name}; say what with --let LETTER=NAME"
-        return self.told(statement, "undecided", why)
+        return self.answered(statement, "undecided", why)
 
     def _inside(self, statement: Node | Equality) -> list[str]:
         sides = (statement.lhs, statement.rhs) if isinstance(statement, Equality) else (statement,)

@@ -88,7 +88,7 @@ def _matrices(derived: Derived, label: str) -> Iterator[tuple[str, Rows]]:
             if isinstance(equation.rhs, list):
                 address = f"{derived.record.name}:{step.name}.{equation.name}"
                 try:
-                    value = record.resolve(derived.record, address)
+                    value = record.look_up(derived.record, address)
                 except BadInput:
                     continue
                 if isinstance(value, Equated) and isinstance(value.rhs, Matrix):
@@ -96,14 +96,14 @@ def _matrices(derived: Derived, label: str) -> Iterator[tuple[str, Rows]]:
         for prefix in dict.fromkeys(equation.name.partition("_")[0] for equation in step.equations):
             address = f"{derived.record.name}:{step.name}.{prefix}"
             try:
-                family = record.resolve(derived.record, address)
+                family = record.look_up(derived.record, address)
             except BadInput:
                 continue
             if isinstance(family, Family):
                 found.append((address, family.entries))
     for address in (f"{derived.record.name}:{record.DECLARED}.{name}" for name in derived.record.declared):
         try:
-            declared = record.resolve(derived.record, address)
+            declared = record.look_up(derived.record, address)
         except BadInput:
             continue
         if isinstance(declared, Family):

@@ -23,7 +23,7 @@ from satsym.status import BadInput
 
 if TYPE_CHECKING:
     from satsym.auditing.check.answer import Subject
-    from satsym.auditing.check.told import Fit
+    from satsym.auditing.check.answers import Fit
     from satsym.auditing.comparison.plan import Plan
 
 NO_EDIT = 60.0

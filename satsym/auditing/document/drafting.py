@@ -17,9 +17,9 @@ from typing import Any
 
 from satsym.auditing.check import remedies
 from satsym.auditing.check.answer import Subject
+from satsym.auditing.check.answers import Answer
 from satsym.auditing.check.derived import Derived, vanishes
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
-from satsym.auditing.check.told import Answer
 from satsym.auditing.document import displays
 from satsym.auditing.document.displays import Display, Source
 from satsym.auditing.latex.cursor import Reading
@@ -167,7 +167,7 @@ def _entries(
             try:
                 _fill(entry)
             except BadInput as error:
-                entry.answer, entry.table = subject.told(statement, "undecided", str(error)), {}
+                entry.answer, entry.table = subject.answered(statement, "undecided", str(error)), {}
             yield entry
 
 

@@ -64,4 +64,4 @@ def _shipped() -> frozenset[str]:
 def _check_address(address: str) -> None:
     if not is_address(address):
         raise BadInput(f"{shown(address)} is not an address; write model:step.equation")
-    record.resolve(shelf.find(address.partition(":")[0]), address)
+    record.look_up(shelf.find(address.partition(":")[0]), address)

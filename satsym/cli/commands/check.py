@@ -44,7 +44,7 @@ def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: b
     Exit codes: 0 right, 5 wrong, 4 undecided.
     """
     from satsym.auditing.check.answer import check_in
-    from satsym.auditing.check.told import as_object, worst
+    from satsym.auditing.check.answers import as_object, worst
     from satsym.report.terminal.checked import checked_text
 
     found = check_in(formula, model, Path(), let, free)

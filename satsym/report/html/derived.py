@@ -65,7 +65,7 @@ def _of_record(address: str) -> Derived:
     """An equation of a model whose file is not executed."""
     record_ = shelf.find(address.partition(":")[0])
     write = in_latex({name: entry.latex for name, entry in record_.names.items() if entry.latex})
-    found = record.resolve(record_, address)
+    found = record.look_up(record_, address)
     if isinstance(found, record.Equated):
         right = grid(found.rhs.rows) if isinstance(found.rhs, Matrix) else found.rhs
         return Derived(record_.title, write(Equality(found.lhs, right)))

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from satsym.auditing.check.told import Answer
+from satsym.auditing.check.answers import Answer
 from satsym.auditing.document.drafting import Draft
 from satsym.auditing.sentences import in_indonesian
 from satsym.report.said import language, message, say

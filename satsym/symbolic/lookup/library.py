@@ -118,7 +118,7 @@ def at(address: str, shared: Names, order: Order) -> Value:
     BadInput
         If there is none.
     """
-    found = record.resolve(shelf.find(address.partition(":")[0]), address)
+    found = record.look_up(shelf.find(address.partition(":")[0]), address)
 
     def exact(tree: Node) -> sp.Expr:
         try:
@@ -166,7 +166,7 @@ def rates(model: str) -> list[sp.Expr]:
     step = next((step for step in found.steps if step.name == "first_order"), None)
     if step is None:
         raise BadInput(f"{model} has no equations of its states")
-    equated = [record.resolve(found, f"{model}:first_order.{e.name}") for e in step.equations]
+    equated = [record.look_up(found, f"{model}:first_order.{e.name}") for e in step.equations]
     trees = [e.rhs for e in equated if isinstance(e, Equated) and not isinstance(e.rhs, Matrix)]
     return [from_tree(tree, lambda name: named(name, shared)) for tree in trees]
 
