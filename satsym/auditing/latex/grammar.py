@@ -108,9 +108,10 @@ class Parser(QuotientCursor):
                 if argument and not self._plain:
                     break
                 self._i += 1
-                chain = [Div(_times(chain), self._signed_factor())]
+                divisor = self._signed_factor()
+                chain = [Div(_times(chain), divisor)]
                 unit = self._peek()
-                if isinstance(chain[0].denominator, Num) and unit is not None and unit.text in words.UPRIGHT:
+                if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
                     raise Unread("a unit behind a slash is not read", unit.at)
             elif argument and not self._continues_argument(token, chain[-1]):
                 break
