@@ -14,7 +14,7 @@ STATES += tuple(Variable(f"{q.symbol}_dot", rf"\dot {q.latex}", "km/s", f"rate o
 PARAMETERS = (
     Variable("n", "n", "rad/s", "angular velocity of the two bodies", 1.0, positive=True),
     Variable("R", "R", "km", "distance of the two bodies", 1.0, positive=True),
-    Variable("mu", r"\mu", "1", "share of the second body in the mass of both", 0.01215, positive=True),
+    Variable("mu", r"\mu", "1", "mass of the second body over that of both", 0.01215, positive=True),
 )
 AHEAD = Variable("x1", "x_1", "km", "position of the first body on their line")
 BEYOND = Variable("x2", "x_2", "km", "position of the second body on their line", positive=True)

@@ -59,7 +59,7 @@ def switching_feedback(so_far: Derivation) -> Step | None:
         return None
     beyond = chain.position - so_far.equation(f"{CURVE}.curve").rhs
     equations = (
-        Equation("beyond", s.BEYOND, chain.position - s.ON_CURVE),
+        Equation("beyond", s.BEYOND_CURVE, chain.position - s.ON_CURVE),
         Equation("side", s.SIDE, _side(chain)),
         Equation(chain.control.name, n.optimal(chain.control), _levels(chain)),
     )
@@ -79,7 +79,7 @@ def rest_to_rest(so_far: Derivation) -> Step | None:
 
 def _side(chain: Chain) -> sp.Expr:
     """The sign of the distance from the curve, or on it that of the arc."""
-    return sp.sign(s.BEYOND) + (1 - sp.sign(s.BEYOND) ** 2) * sp.sign(chain.rate - chain.target[1])
+    return sp.sign(s.BEYOND_CURVE) + (1 - sp.sign(s.BEYOND_CURVE) ** 2) * sp.sign(chain.rate - chain.target[1])
 
 
 def _levels(chain: Chain) -> sp.Expr:

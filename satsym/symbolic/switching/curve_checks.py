@@ -49,7 +49,7 @@ def arrives(so_far: Derivation, chain: Chain, curve: sp.Expr, law: sp.Expr) -> C
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = motion.start(point)
         here[chain.position] = place(here)[0]
-        end = motion.last_arc(here, control({**here, s.BEYOND: mp.mpf(0)})[0])
+        end = motion.last_arc(here, control({**here, s.BEYOND_CURVE: mp.mpf(0)})[0])
         return motion.states(end), motion.targets(here)
 
     return compare("the curve leads to the target", motion.symbols(curve, law), sides)
@@ -65,11 +65,11 @@ def extremal(so_far: Derivation, chain: Chain, beyond: sp.Expr, law: sp.Expr) ->
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         start = motion.start(point)
-        start[s.BEYOND] = distance(start)[0]
+        start[s.BEYOND_CURVE] = distance(start)[0]
         first = control(start)[0]
-        time = _until(lambda time: distance(motion.after(start, first, time))[0] / start[s.BEYOND] < 0)
+        time = _until(lambda time: distance(motion.after(start, first, time))[0] / start[s.BEYOND_CURVE] < 0)
         switch = motion.after(start, first, time)
-        last = control({**switch, s.BEYOND: mp.mpf(0)})[0]
+        last = control({**switch, s.BEYOND_CURVE: mp.mpf(0)})[0]
         switch |= _zeros(vanishing, switch, lam)
         before, end = motion.after(switch, first, -time / 2), motion.last_arc(switch, last)
         expected = [optimal(before)[0], optimal(end)[0], *motion.targets(start)]
@@ -88,7 +88,7 @@ def between_rests(so_far: Derivation, chain: Chain, law: sp.Expr, duration: sp.E
         start = motion.start(point) | {chain.rate: mp.mpf(0), chain.target[1]: mp.mpf(0)}
         whole, until = times(start)
         way = start[chain.position] - start[chain.target[0]]
-        levels = [control({**start, s.BEYOND: side * way})[0] for side in (1, -1)]
+        levels = [control({**start, s.BEYOND_CURVE: side * way})[0] for side in (1, -1)]
         end = motion.after(motion.after(start, levels[0], until), levels[1], whole - until)
         return motion.states(end), motion.targets(start)
 
