@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/three_bodies.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/three_bodies.py
-Source: ../../audit/derivations/examples/three_bodies.py f6eae7c0f241bf6b5e2d14ad25ca0481
-Digest: 2a37e84143c53f6fcd1e1fdd95ea054254476052dec8e6fd311d7eb6277c213c
+Source: ../derivations/examples/three_bodies.py cb033f2b29d06d534621acc361c714e9
+Digest: e120a4effec3364180310dc676cf42b1af89f5fac9e0b317a91d118ed114cd82
 """
 
 import math
@@ -28,7 +28,7 @@ MODEL = {
     'parameters': (
         {'symbol': 'n', 'latex': 'n', 'unit': 'rad/s', 'meaning': 'angular velocity of the two bodies', 'default': 1.0, 'positive': True},
         {'symbol': 'R', 'latex': 'R', 'unit': 'km', 'meaning': 'distance of the two bodies', 'default': 1.0, 'positive': True},
-        {'symbol': 'mu', 'latex': '\\mu', 'meaning': 'share of the second body in the mass of both', 'default': 0.01215, 'positive': True},
+        {'symbol': 'mu', 'latex': '\\mu', 'meaning': 'mass of the second body over that of both', 'default': 0.01215, 'positive': True},
     ),
     'control_set': None,
     'has_cost': False,

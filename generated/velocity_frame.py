@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/velocity_frame.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/velocity_frame.py
-Source: ../../audit/derivations/examples/velocity_frame.py faaf9ebbca203221b9a834470fcdb63e
-Digest: 9984760dec6ea8d6475304e56874b0562584c73b791233fc915597cb09371d5e
+Source: ../derivations/examples/velocity_frame.py faaf9ebbca203221b9a834470fcdb63e
+Digest: f6810ba6e742671651fb16b1d72d7b3717141c2c1fb986b9e8de198f4d11df50
 """
 
 import math
