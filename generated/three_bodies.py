@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/three_bodies.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/three_bodies.py
-Source: ../derivations/examples/three_bodies.py cb033f2b29d06d534621acc361c714e9
-Digest: e120a4effec3364180310dc676cf42b1af89f5fac9e0b317a91d118ed114cd82
+Source: ../derivations/examples/three_bodies.py 8e932671ebc9e906d4c11047d6ad6914
+Digest: 25c3a89e4e989969c24840d9e02c320170842196ab38cf34f86686f7828d72d3
 """
 
 import math

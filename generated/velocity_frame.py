@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/velocity_frame.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/velocity_frame.py
-Source: ../derivations/examples/velocity_frame.py faaf9ebbca203221b9a834470fcdb63e
-Digest: f6810ba6e742671651fb16b1d72d7b3717141c2c1fb986b9e8de198f4d11df50
+Source: ../derivations/examples/velocity_frame.py 8d3feaf4ffacc4d9396797a9e2b5ebe3
+Digest: ae85eba483be73f9f18b59356bcea83461838edfc714662465b53778ff870ce2
 """
 
 import math

@@ -58,3 +58,25 @@ three_bodies = Newton(
 )
 
 PROBLEMS = (three_bodies,)
+
+TRANSLATIONS = {
+    "id": {
+        "Circular restricted three-body problem": "Masalah tiga benda terbatas melingkar",
+        "position along the line of the two bodies": "posisi sepanjang garis kedua benda",
+        "position in their plane, across that line": "posisi pada bidang kedua benda, tegak lurus garis itu",
+        "position along the normal of their plane": "posisi sepanjang normal bidang kedua benda",
+        "gravitational parameter of the first body": "parameter gravitasi benda pertama",
+        "gravitational parameter of the second body": "parameter gravitasi benda kedua",
+        "mass of the second body over that of both": "massa benda kedua dibagi massa keduanya",
+        "distance of the two bodies": "jarak kedua benda",
+        "angular velocity of the two bodies": "kecepatan sudut kedua benda",
+        "position of the first body on their line": "posisi benda pertama pada garis keduanya",
+        "position of the second body on their line": "posisi benda kedua pada garis keduanya",
+        "distance from the first body": "jarak dari benda pertama",
+        "distance from the second body": "jarak dari benda kedua",
+        "potential of the attraction of both bodies": "potensial tarikan kedua benda",
+        "potential with the turning of the axes": "potensial dengan putaran sumbu",
+        "first body": "benda pertama",
+        "second body": "benda kedua",
+    }
+}

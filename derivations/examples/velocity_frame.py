@@ -42,3 +42,14 @@ velocity_frame = FirstOrder(
 )
 
 PROBLEMS = (velocity_frame,)
+
+TRANSLATIONS = {
+    "id": {
+        "The axes along the velocity on a Kepler orbit": "Sumbu sepanjang kecepatan pada orbit Kepler",
+        "flight path angle": "sudut lintasan terbang",
+        "eccentricity": "eksentrisitas",
+        "true anomaly": "anomali sejati",
+        "angular momentum per unit mass": "momentum sudut per satuan massa",
+        "semi-latus rectum": "semi-latus rektum",
+    }
+}

@@ -104,10 +104,25 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None, 
     left = hurried(instance, deadline)
     found = None if left is None else by_search.instead(left, progress, examined)
     if found is not None:
+        left = hurried(instance, deadline)
+        found = found if left is None or not examined else _resolved(found, solver, left, progress)
         found = replace(_in_full(found, instance), wall_s=found.wall_s + solution.wall_s)
         return by_search.cheaper(instance, found) if examined else found
     left = hurried(instance, deadline) if solution.status is Status.TIME_LIMIT else None
     return solution if left is None else _in_full(solver(left, progress), instance)
+
+
+def _resolved(found: Solution, solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
+    """The extremal of a search as a solver finds it that varies what is free, if its certificate can say more then."""
+    from satsym.solvers.improving import starting_from
+
+    if found.certificate is None or found.certificate.verdict is Verdict.CERTIFIED:
+        return found
+    again = solver(replace(starting_from(found), solver=instance.solver, work=instance.work), progress)
+    better = again.certificate is not None and again.certificate.verdict is Verdict.CERTIFIED
+    if not better or not again.objective <= found.objective + 1e-9 * abs(found.objective):
+        return found
+    return replace(again, instance=replace(again.instance, guess=instance.guess, work=instance.work))
 
 
 def _in_full(found: Solution, instance: Instance) -> Solution:

@@ -125,7 +125,7 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None) 
     if left is None:
         return replace(found, status=Status.TIME_LIMIT)
     again = solving.solve(left, progress)
-    if not again.status.answered and np.isfinite(found.x).all():
+    if again.status in (Status.NOT_CONVERGED, Status.TIME_LIMIT) and np.isfinite(found.x).all():
         return found
     again = replace(again, instance=replace(again.instance, solver=instance.solver))
     return replace(again, wall_s=time.perf_counter() - began)

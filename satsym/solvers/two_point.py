@@ -82,7 +82,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     else:
         problem = two_point(instance, instance.tf - instance.t0)
         start = under_guess(problem, limits) or cold_start(problem, limits)
-        if start.saddle is not None:
+        if start.saddle is not None and not problem.control_set.bounded:  # within bounds there may be a minimum
             start = replace(start, found=start.saddle)
         elif not start.found.minimum:
             message = f"no extremal found: {start.found.message}"

@@ -44,8 +44,8 @@ def test_gains_eigenvalues_and_costs_are_those_of_one(name: str) -> None:
 
 
 def test_a_gain_that_is_hardly_wrong_is_not_clear(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = many.batch.solve
-    monkeypatch.setattr(many.batch, "solve", lambda *given: (1.0001 * (found := right(*given))[0], *found[1:]))
+    right = many.solve
+    monkeypatch.setattr(many, "solve", lambda *given: (1.0001 * (found := right(*given))[0], *found[1:]))
     found = many.regulators(varied("uny-lqr", 3))
     assert found is not None
     assert not found.clear.any()

@@ -381,12 +381,12 @@ def test_any_expression_may_stand_on_the_right_of_what_is_held_against_zero(tmp_
         (row("1", "x2", "polar_orbit:nothing.r"), 'no step "nothing"'),
         (row("1", "x2", "polar_orbit:declared.nothing"), "nothing declared"),
         (row("1", [["x1"]], "polar_orbit:first_order.r", "matrix"), "hold it against a matrix"),
-        (row("1", "x2", "solve(x**2 - r, r_dot)"), "no name"),
+        (row("1", "x2", "solve(x**2 - r, r_dot)"), "is not a name"),
         (row("1", "x2", "solve(r_dot**2 - r, r_dot)"), "linear in r_dot"),
         (row("1", "x2", "solve(sigma/r - r_dot, r)"), "linear in r"),
         (row("1", "x2", "det(matrix([[1, 2]]))"), "not square"),
         (row("1", "x2", "matrix([[1, 2]]) @ matrix([[1, 2]])"), "product of a 1 by 2 and a 1 by 2"),
-        (row("1", "2", "at('polar_orbit:first_order.r')", "number"), "which is none"),
+        (row("1", "2", "at('polar_orbit:first_order.r')", "number"), "which is not a number"),
     ],
 )
 def test_what_cannot_be_compared_is_bad_input_with_its_line(

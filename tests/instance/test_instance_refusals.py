@@ -71,7 +71,7 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("guess.state", "1", ["[guess] state: got 1", "[guess.state]"]),
         # types
         ("model", "1", ["model: got 1", "quotes"]),
-        ("model", '""', ["model", "no name"]),
+        ("model", '""', ["model", "not a name"]),
         ("model", '"a\\nb"', ["model", "a\\nb"]),
         ("model", '"polar_orbt"', ["model", "polar_orbt"]),
         ("model", '"../../etc/passwd"', ["model"]),

@@ -60,7 +60,7 @@ def test_costates_that_lead_elsewhere_are_not_proved() -> None:
     case, _ = between(0.5, 2.0)
     proof = prove(case, lambda: extremal(case, 2.0, 3.0))
     assert proof.status is Outcome.NOT_PROVED
-    assert "no extremal" in proof.reason
+    assert "not an extremal" in proof.reason
 
 
 def test_numbers_of_python_are_the_binary_fractions_that_they_are() -> None:

@@ -383,7 +383,7 @@ def test_each_finding_quotes_what_is_printed(document: Ledger, judged: dict[str,
         printed = found.places[0].original or found.places[0].printed
         assert str(printed)[:40] in findings, found.places[0].key
     assert "stable('saddle')" not in findings
-    assert "stable('saddle')" in " ".join(audit_text([document], judged, rows=True).split())
+    assert "stable('saddle')" in " ".join(audit_text([document], judged, rows=True, code=True).split())
     conclusion = next(found for found in judged["small"] if found.original and found.verdict == "wrong")
     review = Review.of(document, [replace(conclusion, spoiled_by=())], load("en"))
     (brief,) = typeset._in_brief(review, 1, review.findings[0])

@@ -117,7 +117,7 @@ def test_without_a_reference_no_end_on_it_is_spoken_of() -> None:
 
 
 def test_one_thing_has_one_symbol_and_two_have_two() -> None:
-    assert r"\mathbf{x}_f$" not in render(shipped("beam"))
+    assert r"$\mathbf{x}_f$" not in render(shipped("beam"))
     for name, letter in (("shuttle", "q"), ("shuttle_heating", "k")):  # whose heating has the letter q
         problem = stated(name)
         assert isinstance(problem, Problem)

@@ -10,7 +10,7 @@ from scipy.integrate import DOP853
 from satsym import instance, kernels
 from satsym.status import BadInput
 from satsym.symbolic import DerivationError, ModeGroup, Problem, Reduced, derive, symbols_of
-from satsym.symbolic.kinds import multibody
+from satsym.symbolic.kinds import kane
 
 NUMBERS = {"I_x": 11.0, "I_y": 7.0, "I_z": 9.0, "w0": 0.6, "I_wx": 0.4, "I_wy": 0.7, "nominal_speed": 5.0}
 NUMBERS |= {"K_x": 1.3, "K_z": 1.7, "D_x": 0.3, "D_z": 0.2, "J_x": 0.9, "J_y": 0.8, "J_z": 0.7}
@@ -214,7 +214,7 @@ def test_numbers_that_no_satellite_has_are_refused_with_the_reason(tmp_path, nam
 @pytest.mark.parametrize("kind", ["problem", "reduced"])
 def test_what_would_differentiate_rates_without_a_closed_form_is_refused(monkeypatch, kind):
     bodies = import_module("satsym.derivations.gimballed_wheel").gyrostat
-    monkeypatch.setattr(multibody, "MOST_OPERATIONS_UNNAMED", 20)  # so that a small model, too, has a chain
+    monkeypatch.setattr(kane, "MOST_OPERATIONS_UNNAMED", 20)  # so that a small model, too, has a chain
     declared = {"states": bodies.states, "controls": bodies.controls, "parameters": bodies.parameters}
     if kind == "problem":
         cost = sum(u**2 for u in symbols_of(bodies.controls))

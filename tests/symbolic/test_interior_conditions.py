@@ -56,9 +56,9 @@ def test_points_are_typeset(language: str):
         (through(x - 1, sp.Integer(2)), "mark asks that 2 = 0, which no motion changes"),
         (through(x - u), "the interior point mark cannot depend on u"),
         (through(x - 1, v, x + v), "more conditions than there are states"),
-        (through(), "write a name for each"),
+        (through(), "give each point a name"),
         (through(x - 1, interior={"Mark": (x,)}), "a point's name is"),
-        (through(x - 1, interior={"mark": x}), "write a name for each"),
+        (through(x - 1, interior={"mark": x}), "give each point a name"),
     ],
 )
 def test_what_is_not_solved_or_not_sound_is_refused(problem: Problem, message: str):

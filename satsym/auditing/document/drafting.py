@@ -99,22 +99,6 @@ def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> 
     return _written(path, model, before, old, entries, source)
 
 
-def text_before(ledger: Path) -> str:
-    """The text of a ledger, if it is there.
-
-    Raises
-    ------
-    BadInput
-        If it is no text.
-    """
-    if not ledger.is_file():
-        return ""
-    try:
-        return ledger.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        raise BadInput(f"{ledger}: exists, and is not text; give another --out") from None
-
-
 def as_object(ledger: Path, found: Draft) -> dict[str, Any]:
     """What JSON has of it."""
     lists = {"unread": found.unread, "undecided": found.undecided}

@@ -10,7 +10,7 @@ from satsym.cli import names
 from satsym.cli.help import command
 from satsym.cli.options import json_option, place_option
 from satsym.cli.output import answer
-from satsym.status import ExitCode
+from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
 Examples:
@@ -44,7 +44,23 @@ def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_
     from satsym.report.terminal.checked import drafted_text
 
     ledger = out or document.with_suffix(drafting.SUFFIX)
-    found = drafting.draft(document, model, drafting.text_before(ledger), let)
+    found = drafting.draft(document, model, _text_before(ledger), let)
     write_text(ledger, found.text)
     answer(as_json, drafting.as_object(ledger, found), lambda: drafted_text(ledger, found))
     return ExitCode.DONE
+
+
+def _text_before(ledger: Path) -> str:
+    """The text of a ledger, if it is there.
+
+    Raises
+    ------
+    BadInput
+        If it is no text.
+    """
+    if not ledger.is_file():
+        return ""
+    try:
+        return ledger.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        raise BadInput(f"{ledger}: exists, and is not text; give another --out") from None

@@ -121,13 +121,17 @@ def _chart(review: Review) -> Iterator[str]:
     """How much of each kind stands, falls and is open, as bars."""
     keys = ("stood", "fallen", "left_open")
     yield f"{_INDENT}{review.texts.get('audit', 'chart')}"
-    widest = max(len(name) for name, *_ in review.chart)
-    for name, *counts in review.chart:
-        lengths = [-(-count * _BAR // sum(counts)) if count else 0 for count in counts]
-        lengths[0] = _BAR - lengths[1] - lengths[2]
+    widest, said = max(len(name) for name, *_ in review.chart), []
+    for _, *counts in review.chart:
+        pairs = zip(keys, counts, strict=True)
+        said.append(", ".join(review.texts.counted("audit", key, n) for key, n in pairs if n))
+    left = _width() - len(_INDENT * 2) - widest - 2 - max(map(len, said))
+    whole = max(min(_BAR, left), 3)
+    for (name, *counts), text in zip(review.chart, said, strict=True):
+        lengths = [-(-count * whole // sum(counts)) if count else 0 for count in counts]
+        lengths[0] = whole - lengths[1] - lengths[2]
         bar = "".join(sign * length for sign, length in zip("#x?", lengths, strict=True))
-        said = ", ".join(review.texts.counted("audit", key, n) for key, n in zip(keys, counts, strict=True) if n)
-        yield f"{_INDENT * 2}{name:{widest}} {bar} {said}"
+        yield f"{_INDENT * 2}{name:{widest}} {bar} {text}"
 
 
 def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Iterator[str]:

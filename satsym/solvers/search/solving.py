@@ -25,9 +25,13 @@ from satsym.solvers.search.nlp import ACCEPTABLE
 from satsym.solvers.search.order import Tried
 from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
 from satsym.solvers.switching.attempt import Exact
+from satsym.status import Status
 
 WORK = 4_000_000
 """Unknowns times iterations that a search may take."""
+
+MEETING = 400_000
+"""The same from a motion that was drawn from both ends."""
 
 
 def applies(instance: Instance) -> bool:
@@ -100,7 +104,7 @@ def _from_meeting_motions(instance: Instance, limits: Limits) -> Solution | None
     for one in tried(lambda: motions(problem, np.random.default_rng(0), cheapest=True)) or []:
         states = one.states * problem.scale.state[:, None]
         guess = Guess(_named(spec.state_names, states), {}, _named(spec.control_names, one.control))
-        within = replace(limits, meter=Meter())
+        within = replace(limits, work=MEETING, meter=Meter())
         found = order.searched(replace(instance, guess=guess), within, partial(exact, instance), starts=1)
         if found is not None:
             return replace(found, instance=replace(found.instance, guess=instance.guess))
@@ -145,11 +149,13 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)
     found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
-    found = found or _from_meeting_motions(instance, limits)
+    status, message = Status.CONVERGED, ""
+    if found is None:
+        status, message = failing.why(instance, limits)
+        found = _from_meeting_motions(instance, limits) if status is Status.NOT_CONVERGED else None
     if found is not None:
         limits.tell(found.objective, history[-1].residual if history else math.nan)
         return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
     nothing = unsolved(instance, automatic(instance.model.spec).name, 0.0)
-    status, message = failing.why(instance, limits)
     wall_s = time.perf_counter() - began
     return replace(nothing, status=status, message=message, history=tuple(history), wall_s=wall_s)

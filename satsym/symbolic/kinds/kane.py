@@ -20,7 +20,7 @@ from satsym.symbolic.kinds.bodies import CLOCK, Bodies, axes_of
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.motion import steps as motion
 
-LONG = 300
+MOST_OPERATIONS_UNNAMED = 300
 """Operations above which common parts of the equations get names of their own."""
 
 
@@ -124,7 +124,7 @@ def kane(so_far: Derivation) -> Step:
     values |= {f"force_{i + 1}": _short(model.static(e)) for i, e in enumerate(active)}
     parts: list[tuple[sp.Symbol, sp.Expr]] = []
     written = list(values.values())
-    if sum(map(sp.count_ops, written)) > LONG:
+    if sum(map(sp.count_ops, written)) > MOST_OPERATIONS_UNNAMED:
         names = map(_part, range(1, 10**4))
         found, reduced = sp.cse(written, symbols=names, order="canonical")
         parts, written = named_parts(found, reduced, _part)
