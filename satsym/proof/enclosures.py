@@ -12,9 +12,10 @@ from satsym.proof.balls.arithmetic import Ball, value
 from satsym.proof.balls.jets import derivatives, variables
 from satsym.proof.balls.taylor import from_zero
 from satsym.proof.ends import End
+from satsym.proof.inclusion import Inclusion
 from satsym.proof.laws import Law
 from satsym.proof.record import Enclosure, Hypothesis, Node, Outcome, Proof
-from satsym.proof.shooting import Box, Inclusion, Segment, Shooting
+from satsym.proof.shooting import Box, Segment, Shooting
 from satsym.proof.statement import Statement
 
 MOST_NODES = 9

@@ -9,8 +9,9 @@ from flint import arb
 
 from satsym.proof.balls.arithmetic import Ball, NotProved
 from satsym.proof.balls.taylor import column, rates, unit
+from satsym.proof.inclusion import inverse
 from satsym.proof.laws import Law
-from satsym.proof.shooting import Box, Rows, Segment, Shooting, inverse
+from satsym.proof.shooting import Box, Rows, Segment, Shooting
 from satsym.proof.structure import REMAINDER, TERMS, leap
 
 TRIES = 12

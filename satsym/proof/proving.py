@@ -19,10 +19,11 @@ from satsym.proof.balls.taylor import Order
 from satsym.proof.convexity import convex, waiting
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
+from satsym.proof.inclusion import Inclusion, krawczyk
 from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
 from satsym.proof.rest import costs_nothing, final_state
-from satsym.proof.shooting import Box, Inclusion, Junction, Shooting, krawczyk
+from satsym.proof.shooting import Box, Junction, Shooting
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated, walled
 from satsym.solution import Solution

@@ -78,9 +78,9 @@ def test_roots_are_counted_by_the_side_they_lie_on(roots: list[complex], expecte
 @pytest.mark.parametrize("factor", [sp.Integer(1), sp.Symbol("q", real=True), sin(sp.Symbol("q", real=True))])
 def test_decimals_that_cancel_but_for_rounding_vanish_in_products_too(factor: sp.Expr) -> None:
     z = sp.Symbol("z", real=True)
-    tenth, rest = (sp.Float(text, 60) for text in ("0.1", "0.001"))
+    tenth, rest = (sp.Float(text, DIGITS) for text in ("0.1", "0.001"))
     cancels = (z + tenth) ** 3 - z**3 - 3 * tenth * z**2 - 3 * tenth**2 * z - rest
-    for off, right in ((0, True), (sp.Float("1e-13", 60) * z, False)):
+    for off, right in ((0, True), (sp.Float("1e-13", DIGITS) * z, False)):
         assert identity("decimals", [factor * (cancels + off)]).passed == right
 
 

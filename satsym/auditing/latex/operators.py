@@ -1,0 +1,186 @@
+"""Functions, roots, sums, integrals, brackets and environments of printed formulas: tokens -> trees."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from fractions import Fraction
+
+from satsym.auditing.latex.letters import GREEK
+from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
+from satsym.auditing.latex.rows import split
+from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.words import MATRICES
+from satsym.formula.tree import Call, Div, Grid, Mul, Node, Num, Pow, Sym, constant
+from satsym.wording import printable
+
+
+class OperatorCursor(QuotientCursor):
+    """Reads what is applied to the terms behind it."""
+
+    @abstractmethod
+    def _product(self, argument: bool = False) -> Node:
+        """Read the term that is next."""
+
+    @abstractmethod
+    def _factor(self) -> Node:
+        """Read the factor that is next."""
+
+    @abstractmethod
+    def _is_vector(self, node: Node) -> bool:
+        """Tell whether a term is a vector."""
+
+    @abstractmethod
+    def _inner(self, part: Sequence[Token], at: int) -> Node:
+        """Read some tokens by themselves."""
+
+    def _peek_number(self) -> Node | None:
+        """A number that is set as a vector, such as a bold zero; ``None``, with nothing taken, where none is next."""
+        begin, found = self._i, self._found
+        inside = self._group() if self._peek() else []
+        if len(inside) == 1 and inside[0].kind == "number":
+            return Num(Fraction(inside[0].text))
+        self._i, self._found = begin, found
+        return None
+
+    def _sum_over(self, token: Token) -> Node:
+        """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
+        limits = self._limits()
+        parts: list[Node] = [self._product()]
+        if below := limits.get("_"):
+            equation = split(below, lambda t: t.kind == "sign" and t.text == "=")
+            parts += [self._inner(side, token.at) for side in equation[:2]]
+        if "^" in limits:
+            parts.append(self._limit(limits["^"], token.at))
+        return Call("sum", tuple(parts))
+
+    def _limits(self) -> dict[str, list[Token]]:
+        limits: dict[str, list[Token]] = {}
+        while self._is("_") or self._is("^"):
+            sign = self._take().text
+            limits[sign] = self._script()
+        return limits
+
+    def _limit(self, part: Sequence[Token], at: int) -> Node:
+        endless = len(part) == 1 and part[0].text == "infty"
+        return Sym("infinity") if endless else self._inner(part, at)
+
+    def _integral(self, token: Token) -> Node:
+        """An integral: what stands up to the differential, its letter, and from where to where, as far as printed."""
+        limits = self._limits()
+        begin, depth = self._i, 0
+        while (now := self._peek()) is not None:
+            depth += (now.kind in ("open", "begin") or now.text in "([") - (
+                now.kind in ("close", "end") or now.text in ")]"
+            )
+            if depth < 0:
+                break
+            here = self._i
+            if depth == 0 and here > begin and is_differential(now):
+                self._i = here + len(self._found[here:]) - len(after_differential(list(self._found[here:])))
+                letter = self._letter()
+                behind = self._peek()
+                if letter is not None and (behind is None or behind.text in ("+", "-", ")", "]")):
+                    tree = self._inner(self._found[begin:here], token.at)
+                    parts = [tree, self._symbol(letter, now.at)]
+                    parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
+                    return Call("integral", tuple(parts))
+            self._i = here + 1
+        raise Unread("an integral without a differential at its end is not read", token.at)
+
+    def _root(self) -> Node:
+        degree: Node | None = None
+        if self._is("["):
+            at = self._take().at
+            inside = []
+            while not self._is("]"):
+                inside.append(self._take())
+            self._i += 1
+            degree = self._inner(inside, at)
+        radicand = self._inner(self._group(), self._found[self._i - 1].at)
+        value = constant(degree) if degree is not None else None
+        if degree is None or value == 2:
+            return Call("sqrt", (radicand,))
+        if value is None or value.denominator != 1 or not 1 < value <= 12:
+            raise Unread("a root of this degree is not read", self._found[self._i - 1].at)
+        return Pow(radicand, Div(Num(Fraction(1)), Num(value)))
+
+    def _function(self, name: str, token: Token) -> Node:
+        power: Node | None = None
+        if self._is("^") and not self._plain:
+            at = self._take().at
+            script = self._script()
+            power = self._inner(script, at)
+            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh"):
+                if name in ("sinh", "cosh", "tanh"):
+                    raise Unread("an inverse hyperbolic function is not read", at)
+                name, power = f"a{name}", None
+        if self._is("_") and name in ("log", "min", "max"):
+            raise Unread(f"an index of {name} is not read", self._take().at)
+        if self._is("(") or self._is("["):
+            arguments = self._arguments()
+        elif self._is("{", kind="open") or self._peek() is None:
+            arguments = [self._inner(self._group(), token.at)]
+        elif self._is("{", kind="macro"):
+            arguments = [self._factor()]
+        else:
+            arguments = [self._product(argument=True)]
+        if name == "d":
+            return self._along(arguments[0])
+        if name == "exp" and len(arguments) == 1 and power is None:
+            return Call("exp", (arguments[0],))
+        wanted = {"min": 2, "max": 2, "atan2": 2, "diff": 2}.get(name, 1)
+        if len(arguments) != wanted:
+            raise Unread(f"{name} of {len(arguments)} things is not read", token.at)
+        found = Call(name, tuple(arguments))
+        return found if power is None else Pow(found, power)
+
+    def _arguments(self) -> list[Node]:
+        begin = self._i + 1
+        end = self._bracket_end()
+        parts = split(self._found[begin:end], lambda token: token.kind == "sign" and token.text == ",")
+        return [self._inner(part, self._found[begin - 1].at) for part in parts]
+
+    def _bracket(self) -> Node:
+        at, square = self._found[self._i].at, self._is("[")
+        begin = self._i
+        arguments = self._arguments()
+        inner = arguments[0] if len(arguments) == 1 else None
+        if square and not self._plain and isinstance(inner, Mul) and self._may_be_a_name(inner):
+            raise Unread("letters in square brackets, which may be one name, are not read", at)
+        if len(arguments) > 1 and begin and not self._plain:
+            before = self._found[begin - 1]
+            if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
+                raise Unread("what something is taken at, in brackets behind it, is not read", at)
+        if len(arguments) > 1:
+            return Grid(tuple(arguments))
+        if not arguments:
+            raise Unread("an empty bracket", at)
+        return arguments[0]
+
+    def _may_be_a_name(self, inner: Mul) -> bool:
+        letters = all(isinstance(factor, Sym | Call) for factor in inner.factors)
+        return letters and isinstance(inner.factors[0], Sym) and not self._is_vector(inner)
+
+    def _environment(self, token: Token) -> Node:
+        if token.text not in MATRICES:
+            raise Unread(f"the environment {printable(token.text)} is not read here", token.at)
+        if token.text == "array" and self._is("{", kind="open"):
+            self._group()
+        begin, depth = self._i, 1
+        while depth:
+            inside = self._take()
+            depth += (inside.kind == "begin") - (inside.kind == "end")
+        body = self._found[begin : self._i - 1]
+        rows = [r for r in split(body, lambda t: t.kind == "macro" and t.text in ("\\", "cr")) if r]
+        entries = []
+        for row in rows:
+            cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
+            if len(cells) == 1:  # a row may be printed with commas
+                cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
+            entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
+        if not entries or len({len(entry.entries) for entry in entries}) > 1:
+            raise Unread("the rows of a matrix differ in length", token.at)
+        if token.text == "vmatrix":
+            return Call("det", (Grid(tuple(entries)),))
+        return Grid(tuple(entries))
