@@ -30,6 +30,8 @@ _CODE = re.compile(r"`([^`]*)`")
 _LONGEST_WORD = 12
 _BAR, _COLOURS = 12.0, ("green!45!black", "red!70!black", "black!30")
 """The width of a bar in em, and the colours of what stands, falls and is open."""
+_COLUMN = 0.3 * formula_tex.WIDEST
+"""Width of one column of three, in em of the main font."""
 _MACROS = r"""\usepackage{graphicx}
 % {width}{body}: a column of a finding
 \newcommand\satsymcolumn[2]{\parbox[t]{#1\linewidth}{\raggedright\hbadness=10000 #2}}
@@ -160,7 +162,9 @@ def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Itera
     right = formula_tex.read(correction(row)) if is_mathematical(row) else None
     original = rf"\textit{{{_breakable(row.original)}}}" if row.original else ""
     claim = row.kind == "claim"
-    three = row.by_formula and bool(correction(row)) and not claim
+    formulas = [one for one in (review.formulas.get(row.key), right) if one is not None]
+    narrow = all(width(tex) <= _COLUMN for one in formulas for tex in formula_tex.lines(one))
+    three = row.by_formula and bool(correction(row)) and not claim and narrow
     beside = original if claim and code else ""
     if beside:
         yield rf"\satsymbeside{{{beside}}}{{{_printed(None, flat(row.printed))}}}"
