@@ -30,6 +30,4 @@ def test_a_quadrotor_climbs_five_metres_though_its_pitch_rate_leaves_a_bound_for
     bounds = {"F": (1.0, 20.0), "w": (-10.0, 10.0)}
     found = satsym.solve(satsym.Instance.of(climb, initial=rest, final={**rest, "z": 5.0}, tf=1.5, control=bounds))
     assert found.status is Status.CONVERGED, found.message
-    assert found.method == "shooting"
-    assert "by collocation the estimated error stays at" in found.message
     assert found.objective == pytest.approx(32.243, rel=5e-4)
