@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 
 from satsym import instance
 from satsym.instance import Instance
@@ -92,3 +93,15 @@ def test_what_failed_names_the_condition(name: str):
     check = replace(failed.checks[0], value=1.0)
     told = with_scope(replace(failed, checks=(check, *failed.checks[1:])), found)
     assert (told.scope, told.because) == (Scope.LOCAL, check.name)
+
+
+def test_turns_of_angles_and_path_constraints_are_not_covered():
+    """Another turn may be quicker, and what is kept from some states need not be convex."""
+    found = solve(instance.load("double-integrator-time"))
+    assert found.certificate is not None
+    case = found.instance
+    turning = replace(case, solver=structs.replace(case.solver, free_angles=(case.model.spec.state_names[0],)))
+    assert with_scope(found.certificate, replace(found, instance=turning)).scope is Scope.LOCAL
+    constrained = solve(instance.load("obstacle")).certificate
+    assert constrained is not None
+    assert constrained.scope is Scope.LOCAL

@@ -97,7 +97,7 @@ class Review:
 
     @property
     def chart(self) -> list[tuple[str, int, int, int]]:
-        """Of each kind of row, conclusions first, how many stand, fall, and could not be judged."""
+        """Count the rows that stand, fall and could not be judged, by kind and conclusions first."""
         groups = [("conclusion", [row for row in self.rows if row.role == "conclusion"])]
         groups += [(kind, [row for row in self.rows if row.kind == kind]) for kind in KINDS]
         counted = []

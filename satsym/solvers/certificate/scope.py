@@ -68,12 +68,14 @@ def _first_failed(certificate: Certificate) -> str:
 def _no_other(solution: Solution) -> str:
     """Why no admissible motion costs less than an extremal; empty where that is not known."""
     instance = solution.instance
-    if instance.free or instance.end_limits or solution.interval is not None:
+    if instance.free or instance.end_limits or instance.solver.free_angles or solution.interval is not None:
         return ""
     if none_conceivable(solution):
         return NOTHING_COSTS
     if convex(instance):
         return CONVEX
+    if instance.model.spec.in_arcs:  # path constraints and points on the way are no part of what follows
+        return ""
     if _soonest(instance):
         return SOONEST
     return PRICED if _priced(instance) else ""

@@ -31,7 +31,7 @@ WORK = 4_000_000
 """Unknowns times iterations that a search may take."""
 
 MEETING = 400_000
-"""The same from a motion that was drawn from both ends."""
+"""Unknowns times iterations that the search may take from a motion that was drawn from both ends."""
 
 
 def applies(instance: Instance) -> bool:
