@@ -50,7 +50,7 @@ def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
         return solving.solve(instance, progress)
     from satsym.solvers.switching import solving as switching
 
-    return switching.solve(instance, progress, switching.Search(solving.exact_arcs, failing.why))
+    return switching.solve(instance, progress, switching.Search(solving.exact_arcs, solving.course, failing.why))
 
 
 def collocation(instance: Instance, progress: Progress | None = None) -> Solution:

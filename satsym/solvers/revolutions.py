@@ -17,7 +17,7 @@ import numpy as np
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.cold_start.own_time import time_scale
 from satsym.solvers.iteration import deadline_of, hurried
 from satsym.status import Status
 

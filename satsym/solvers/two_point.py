@@ -8,7 +8,6 @@ from dataclasses import replace
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.by_newton import from_guess
-from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import from_control, loose
@@ -68,17 +67,14 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
         When to stop, and the observer of the cost of what was found.
     """
     spec, led = instance.model.spec, from_guess(instance, limits)
-    duration = ""
     if led is None and (spec.stationary or spec.directional):
         message = "no extremal is known near which Newton's method could begin: guess states and costates"
         return nothing(instance, Status.NOT_CONVERGED, message)
     if led is not None:
         problem, start = led
     elif instance.tf is None:
-        chosen = free_duration(instance, limits)
-        if isinstance(chosen, Extremal):
-            return replace(chosen, problem=chosen.problem.relaxed(0.0))
-        problem, start, duration = chosen.problem.relaxed(0.0), chosen.start, f", {chosen.message}"
+        message = "the final time is free, and Newton's method begins at a guess of states and costates alone"
+        return nothing(instance, Status.NOT_CONVERGED, message)
     else:
         problem = two_point(instance, instance.tf - instance.t0)
         start = under_guess(problem, limits) or cold_start(problem, limits)
@@ -90,7 +86,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
-    return replace(found, message=f"{found.message}, from the {start.named}{duration}")
+    return replace(found, message=f"{found.message}, from the {start.named}")
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:

@@ -82,10 +82,10 @@ def assert_least(found: Solution, name: str, c0: float) -> None:
     ],
 )
 def test_every_weight_of_time_gives_the_minimum_from_every_guess(name, c0):
-    best = by_search.collocation(weighed(name, c0))
+    best = solve(weighed(name, c0))
     assert_least(best, name, c0)
     for fraction in FRACTIONS[::3]:
-        found = by_search.collocation(weighed(name, c0, fraction * float(best.times[-1])))
+        found = solve(weighed(name, c0, fraction * float(best.times[-1])))
         assert found.status is Status.CONVERGED, found.message
         assert found.times[-1] == pytest.approx(best.times[-1], rel=1e-6)
         assert found.objective == pytest.approx(best.objective, rel=1e-9)
@@ -151,7 +151,7 @@ def test_a_minimum_next_to_no_time_at_all_is_found_beyond_a_costlier_one(tmp_pat
 
 
 @pytest.mark.parametrize("guess", [None, 2.0, 0.3, 6.0])
-def test_a_minimum_just_beyond_the_longest_duration_of_the_scan_is_found(guess):
+def test_a_minimum_beyond_long_durations_is_found(guess):
     initial = (0.998493, -0.014321, -0.046177, 1.003848)
     final = {"r": 1.0, "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0}
     case = replace(weighed(FOUR, 0.002, guess), initial=initial, final=final)

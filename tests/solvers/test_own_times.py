@@ -15,8 +15,7 @@ from satsym.instance import Instance
 from satsym.instance.numbers import changed
 from satsym.report.said import message, spoken
 from satsym.solvers import solve
-from satsym.solvers.cold_start.durations import time_scale
-from satsym.solvers.cold_start.own_time import own_time
+from satsym.solvers.cold_start.own_time import own_time, time_scale
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Annulus, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build

@@ -11,10 +11,7 @@ from sympy import Expr, sin
 
 from satsym.instance import Instance
 from satsym.solvers import solve
-from satsym.solvers.closing_gaps import closed
-from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.drawn_motions import motions
-from satsym.solvers.nearest_end import Nearest
+from satsym.solvers.search.nearest import Nearest
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -106,35 +103,7 @@ def test_a_force_that_is_too_weak_for_any_pumping_is_infeasible(tmp_path: Path) 
 
 
 def test_where_searches_disagree_others_may_arrive(tmp_path: Path) -> None:
-    few = Nearest({"a": 0.1, "b": 0.2}, {"a": "km"}, 0.1, starts=9, agreeing=4, states=np.zeros((2, 3)))
+    few = Nearest({"a": 0.1, "b": 0.2}, {"a": "km"}, 0.1, starts=9, agreeing=4)
     assert few.message.endswith("misses a by 0.1 km, b by 0.2")
     assert few.undecided
     assert not replace(few, agreeing=5).undecided
-
-
-def test_motions_that_meet_obey_their_controls_and_arrive_once_gaps_are_closed(tmp_path: Path) -> None:
-    case = _case(tmp_path, PENDULUM, np.pi, 40.0, (-0.12, 0.12))
-    problem = two_point(case, 40.0)
-    found = motions(problem, np.random.default_rng(0), cheapest=True)
-    assert len(found) == 4
-    again = motions(problem, np.random.default_rng(0), cheapest=True)
-    arrived = 0
-    for one, same in zip(found, again, strict=True):
-        assert (one.states == same.states).all()
-        assert (np.abs(one.control) <= 0.12).all()
-        assert one.states[:, 0] == pytest.approx(problem.initial)
-        assert one.states[:, -1] * problem.scale.state == pytest.approx([np.pi, 0.0], abs=1e-12)
-        control = closed(problem, one)
-        assert (np.abs(control) <= 0.12).all()
-        middle = (control[:, 1:] + control[:, :-1]) / 2.0
-        x, _, _ = case.model.forward(np.linspace(0.0, 40.0, 201), case.initial, control, middle, ())
-        arrived += bool(np.abs(x[:, -1] - [np.pi, 0.0]).max() < 1e-4)
-    assert arrived >= 2
-
-
-def test_motions_that_run_away_have_no_gaps(tmp_path: Path) -> None:
-    """Backwards a spring that softens is left behind faster than exponentially: distances overflow."""
-    steep = replace(_swing("steep", a**3), control_set="free")
-    text = "[initial]\na = 3\nb = 0\n[final]\na = -3\nb = 0\n[time]\ntf = 14\n"
-    found = motions(two_point(build(tmp_path, steep, text), 14.0), np.random.default_rng(0))
-    assert all(np.isfinite(one.gap) for one in found)

@@ -17,11 +17,9 @@ from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import by_search, solve
-from satsym.solvers.cold_start import paths
-from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits, computed
-from satsym.solvers.nearest_end import nearest
 from satsym.solvers.revolutions import with_cheapest_turns
+from satsym.solvers.search.nearest import nearest
 from satsym.status import BadInput, Status
 from tests.support.canonical import Orbit, _fly
 from tests.support.cases import with_parameters
@@ -265,7 +263,7 @@ def test_without_a_weight_on_time_there_is_no_minimiser(free):
     )
     assert sorted(costs, reverse=True) == costs
     assert sorted(durations) == durations
-    assert len(costs) == 3
+    assert len(costs) >= 3
     given = by_search.collocation(replace(case, tf=durations[0]))
     assert given.objective == pytest.approx(costs[0], rel=1e-3)
     assert found.certificate is None
@@ -348,9 +346,7 @@ def test_what_cannot_be_done_is_infeasible_and_the_message_says_how_near_one_com
 )
 def test_what_can_be_done_is_reached_by_the_search_for_the_nearest_end(name, bounds):
     case = replace(instance.load(name), **bounds)
-    problem = scaled(case, case.tf - case.t0)
-    idle = paths.curve(problem.relaxed(math.inf), paths.first(problem))
-    found = nearest(problem, idle, Limits(500, computed() + 60.0))
+    found = nearest(case, Limits(500, computed() + 60.0))
     assert found is not None
     assert found.arrives
 

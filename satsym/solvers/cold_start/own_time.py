@@ -1,4 +1,4 @@
-"""How long an instance lasts by its own numbers: what its states are to change by, and how quickly they can."""
+"""Time scales of an instance: of its motion, and of what its states are to change by and how quickly they can."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solvers.collocation.scaling import NO_SLOPE
+from satsym.solvers.control.regularised import sloping
 
 STEP = 1e-6
 """By which a state is moved along its rate to see its second derivative, relative to what it is to change by."""
 
 SLOWEST = 1e4
 """Times the quickest state's time beyond which a time comes of rounding."""
-
-FAR = 10.0
-"""Own times that are long."""
 
 
 def own_time(instance: Instance) -> float | None:
@@ -42,9 +41,21 @@ def own_time(instance: Instance) -> float | None:
     return float(times[times <= SLOWEST * times.min()].max()) if times.size else None
 
 
-def long_time(instance: Instance, scale: float) -> float:
-    """A time that is long for an instance whose motion has this time scale."""
-    return FAR * max(own_time(instance) or 0.0, scale)
+def time_scale(instance: Instance) -> float:
+    """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control.
+
+    Where these are zero, what the instance's own numbers tell; one if they tell nothing.
+    """
+    n = len(instance.initial)
+    none = np.zeros((n, 1))
+    nothing = tuple((sloping(instance, none) if instance.model.spec.throttled else none)[:, 0].tolist())
+    slopes = instance.model.canonical_jacobian(
+        instance.t0, instance.initial, nothing, instance.parameters, instance.control_set.without_bounds.arguments
+    )
+    fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(2 * n, 2 * n)[:n, :n])).max()
+    if np.isfinite(fastest) and fastest > NO_SLOPE:
+        return 1.0 / float(fastest)
+    return own_time(instance) or 1.0
 
 
 def _extremes(instance: Instance) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.cold_start.own_time import time_scale
 from satsym.solvers.failures import tried
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.sizes import flows, resting, wanted

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,22 +12,23 @@ from satsym.control_set import stated_constraints
 from satsym.instance import Instance
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
-from satsym.solvers.search import order
+from satsym.solvers.search import coarse
 from satsym.solvers.search.feasibility import contradiction
+from satsym.solvers.search.nearest import nearest
 from satsym.solvers.switching.linear.by_reach import unreachable
 from satsym.solvers.switching.solving import NOT_FOUND
 from satsym.solvers.switching.throttled import switched
 from satsym.status import Status
 
-if TYPE_CHECKING:
-    from satsym.solvers.nearest_end import Nearest
-
 BETWEEN, LASTING = 0.05, 0.35
 """Share of the width of its range by which a norm is off its bounds, and of the time for which nothing decides it."""
 
-LONGER, ENDLESS = (4.0, 8.0, 16.0, 32.0), 1e-2
-"""Multiples of the first guess of a free duration at which costs are looked at where no extremal is found, and by what
-share of it the cost falls from each to the next where nothing keeps the duration from growing."""
+LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
+"""Multiples of the first guess of a free duration at which costs are looked at where no extremal is found."""
+
+ENDLESS, EVEN = 1e-2, 1e-7
+"""By what share of it the cost falls from each duration to a longer one where nothing keeps that from growing, and the
+share of it, or of the unit of costs, by which costs differ at least that are not one."""
 
 
 def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
@@ -44,20 +43,14 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
         if against:
             return Status.INFEASIBLE, against
     if instance.tf is None:
-        costs = order.costs_by_duration(instance, limits, LONGER)
-        if len(costs) == len(LONGER) and all(b < a - ENDLESS * abs(a) for (_, a), (_, b) in pairwise(costs)):
-            values = ", ".join(f"{cost:.4g}" for _, cost in costs)
-            durations = ", ".join(f"{duration:.4g}" for duration, _ in costs)
-            advice = "put a weight on time, or fix the final time"
-            return Status.NO_MINIMISER, f"longer is always cheaper: cost {values} at durations {durations}; {advice}"
-        return Status.NOT_CONVERGED, f"{message}; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
+        return _endless(instance, limits) or _unsettled(instance, message)
     if reason := _undecided(instance, limits):
         return Status.NOT_CONVERGED, reason
     if compared := [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]:
         several = f"H may have several minimisers in {', '.join(compared)}"
         advice = "where two of them stay equally good there is no optimum (chattering)"
         return Status.NOT_CONVERGED, f"{message}; {several}, and {advice}"
-    near = tried(partial(_nearest, instance, limits))
+    near = tried(partial(nearest, instance, limits))
     if near is None or near.arrives or limits.expired:
         return Status.NOT_CONVERGED, message
     if near.undecided:
@@ -65,12 +58,44 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     return Status.INFEASIBLE, f"{near.message}; {message}"
 
 
+def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
+    """Why no duration is the cheapest; ``None`` where costs at some durations do not show that."""
+    longer, shorter = (coarse.costs_by_duration(instance, limits, shares) for shares in (LONGER, SHORTER))
+    both = longer + shorter
+    if len(both) == len(LONGER + SHORTER) and not any(_clearly_less(a, b) for a in both for b in both):
+        return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix it"
+    if len(longer) == len(LONGER) and all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
+        advice = "put a weight on time, or fix the final time"
+        return Status.NO_MINIMISER, f"longer is always cheaper: {_listed(longer)}; {advice}"
+    if len(shorter) == len(SHORTER) and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
+        advice = "give time a smaller weight, constrain the final state, or fix the final time"
+        return Status.NO_MINIMISER, f"shorter is always cheaper: {_listed(shorter)}; {advice}"
+    return None
+
+
+def _clearly_less(one: coarse.Priced, than: coarse.Priced, share: float = EVEN) -> bool:
+    """Whether a motion costs less than another by that share of it, and by more than rounding leaves."""
+    return one.cost < than.cost - max(share * abs(than.cost), EVEN * than.unit)
+
+
+def _listed(tried: list[coarse.Priced]) -> str:
+    costs, durations = (
+        ", ".join(f"{value:.4g}" for value in row)
+        for row in zip(*((one.cost, one.duration) for one in tried), strict=True)
+    )
+    return f"cost {costs} at durations {durations}"
+
+
+def _unsettled(instance: Instance, message: str) -> tuple[Status, str]:
+    return Status.NOT_CONVERGED, f"{message}; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
+
+
 def _undecided(instance: Instance, limits: Limits) -> str:
     """What is said where norms are between their bounds for long: there no law is known."""
     spec = instance.model.spec
     if not spec.throttled:
         return ""
-    at = order.first_motion(instance, limits)
+    at = coarse.first_motion(instance, limits)
     if at is None:
         return ""
     low, high = (np.array(bounds)[:, None] for bounds in instance.control_set.switching)
@@ -84,22 +109,3 @@ def _undecided(instance: Instance, limits: Limits) -> str:
         alone = all(part.branch != "throttled" for part in spec.control_parts)
         what = f"the value of {' or '.join(single)}" if alone else "the value of a control"
     return f"for some time nothing decides {what}, and no law is known there"
-
-
-def _nearest(instance: Instance, limits: Limits) -> Nearest | None:
-    """How near to the end controls come that start from the extremal without bounds, or from the straight line."""
-    from satsym.solvers.cold_start.first_minimum import cold_start
-    from satsym.solvers.cold_start.paths import start
-    from satsym.solvers.collocation.scaling import two_point
-    from satsym.solvers.control.regularised import regularised
-    from satsym.solvers.nearest_end import nearest
-
-    spec = instance.model.spec
-    if spec.switching or spec.throttled or spec.directional:
-        instance = regularised(instance, 1.0, 1.0)
-    assert instance.tf is not None
-    with np.errstate(all="ignore"):
-        problem = two_point(instance, instance.tf - instance.t0)
-        free = tried(partial(cold_start, problem, limits))
-        path = start(problem) if free is None or not free.found.minimum else free.found.curve
-        return nearest(problem, path, replace(limits, work=math.inf))

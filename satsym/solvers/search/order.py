@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -21,24 +21,21 @@ from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search import nlp, starts
-from satsym.solvers.search.controls import controls_of
-from satsym.solvers.search.durations import first_duration
-from satsym.solvers.search.mesh import graded, refined
+from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR, STARTS, at_edge, same, started
+from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
-from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import Plan
 
 Answer = TypeVar("Answer")
 
-INTERVALS, SHORTEST = 40, 8
-"""Number of intervals of the coarse mesh, and the least number in a phase."""
+FAILING, CONVEX = 8, 2
+"""Starts in turn after which it ends where none has come to anything, in general and where the problem is convex: there
+all starts come to one motion."""
 
-STARTS, FAILING, CONVEX = 48, 8, 2
-"""Starts that are tried at most, and in turn after which it ends where none has come to anything, in general and where
-the problem is convex, so that all starts come to one motion.
-"""
+DOUBTFUL = 3
+"""Starts in turn that come to nothing, after which it is asked whether any motion arrives."""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """Competitors in turn that show nothing new, after which it ends, and by how many more for each further cost; and in
@@ -48,17 +45,11 @@ PROBE, AROUND = 160_000, 600_000
 """Unknowns times iterations after which they end that all came to one cost, two at least, and where there are path
 constraints."""
 
-ITERATIONS, BESIDE, AGAIN = 300, 120, 200
-"""Iterations of the interior-point code for a start, for a start beside an answer, and for a finer mesh."""
-
-SAME = 1e-4
-"""Relative difference of costs on a coarse mesh that may be of one motion."""
+BESIDE, AGAIN = 120, 200
+"""Iterations of the interior-point code for a start beside an answer, and for a finer mesh."""
 
 MESHES, SETTLED, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
 """Finer meshes at most, the change of cost from one to the next that is none, and smoothings of norms on each."""
-
-FIRST_SMOOTHINGS = (1e-1, 1e-2, 1e-3)
-"""Smoothings of norms on the coarse mesh: fuel alone decides little between bounds, and effort much."""
 
 CHEAPER = 1e-9
 """Relative difference of exact costs that is one."""
@@ -73,6 +64,9 @@ FALLING = 1e-2
 
 TRIED = 3
 """Different costs of which none is made exact, after which it ends."""
+
+ENDLESS = 2
+"""Starts after which it ends whose duration grows or shrinks as far as it may."""
 
 FINER = 0.2
 """Fraction of the work that the finer meshes of one start may take: a wild motion needs ever more intervals."""
@@ -102,7 +96,7 @@ def searched(
     limits: Limits,
     exact: Callable[[Motion, Limits], Answer | None],
     loose: str = "",
-    starts: int = STARTS,
+    hopeless: Callable[[], bool] = lambda: False,
 ) -> Answer | None:
     """The first extremal that a start leads to; ``None`` without one.
 
@@ -114,20 +108,27 @@ def searched(
         Makes a motion an exact extremal, where it can.
     loose
         A state whose given end follows from those of the others.
-    starts
-        How many are tried at most.
+    hopeless
+        Asked after a few starts that come to nothing: whether none will.
     """
     costs: list[float] = []
-    failing = CONVEX if convex(instance) else FAILING
-    for number, (_, found) in enumerate(_started(instance, limits, loose)):
-        if found.solved and not any(_same(found.objective, cost) for cost in costs):
+    failing, failed, endless = CONVEX if convex(instance) else FAILING, 0, 0
+    for number, (plan, found) in enumerate(started(instance, limits, loose)):
+        if found.solved and at_edge(found):
+            endless += 1
+            if endless >= ENDLESS:
+                break
+        elif found.solved and not any(same(found.objective, cost) for cost in costs):
             one = replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
             for at in _finer(found, one):
                 answer = exact(at, one)
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
-        if len(costs) >= TRIED or (not costs and number + 1 >= failing) or number + 1 >= starts:
+        failed = 0 if costs else failed + (not plan.loosened)
+        if len(costs) >= TRIED or failed >= failing or number + 1 >= STARTS:
+            break
+        if failed == DOUBTFUL and hopeless():
             break
     return None
 
@@ -160,7 +161,7 @@ def others(
     quiet, solved, begun = 0, 0, limits.meter.spent
     parted = bool(instance.model.spec.path_constraints)
     probe = AROUND if parted else PROBE
-    for number, (plan, found) in enumerate(_started(instance, limits, loose, BESIDE, way)):
+    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
         quiet, solved = quiet + 1, solved + found.solved
         if not found.solved:
             yield Tried(plan, float("nan"))
@@ -172,14 +173,20 @@ def others(
             came = cost if answer is None else cost_of(answer)
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
-        elif (known := next((came for coarse, came in seen if _same(found.objective, coarse)), None)) is not None:
+        elif (known := next((came for coarse, came in seen if same(found.objective, coarse)), None)) is not None:
             yield Tried(plan, known)
         else:
             quiet = 0
             came, answer = _followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
-        alone = len(seen) == 1 and solved > 1 and plan.turns is None and limits.meter.spent - begun > probe
+        alone = (
+            len(seen) == 1
+            and solved > 1
+            and plan.turns is None
+            and not plan.timed
+            and limits.meter.spent - begun > probe
+        )
         parted = parted or bool(plan.drawn)
         enough = (PATIENCE if parted else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
         if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:
@@ -198,7 +205,7 @@ def _another_way(found: Found, cost: float, shapes: list[Array]) -> bool:
 
     On a coarse mesh nobody can tell which of the two is cheaper.
     """
-    if not 0 < len(shapes) <= OTHERS or abs(found.objective - cost) > SAME * abs(cost):
+    if not 0 < len(shapes) <= OTHERS or abs(found.objective - cost) > SIMILAR * abs(cost):
         return False
     at = motion(found)
     shape = _shape(at.times, at.x)
@@ -222,104 +229,16 @@ def _followed(
     before, came = float("inf"), found.objective
     for at in _finer(found, limits):
         came = at.cost
-        if came < cost - SAME * abs(cost):
+        if came < cost - SIMILAR * abs(cost):
             answer = exact(at)
             if answer is not None:
                 return answer
-        elif came <= cost + SAME * abs(cost):
+        elif came <= cost + SIMILAR * abs(cost):
             return cost, None
         elif not came < before - FALLING * abs(before):
             return came, None
         before = came
     return (float("nan") if came < cost else came), None
-
-
-def _started(
-    instance: Instance,
-    limits: Limits,
-    loose: str,
-    most: int = ITERATIONS,
-    way: tuple[Array, Array] | None = None,
-) -> Iterator[tuple[Plan, Found]]:
-    """What starts come to on a coarse mesh, which is even unless the way of a motion is known."""
-    controls = controls_of(instance)
-    if controls is None:
-        return
-    phases = len(instance.model.spec.interior) + 1
-    meshes: list[Array] = [np.linspace(0.0, 1.0, max(INTERVALS // phases, SHORTEST) + 1)] * phases
-    if way is not None and phases == 1:
-        meshes = [graded(*way, INTERVALS)]
-    with np.errstate(all="ignore"):
-        duration = first_duration(instance, controls)
-        sizes = sizes_of(instance, controls, duration)
-        plans = starts.plans(instance, controls, duration)[:STARTS]
-    normed = any(norm.spot is not None for norm in controls.norms)
-    smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
-    programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
-    known = list[tuple[float, Found]]()
-    for number, plan in enumerate(plans):
-        if limits.expired:
-            return
-        with np.errstate(all="ignore"):
-            found = _less_smoothed(programmes, plan, limits, most if number else ITERATIONS, known)
-        yield plan, found
-
-
-def _less_smoothed(
-    programmes: Sequence[Programme], plan: Plan, limits: Limits, most: int, known: list[tuple[float, Found]]
-) -> Found:
-    """The solution of the last of several programmes that differ in smoothing, each begun at that of the one before.
-
-    Of the last that is solved: next to bounds, what is hardly smoothed may take very many iterations.
-
-    Parameters
-    ----------
-    known
-        Costs of the first programme and what they led to; what is found is added.
-    """
-    start = starts.begun(programmes[0], plan)
-    first = found = nlp.solve(programmes[0], start, limits, most, near=plan.at_bound is not None)
-    if len(programmes) > 1 and first.solved:
-        before = next((last for cost, last in known if _same(cost, first.objective)), None)
-        if before is not None:
-            return before
-    for programme in programmes[1:]:
-        one = nlp.solve(programme, found.unknown, limits, most, near=True) if found.solved else found
-        if not one.solved:
-            break
-        found = replace(one, smoother=found)
-    known.append((first.objective, found))
-    return found
-
-
-def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float]) -> list[tuple[float, float]]:
-    """Durations and what a motion costs on a coarse mesh that lasts as long, those that are solved.
-
-    Parameters
-    ----------
-    shares
-        Of the first guess of the duration.
-    """
-    controls = controls_of(instance)
-    if controls is None:
-        return []
-    with np.errstate(all="ignore"):
-        first, found = first_duration(instance, controls), list[tuple[float, float]]()
-    for share in shares:
-        given = replace(instance, tf=instance.t0 + share * first, tf_guess=None)
-        one = next((one for _, one in _started(given, limits, "") if one.solved), None)
-        found += [] if one is None else [(share * first, one.objective)]
-    return found
-
-
-def first_motion(instance: Instance, limits: Limits) -> Motion | None:
-    """What the first start that is solved comes to, on a coarse mesh."""
-    found = next((one for _, one in _started(instance, limits, "") if one.solved), None)
-    return None if found is None else motion(found)
-
-
-def _same(one: float, other: float) -> bool:
-    return abs(one - other) <= SAME * max(abs(one), abs(other))
 
 
 def _finer(found: Found, limits: Limits) -> Iterator[Motion]:

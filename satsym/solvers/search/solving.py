@@ -4,34 +4,33 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
-from satsym.arrays import Array
-from satsym.instance import Guess, Instance
+from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.methods import automatic
 from satsym.solution import Progress, Solution
-from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter, unsolved, watched
 from satsym.solvers.redundant_ends import Redundant, redundant
-from satsym.solvers.search import failing, order
+from satsym.solvers.search import coarse, failing, order
 from satsym.solvers.search.answer import answered
 from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.nlp import ACCEPTABLE
 from satsym.solvers.search.order import Tried
 from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
 from satsym.solvers.switching.attempt import Exact
+from satsym.solvers.switching.structure import Course
 from satsym.status import Status
+
+CONCLUSIVE = (Status.INFEASIBLE, Status.NO_MINIMISER)
+"""Statuses after which no further start is tried."""
 
 WORK = 4_000_000
 """Unknowns times iterations that a search may take."""
-
-MEETING = 400_000
-"""Unknowns times iterations that the search may take from a motion that was drawn from both ends."""
 
 
 def applies(instance: Instance) -> bool:
@@ -60,15 +59,41 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 
 def exact_arcs(instance: Instance, limits: Limits) -> Exact | None:
     """The extremal of exact arcs of controls that switch to which the first start leads that leads to one."""
-    return order.searched(instance, replace(limits, work=WORK, meter=Meter()), partial(levels.arcs, instance))
+    why = _asked_once(instance, limits)
+    within = replace(limits, work=WORK, meter=Meter())
+    return order.searched(instance, within, partial(levels.arcs, instance), hopeless=lambda: why()[0] in CONCLUSIVE)
 
 
-def searched(instance: Instance, limits: Limits) -> Solution | None:
-    """What the search finds, without a final state that follows from the others."""
+def course(instance: Instance, limits: Limits) -> Course | None:
+    """States and costates of the first motion on a coarse mesh that a start leads to."""
+    at = coarse.first_motion(instance, replace(limits, work=WORK, meter=Meter()))
+    return None if at is None else Course(at.times, np.concatenate([at.x, at.lam]))
+
+
+def _asked_once(instance: Instance, limits: Limits) -> Callable[[], tuple[Status, str]]:
+    """Why an instance has no answer, worked out when it is asked for the first time."""
+    return cache(partial(failing.why, instance, limits))
+
+
+def searched(
+    instance: Instance, limits: Limits, why: Callable[[], tuple[Status, str]] | None = None
+) -> Solution | None:
+    """What the search finds, without a final state that follows from the others.
+
+    Parameters
+    ----------
+    why
+        Tells why there is no answer, if it does: asked after a few starts that come to nothing.
+    """
+    asked = why or _asked_once(instance, limits)
+
+    def hopeless() -> bool:
+        return asked()[0] in CONCLUSIVE
+
     less = redundant(instance)
     if less is None:
-        return order.searched(instance, limits, partial(exact, instance))
-    found = order.searched(instance, limits, partial(_met, less), less.state)
+        return order.searched(instance, limits, partial(exact, instance), hopeless=hopeless)
+    found = order.searched(instance, limits, partial(_met, less), less.state, hopeless)
     return None if found is None else replace(found, message=f"{found.message}; {less.note}")
 
 
@@ -87,32 +112,6 @@ def others(instance: Instance, solution: Solution, limits: Limits) -> Iterator[T
     way = solution.times, solution.x
     cost, hidden = solution.objective, _hidden(solution)
     return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden)
-
-
-def _from_meeting_motions(instance: Instance, limits: Limits) -> Solution | None:
-    """The extremal to which motions lead that were drawn from both ends and nearly meet, of smooth problems.
-
-    Where a weak control has to push in time with a swing, hardly any other start arrives.
-    """
-    from satsym.solvers.collocation.scaling import two_point
-    from satsym.solvers.drawn_motions import motions
-
-    spec = instance.model.spec
-    if instance.tf is None or spec.in_arcs or spec.switching or spec.throttled or spec.directional or instance.free:
-        return None
-    problem = two_point(instance, instance.tf - instance.t0)
-    for one in tried(lambda: motions(problem, np.random.default_rng(0), cheapest=True)) or []:
-        states = one.states * problem.scale.state[:, None]
-        guess = Guess(_named(spec.state_names, states), {}, _named(spec.control_names, one.control))
-        within = replace(limits, work=MEETING, meter=Meter())
-        found = order.searched(replace(instance, guess=guess), within, partial(exact, instance), starts=1)
-        if found is not None:
-            return replace(found, instance=replace(found.instance, guess=instance.guess))
-    return None
-
-
-def _named(names: Sequence[str], rows: Array) -> dict[str, tuple[float, ...]]:
-    return dict(zip(names, map(tuple, rows.tolist()), strict=True))
 
 
 def _hidden(solution: Solution) -> float:
@@ -148,14 +147,12 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     began = time.perf_counter()
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)
-    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
-    status, message = Status.CONVERGED, ""
-    if found is None:
-        status, message = failing.why(instance, limits)
-        found = _from_meeting_motions(instance, limits) if status is Status.NOT_CONVERGED else None
+    why = _asked_once(instance, limits)
+    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits, why)
     if found is not None:
         limits.tell(found.objective, history[-1].residual if history else math.nan)
         return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
+    status, message = why()
     nothing = unsolved(instance, automatic(instance.model.spec).name, 0.0)
     wall_s = time.perf_counter() - began
     return replace(nothing, status=status, message=message, history=tuple(history), wall_s=wall_s)

@@ -35,6 +35,12 @@ FREELY, DRAWS = 1.0, 40
 MORE, WIDER = 24, (0.3, 1.0, 3.0)
 """Further starts where the first ones come to several costs, and how far they are bent."""
 
+LOOKS = 5
+"""Drawn points at which it is looked whether anything but time costs."""
+
+FIRST, LOOSENED = 7, 20
+"""Starts within the bounds of controls before those that begin without these, and how many of the latter there are."""
+
 NEXT_TO_BOUND = 0.96
 """Share of their ranges at which controls are held next to their bounds."""
 
@@ -45,6 +51,10 @@ TURNS = (0, -1, 1, 2, 3)
 """Revolutions that are tried where the duration is free; one less than none is the other way round."""
 
 
+DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)
+"""Durations that are given at first, as shares of the first guess."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """How a start is made.
@@ -53,8 +63,15 @@ class Plan:
     ----------
     scale
         The duration, as a share of the first guess.
+    timed
+        Whether the motion of that duration is solved for first, so that each valley of the cost over it is entered.
     noise, seed
         How far states and controls are bent, as a share of their sizes, and by which random numbers.
+    arriving
+        Whether a motion that arrives is found first, whatever it costs, from one that obeys its equations.
+    loosened
+        Whether the motion without bounds of controls is solved for first, as weak controls arrive only in time with a
+        swing.
     turns
         How often the motion goes round the origin; ``None`` for a straight line.
     coasting
@@ -72,8 +89,11 @@ class Plan:
     """
 
     scale: float = 1.0
+    timed: bool = False
     noise: float = 0.0
     seed: int = 0
+    arriving: bool = False
+    loosened: bool = False
     turns: int | None = None
     coasting: bool = False
     turned: float | None = None
@@ -91,7 +111,8 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         drawn += [(WIDER[seed % len(WIDER)], seed) for seed in range(6, 6 + MORE)]
         found = [Plan(), *(Plan(noise=noise, seed=seed) for noise, seed in drawn)]
     else:
-        found = [Plan(scale=scale) for scale in (1.0, 2.5, 0.6, 6.0)]
+        found = [Plan(), *(Plan(scale=scale, timed=True) for scale in DURATIONS if not _time_alone(instance, duration))]
+        found += [Plan(scale=scale) for scale in (2.5, 0.6, 6.0)]
         found += [
             Plan(noise=noise, seed=seed, scale=scale)
             for noise, seed, scale in ((0.1, 1, 1.5), (0.3, 2, 2.0), (0.3, 3, 4.0))
@@ -117,9 +138,29 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if np.isnan(end).all() and len(_ranged(controls)):
         found[1:1] = [Plan(at_bound=share) for share in (NEXT_TO_BOUND, -NEXT_TO_BOUND)]
     found[1:1] = [Plan(parts=parts) for parts in _parts(len(instance.model.spec.interior) + 1)]
+    if given and not instance.model.spec.switching and controls.loosened is not None:
+        found[FIRST:FIRST] = [
+            Plan(noise=WIDER[seed % len(WIDER)], seed=seed, loosened=True) for seed in range(LOOSENED)
+        ]
+    if np.isfinite(end).any():
+        found[1:1] = [Plan(arriving=True), Plan(arriving=True, noise=0.3, seed=2)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
+
+
+def _time_alone(instance: Instance, duration: float) -> bool:
+    """Whether nothing but time costs anything, at the same rate everywhere: then the cost has one valley over it."""
+    spec = instance.model.spec
+    if spec.has_terminal_cost:
+        return False
+    rng = np.random.default_rng(0)
+    x = np.array(instance.initial)[:, None] * (1.0 + 0.1 * rng.standard_normal((len(instance.initial), LOOKS)))
+    u = instance.control_set.project(rng.standard_normal((len(spec.controls), LOOKS)))
+    times = instance.t0 + duration * rng.random(LOOKS)
+    with np.errstate(all="ignore"):
+        rates = np.broadcast_to(instance.model.running_cost_batch(times, x, u, instance.parameters), LOOKS)
+    return bool(np.ptp(rates) == 0.0)
 
 
 def _parts(phases: int) -> list[tuple[float, ...]]:

@@ -8,24 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solvers.collocation.curve import Curve
-from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.chattering import NARROW, Look, look, shows
-from satsym.solvers.switching.cold_start import homotopy, minimum_effort
+from satsym.solvers.switching.cold_start import homotopy
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
-from satsym.solvers.switching.structure import Guess
+from satsym.solvers.switching.structure import Course, Guess
 from satsym.status import Status
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
-def smoothed(
-    instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None = None
-) -> Exact | homotopy.Stopped:
+def smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
     Structures without an arc that seems to be singular seldom lead anywhere, so they are tried once all smoothed
@@ -33,17 +29,19 @@ def smoothed(
 
     Parameters
     ----------
-    begun
-        See :func:`~satsym.solvers.switching.cold_start.homotopy.path`.
+    course
+        A motion near which the first smoothed extremal is looked for.
     """
+    if course is None:
+        return homotopy.Stopped(Status.NOT_CONVERGED, "")
     before: Sample | None = None
-    levels: list[minimum_effort.Smoothed] = []
+    levels: list[homotopy.Smoothed] = []
     unlikely: list[tuple[Guess, float]] = []
     looks: list[Look] = []
     endless = bool(instance.model.spec.chattering)
     most = homotopy.LEVELS * (2 if endless else 1)
     try:
-        for level, near in enumerate(homotopy.path(instance, limits, most, begun)):
+        for level, near in enumerate(homotopy.path(instance, course, limits, most)):
             seen = sample(near.problem, near.curve)
             levels.append(near)
             smoothing = near.problem.control_set.smoothing

@@ -27,7 +27,7 @@ from satsym.solvers.control.corners import enclosed
 from satsym.solvers.control.regularised import smoothed_law
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.cold_start.minimum_effort import Smoothed
+from satsym.solvers.switching.cold_start.homotopy import Smoothed
 from satsym.solvers.switching.cold_start.recognition import FAINT, Sample
 from satsym.solvers.switching.throttled import signs
 from satsym.solvers.switching.trajectory import runs
@@ -42,7 +42,7 @@ LEVELS = 5
 INSIDE = 1e-3
 """Share of the width of its range by which a control is off both bounds, where it may chatter."""
 
-NARROW = 1e-8
+NARROW = 1e-9
 """Width of the cost interval, relative to the cost, at which no less is smoothed."""
 
 DIGITS = 1e-11

@@ -16,13 +16,13 @@ from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.by_smoothing import smoothed
 from satsym.solvers.switching.chattering import at_rest, chattered
-from satsym.solvers.switching.cold_start import homotopy, minimum_effort
+from satsym.solvers.switching.cold_start import homotopy
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.magnitudes import costs, moving
 from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.refusals import refuse
-from satsym.solvers.switching.structure import REST, Guess, Structure
+from satsym.solvers.switching.structure import REST, Course, Guess, Structure
 from satsym.status import Status
 
 NOT_FOUND = "no extremal found: no start of the search leads to one"
@@ -37,11 +37,14 @@ class Search:
     ----------
     arcs
         Finds exact arcs from a cold start.
+    motion
+        Finds a motion on a coarse mesh that is nearly the cheapest, with its costates.
     why
         The status where there are none, and a message.
     """
 
     arcs: Callable[[Instance, Limits], Exact | None]
+    motion: Callable[[Instance, Limits], Course | None]
     why: Callable[[Instance, Limits], tuple[Status, str]]
 
 
@@ -49,8 +52,8 @@ ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""
 
 LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
-"""Durations in which infinitely many switches are looked for, relative to one that was found, and to the motion's own
-time scale where none was."""
+"""Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
+motion where none was."""
 
 
 def solve(instance: Instance, progress: Progress | None, search: Search) -> Solution:
@@ -81,7 +84,7 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
     limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = _found(instance, limits, search)
-        endless = _endless(instance, found, limits)
+        endless = _endless(instance, found, limits, search)
         if endless is not None:
             limits.tell(endless.objective, history[-1].residual if history else math.nan)
             return replace(endless, iterations=len(history), history=tuple(history), wall_s=time.perf_counter() - began)
@@ -100,7 +103,7 @@ def _finished(instance: Instance, found: Exact, limits: Limits, history: list[It
     return answered(instance, found, tuple(history), began)
 
 
-def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits) -> Solution | None:
+def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits, search: Search) -> Solution | None:
     """What infinitely many switches lead to; where the final time is free, in a longer one if that is cheaper."""
     if not instance.model.spec.chattering:
         return None
@@ -109,10 +112,16 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
     if instance.tf is not None:
         return None
     known = None if isinstance(found, homotopy.Stopped) else found
-    duration = minimum_effort.first_duration(instance) if known is None else known.refined.at.end - instance.t0
+    if known is None:
+        course = search.motion(instance, limits)
+        if course is None:
+            return None
+        duration = float(np.ptp(course.times))
+    else:
+        duration = known.refined.at.end - instance.t0
     for factor in UNKNOWN if known is None else LONGER:
         given = replace(instance, tf=instance.t0 + factor * duration, tf_guess=None)
-        near = None if limits.expired else smoothed(given, limits)
+        near = None if limits.expired else smoothed(given, search.motion(given, limits), limits)
         if isinstance(near, homotopy.Stopped) and near.chattering:
             endless = chattered(instance, near.chattering, limits)
             if endless is None or not at_rest(endless):
@@ -181,7 +190,7 @@ def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homoto
     found = None if instance.model.spec.chattering else search.arcs(instance, limits)
     if found is None and linear_motion(instance) is not None and not instance.model.spec.chattering:
         return homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
-    return found or smoothed(instance, limits)
+    return found or smoothed(instance, search.motion(instance, limits), limits)
 
 
 def _resting(instance: Instance) -> Guess | None:

@@ -1,25 +1,24 @@
-"""From a cold start to smoothed extremals, less and less smoothed.
+"""From a motion that the search finds to smoothed extremals, less and less smoothed.
 
-Without bounds the regularised problem is one of least effort, which collocation solves from a cold start. Its bounds
-are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from the last solution.
+The most smoothed one that Newton's method finds from the motion is the first; then the smoothing is taken away, each
+step starting from the last solution.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solvers.cold_start.durations import free_duration
-from satsym.solvers.cold_start.first_minimum import cold_start
+from satsym.solvers.cold_start.swept import on_mesh
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
-from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve, Path
-from satsym.solvers.collocation.extremal import Extremal
-from satsym.solvers.collocation.following import ROUGHLY, follow
+from satsym.solvers.collocation.following import MOST_INTERVALS, ROUGHLY, follow
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -28,18 +27,11 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
 from satsym.solvers.control.slopes import cost_rate
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.cold_start.minimum_effort import (
-    NEAR_FULL,
-    WITHIN,
-    Smoothed,
-    first_duration,
-    of_size,
-)
-from satsym.solvers.switching.magnitudes import resting
+from satsym.solvers.switching.structure import Course
 from satsym.status import Status
 
-STEPS = 200
-"""RK4 steps of a motion under a constant control."""
+MOST_SMOOTHED = 4.0**6
+"""Multiple of the smoothing that costs as much as all else, with which it begins: controls then hardly meet bounds."""
 
 LEVELS = 12
 TIGHTER = 4.0
@@ -48,19 +40,28 @@ TIGHTER = 4.0
 FINER = 1e-6
 """Error that is left where the next level is not reached from what is solved roughly."""
 
-MOST_INTERVALS = 240
-"""Of a mesh, there."""
+BACK = 2
+"""Levels before the last one from which it is tried again where that does not lead on."""
 
 SPLIT = 2, 4
-"""Into so many parts intervals are split where their errors cannot be corrected."""
+"""Into so many parts intervals are split where more accuracy does not lead on."""
 
 MOST_SPLIT = 500
-"""Intervals of such a mesh."""
+"""Most intervals of such a mesh."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A smoothed extremal."""
+
+    problem: TwoPoint
+    curve: Curve
+    """The regularised problem, and its solution."""
 
 
 @dataclass(frozen=True)
 class Stopped(Exception):
-    """The path from a cold start to the problem ends early."""
+    """The path from a motion to the problem ends early."""
 
     status: Status
     message: str
@@ -72,37 +73,41 @@ class Stopped(Exception):
     """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
 
-def path(
-    instance: Instance, limits: Limits, most: int = LEVELS, begun: tuple[TwoPoint, Curve] | None = None
-) -> Iterator[Smoothed]:
-    """Smoothed extremals, less and less smoothed, that many times.
+def path(instance: Instance, course: Course, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
+    """Smoothed extremals near a motion, less and less smoothed, that many times.
 
     Parameters
     ----------
-    begun
-        The first without the weight of |u|, if it is known.
+    course
+        States and costates of a motion that is nearly the cheapest.
 
     Raises
     ------
     Stopped
-        Where there is none, or the way to the bounds is blocked.
+        Where there is none, or the way to less smoothing is blocked.
     """
-    first = _weighed(instance, limits, begun)
-    yield from less_and_less(instance, first, limits, most)
+    yield from less_and_less(instance, _near(instance, course, limits), limits, most)
 
 
-def _weighed(instance: Instance, limits: Limits, begun: tuple[TwoPoint, Curve] | None) -> Smoothed:
-    """Well smoothed within the bounds, with the weight of |u|."""
-    problem, curve = begun or (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
-    smoothing = problem.control_set.smoothing
+def _near(instance: Instance, course: Course, limits: Limits) -> Smoothed:
+    """The most smoothed extremal that Newton's method finds from a motion."""
+    lasting = float(np.ptp(course.times))
+    tau, smoothing = (course.times - course.times[0]) / lasting, MOST_SMOOTHED * first_smoothing(instance, course)
+    for _ in range(LEVELS):
+        problem = two_point(regularised(instance, smoothing, 1.0), lasting)
+        z = course.z / problem.scale.both
+        curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+        found, reached = follow(partial(_itself, problem), curve, limits, shortest=1.0)
+        if reached:
+            return Smoothed(problem, found)
+        if limits.expired:
+            break
+        smoothing /= TIGHTER
+    raise Stopped(Status.NOT_CONVERGED, "no smoothed extremal was found near the motion of the search")
 
-    def weighed(fraction: float) -> TwoPoint:
-        return replace(problem, instance=regularised(instance, smoothing, fraction))
 
-    curve, reached = follow(weighed, curve, limits)
-    if reached < 1.0:
-        raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
-    return Smoothed(weighed(1.0), curve)
+def _itself(problem: TwoPoint, _: float) -> TwoPoint:
+    return problem
 
 
 def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
@@ -113,126 +118,71 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int
     Stopped
         Where that does not go on.
     """
-    problem, curve = first.problem, first.curve
-    smoothing = problem.control_set.smoothing
+    passed = [first]
     yield first
     for _ in range(most):
-        before = smoothing
-
-        def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
-            return replace(problem, instance=regularised(instance, before * TIGHTER**-fraction, 1.0))
-
-        curve, reached = follow(sharper, curve, limits)
-        if reached == 0.0:
-            curve, reached = follow(sharper, _finer(problem, curve), limits, most=MOST_INTERVALS)
-        if reached == 0.0:
-            raise Stopped(
-                Status.NOT_CONVERGED, f"a regularisation below {smoothing:.1e} was not reached", problem, curve
-            )
-        smoothing *= TIGHTER**-reached
-        problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
-        yield Smoothed(problem, curve)
+        last = passed[-1]
+        wanted = last.problem.control_set.smoothing / TIGHTER
+        near = _sharper(instance, last, wanted, limits)
+        for earlier in passed[: -2 - BACK : -1] if near is None else ():
+            finer = (_sharper(instance, one, wanted, limits, MOST_SPLIT) for one in _finer(earlier))
+            near = next((one for one in finer if one is not None and _less(one, last)), None)
+            if near is not None or limits.expired:
+                break
+        if near is None:
+            message = f"a regularisation below {last.problem.control_set.smoothing:.1e} was not reached"
+            raise Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+        passed.append(near)
+        yield near
 
 
-def _finer(problem: TwoPoint, curve: Curve) -> Curve:
-    """The same more accurately, if that is found: what is smoothed less changes ever more quickly where bounds end.
+def _less(one: Smoothed, than: Smoothed) -> bool:
+    return one.problem.control_set.smoothing < than.problem.control_set.smoothing
 
-    Corners that are near each other may lie too close for the intervals of a mesh; then one with more is tried.
+
+def _sharper(
+    instance: Instance, near: Smoothed, wanted: float, limits: Limits, most: int = MOST_INTERVALS
+) -> Smoothed | None:
+    """A less smoothed extremal, as far towards what is wanted as one leads there; ``None`` where that fails."""
+    begun = near.problem.control_set.smoothing
+
+    def sharper(fraction: float) -> TwoPoint:
+        return replace(near.problem, instance=regularised(instance, begun * (wanted / begun) ** fraction, 1.0))
+
+    curve, reached = follow(sharper, near.curve, limits, most=most)
+    return Smoothed(sharper(reached), curve) if reached > 0.0 else None
+
+
+def _finer(near: Smoothed) -> Iterator[Smoothed]:
+    """The extremal more accurately: what is smoothed less changes ever more quickly where bounds end.
+
+    Corners that are near each other may lie too close for the intervals of a mesh; so meshes with more are tried.
     """
+    problem, curve = near.problem, near.curve
     found = refine(problem, curve, FINER, keep_nodes=True)
-    for times in () if found.solved else SPLIT:
+    if found.solved:
+        yield Smoothed(problem, found.curve)
+    for times in SPLIT:
         mesh = through(corners(problem, curve, ROUGHLY), min(times * (len(curve.mesh) - 1), MOST_SPLIT))
         outcome = newton(System(problem, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=15)
         if outcome is not None and outcome.solved:
-            found = refine(problem, outcome.curve, FINER, keep_nodes=True)
-            return found.curve if found.solved else outcome.curve
-    return found.curve if found.solved else curve
+            yield Smoothed(problem, outcome.curve)
 
 
-def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
-    """A free duration so long that bounds do not bind, and the smoothing for which it is the best.
-
-    Where |u| costs, it may be far too little smoothing to bring that in.
-    """
-    if any(resting(instance)):
-        return None
-    found = of_size(instance, WITHIN, limits)
-    if found is None:
-        return None
-    problem, curve = found.problem, found.curve
-    z = (curve.nodes[:, -1] * problem.scale.both[:, 0]).tolist()
-    n, t, p = problem.states, instance.t0 + problem.duration, instance.parameters
-    u = tuple(problem.control(np.ones(1), curve.nodes[:, -1:], curve.theta)[:, 0].tolist())
-    effort = sum(v * v for v in u) / 2.0
-    growth = effort + sum(a * b for a, b in zip(z[n:], instance.model.dynamics(t, z[:n], u, p), strict=True))
-    idle = instance.control_set.rest
-    smoothing = -instance.model.running_cost(t, z[:n], idle, p) / growth if growth else 0.0
-    if not 0.0 < smoothing < float("inf"):
-        return None
-    eased = two_point(regularised(instance, smoothing, 0.0), problem.duration)
-    ratio = np.ones((2 * n, 1))
-    ratio[n:] = smoothing * problem.scale.both[n:] / eased.scale.both[n:]
-    ratio[:n] = problem.scale.both[:n] / eased.scale.both[:n]
-    curve = Curve(
-        curve.mesh, curve.nodes * ratio, curve.stages * ratio[:, :, None], np.append(curve.theta, problem.duration)
-    )
-    outcome = newton(System(eased, curve.mesh, curve.order), curve, tolerance=1e-5)
-    return (eased, outcome.curve) if outcome is not None and outcome.solved else None
-
-
-def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
-    """From no bounds to the bounds, well smoothed."""
-    problem, curve = _unbounded(regularised(instance, first_smoothing(instance), 0.0), limits)
-    worst = max(_violation(problem, curve), 0.0)
-
-    def bounded(fraction: float) -> TwoPoint:
-        return problem.relaxed((1.0 - fraction) * worst)
-
-    if worst > 0.0:
-        curve, reached = follow(bounded, curve, limits)
-        if reached < 1.0:
-            message = Reason.BLOCKED.value.format(min(reached, 0.99))
-            raise Stopped(Status.NOT_CONVERGED, message, problem, curve)
-    return problem.relaxed(0.0), curve
-
-
-def first_smoothing(instance: Instance) -> float:
+def first_smoothing(instance: Instance, course: Course) -> float:
     """The smoothing at which the largest control costs about as much again as time, state, |u| and the end do."""
     m = len(instance.lower)
     largest = [max(abs(low), abs(high)) for low, high in zip(instance.lower, instance.upper, strict=True)]
     cost = max(abs(cost_rate(instance, np.array(u))) for u in (instance.lower, instance.upper, (0.0,) * m))
     effort = sum(value * value for value in largest)
-    known = cost if 0.0 < cost < float("inf") else _later(instance)
+    known = cost if 0.0 < cost < float("inf") else _mean_cost(instance, course)
     return 2.0 * (known or 1.0) / effort if effort > 0.0 else 1.0
 
 
-def _later(instance: Instance) -> float:
-    """What time and state cost in the mean where they cost nothing at first: the least among constant controls."""
-    duration = first_duration(instance) if instance.tf is None else instance.tf - instance.t0
-    times, p, found = instance.t0 + np.linspace(0.0, duration, STEPS + 1), instance.parameters, [0.0]
-    for held in (instance.lower, instance.upper, instance.control_set.rest):
-        u = np.repeat(np.array(held)[:, None], STEPS + 1, axis=1)
-        x = instance.model.forward(times, instance.initial, u, u[:, 1:], p)[0]
-        found.append(abs(float(np.mean(instance.model.running_cost_batch(times, x, u, p)))))
-    return min((cost for cost in found if 0.0 < cost < float("inf")), default=0.0)
-
-
-def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
-    """The regularised problem without bounds, solved."""
-    if instance.tf is None:
-        near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
-        duration = first_duration(instance) if near is None else near.problem.duration
-        chosen = free_duration(replace(instance, tf_guess=instance.t0 + duration), limits)
-        if isinstance(chosen, Extremal):
-            raise Stopped(chosen.status, chosen.message, chosen.problem, chosen.path)
-        return chosen.problem, chosen.start.found.curve
-    problem = two_point(instance, instance.tf - instance.t0)
-    start = cold_start(problem, limits)
-    if not start.found.minimum:
-        raise Stopped(Status.NOT_CONVERGED, f"no extremal found: {start.found.message}", problem, start.found.curve)
-    return problem, start.found.curve
-
-
-def _violation(problem: TwoPoint, curve: Curve) -> float:
-    tau = np.linspace(0.0, 1.0, 201)
-    return problem.instance.control_set.violation(problem.control(tau, curve(tau), curve.theta, bounded=False))
+def _mean_cost(instance: Instance, course: Course) -> float:
+    """What time and state cost in the mean along a motion under no control, where they cost nothing at first."""
+    n, count = len(instance.initial), len(course.times)
+    idle = np.repeat(np.array(instance.control_set.rest)[:, None], count, axis=1)
+    running = instance.model.running_cost_batch(course.times, course.z[:n], idle, instance.parameters)
+    found = abs(float(np.mean(np.broadcast_to(running, count))))
+    return found if np.isfinite(found) else 0.0

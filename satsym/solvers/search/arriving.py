@@ -1,0 +1,139 @@
+"""Motions to the given end, whatever they cost: the miss alone is minimised, from motions that obey their equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solvers.iteration import Limits
+from satsym.solvers.search import nlp, starts
+from satsym.solvers.search.controls import Controls
+from satsym.solvers.search.durations import first_duration
+from satsym.solvers.search.nlp import Found
+from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.sizes import sizes_of, wanted
+from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.transcription import DEGREE, FREE, Function, Places
+
+ARRIVED = 1e-4
+"""Relative miss that the mesh and the minimisation may leave of none."""
+
+ITERATIONS = 120
+"""Iterations of the interior-point code; where more are needed, hardly any number is enough."""
+
+EFFORT = 1e-6
+"""Weight of the mean squared controls, in units of their sizes, beside the squared miss: many do equally well else."""
+
+
+class Missing(Programme):
+    """A programme that minimises half the squared miss of what is asked of the end, each in units of its size."""
+
+    def __post_init__(self) -> None:
+        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + self.sizes.duration
+        names = self.instance.model.spec.state_names
+        goal = wanted(self.instance, end)
+        numbers = [isinstance(self.instance.final.get(name), float | int) for name in names]
+        self.given = np.flatnonzero(numbers)
+        self.goal = goal[self.given]
+        self.on_reference = [i for i, name in enumerate(names) if self.instance.final.get(name) == "reference"]
+        self.factor = 0.0
+        super().__post_init__()
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the unknowns: none of what is asked of the end."""
+        low, high = (row.copy() for row in super().bounds)
+        at = self.points.states * self.count + self.given
+        low[at], high[at] = -FREE, FREE
+        for i in self.given:
+            if self.instance.model.spec.states[i].positive:
+                low[self.points.states * self.count + i] = 1e-4
+        return low, high
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper limits of the rows: none of those at the end."""
+        low, high = (row.copy() for row in super().limits)
+        if "ends" in self.kinds:
+            low[self.kinds["ends"].places], high[self.kinds["ends"].places] = -FREE, FREE
+        return low, high
+
+    def missed_by(self, w: Array) -> Array:
+        """What the end of unknowns misses, in units of its sizes."""
+        return self.missed(self._at(w, [self.count]))[:, 0]
+
+    def missed(self, y: Array) -> Array:
+        """What the end misses, in units of its sizes, at local variables (l, M)."""
+        others = self.points.ends(y)
+        size = self.sizes.states
+        others[: len(self.on_reference)] /= size[self.on_reference, None]
+        first = len(others) - self.points.inequalities
+        others[first:] *= others[first:].real > 0.0
+        return np.concatenate([(y[self.given] - self.goal[:, None]) / size[self.given, None], others])
+
+    def _half(self, y: Array) -> Array:
+        return np.asarray((self.missed(y) ** 2).sum(axis=0)[None] / 2.0)
+
+    @cached_property
+    def _efforts(self) -> tuple[Places, Array]:
+        """Places of the variables among the unknowns, and weights of their halved squares."""
+        places = np.arange(self.first_variable, self.first_duration)
+        shares = self.weights * np.repeat(self.fractions, DEGREE)
+        return places, EFFORT * np.repeat(shares, self.controls.count)
+
+    def objective(self, w: Array) -> float:
+        """Half the squared miss, and next to nothing of the controls."""
+        places, weights = self._efforts
+        return float(self._half(self._at(w, [self.count]))[0, 0] + weights @ w[places] ** 2 / 2.0)
+
+    def gradient(self, w: Array) -> Array:
+        """Of :meth:`objective`."""
+        into, places = self._end_into(self.count)
+        found = np.zeros(self.unknowns)
+        np.add.at(found, places, self.points.slopes(self._half, self._at(w, [self.count]))[0, :, 0] @ into)
+        own, weights = self._efforts
+        found[own] += weights * w[own]
+        return found
+
+    def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
+        """Entries of the second derivatives of the Lagrangian."""
+        self.factor = factor
+        found = super().hessian(w, multipliers, 0.0)
+        places, weights = self._efforts
+        found[np.searchsorted(self._hessian_keys, places * (self.unknowns + 1))] += factor * weights
+        return found
+
+    def _weighed(self, multipliers: Array, factor: float) -> list[tuple[Function, int, Array]]:
+        _, *rows = super()._weighed(multipliers, factor)
+        return [(self._half, self.count, np.array([self.factor])), *rows]
+
+
+def arriving(instance: Instance, controls: Controls, meshes: Sequence[Array], plan: Plan, limits: Limits) -> Found:
+    """Where the least miss is found from a plan.
+
+    The plan begins with a motion that obeys its equations: as if nothing were asked of its end, unless it is the
+    straight line to it. Sizes of states are the larger of both.
+    """
+    free = replace(instance, final={})
+    duration = first_duration(instance, controls)
+    sizes, moved = (sizes_of(one, controls, duration) for one in (instance, free))
+    sizes = replace(sizes, states=np.maximum(sizes.states, moved.states))
+    programme = Missing(instance, controls, meshes, sizes)
+    begun = programme if not plan.arriving else Missing(free, controls, meshes, sizes)
+    return nlp.solve(programme, starts.begun(begun, plan), limits, ITERATIONS)
+
+
+def missed(found: Found) -> Array:
+    """What the end of a motion misses, in units of its sizes."""
+    assert isinstance(found.programme, Missing)
+    return found.programme.missed_by(found.unknown)
+
+
+def arrived(found: Found) -> bool:
+    """Whether a motion arrives, as far as can be told."""
+    return found.solved and bool(np.abs(missed(found)).max(initial=0.0) <= ARRIVED)
