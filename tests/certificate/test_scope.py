@@ -10,6 +10,7 @@ from msgspec import structs
 
 from satsym import instance
 from satsym.instance import Instance
+from satsym.solution import Check
 from satsym.solvers import solve
 from satsym.solvers.certificate.scope import CONVEX, NOTHING_COSTS, SOONEST, THEOREMS, with_scope
 from satsym.status import Scope, Verdict
@@ -105,3 +106,13 @@ def test_turns_of_angles_and_path_constraints_are_not_covered():
     constrained = solve(instance.load("obstacle")).certificate
     assert constrained is not None
     assert constrained.scope is Scope.LOCAL
+
+
+def test_beside_something_cheaper_no_minimum_is_claimed():
+    """Such an extremal is none of the least cost of all, whatever theorem would apply to it."""
+    found = solve(instance.load("double-integrator-time"))
+    assert found.certificate is not None
+    cheaper = Check("cheaper by: seeded starts", 1e-3, 1e-9)
+    beaten = replace(found.certificate, verdict=Verdict.EXTREMAL_ONLY, checks=(*found.certificate.checks, cheaper))
+    told = with_scope(beaten, found)
+    assert (told.scope, told.because) == (Scope.LOCAL, cheaper.name)

@@ -28,8 +28,8 @@ def certify(folder: Path, as_json: bool) -> ExitCode:
     """Examine a saved result again.
 
     FOLDER is where `satsym solve` wrote one with --out or --plot. The certificate is computed anew from the saved
-    problem and trajectory, and every number of result.json is compared with them. Nothing is solved again but the
-    competing solutions, and nothing is written.
+    problem and trajectory, and what result.json says of the answer is compared with them; iterations and seconds are
+    not, as no file shows them again. Nothing is solved again but the competing solutions, and nothing is written.
     """
     from satsym.report.results import problem
     from satsym.report.results.certificate import certificate_object

@@ -1,4 +1,4 @@
-"""A saved result examined again: the certificate anew, and every number of result.json beside what the files say."""
+"""A saved result examined again: the certificate anew, and what result.json says of the answer beside the files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from satsym.solvers.certificate import certify
 from satsym.status import Verdict
 
 NOT_COMPARED = frozenset(("satsym", "message", "iterations", "wall_s", "certificate", "instance_file", "continuation"))
-"""Keys of result.json that tell how an answer came about, not what it is; the certificate is computed anew."""
+"""Keys of result.json that tell how an answer came about, which no file shows; the certificate is computed anew."""
 
 
 @dataclass(frozen=True)

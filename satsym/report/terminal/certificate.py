@@ -22,6 +22,7 @@ _HOLDS = {
     "generalised legendre-clebsch": "generalised Legendre-Clebsch condition holds",
     "switching times": "switching times confirmed by integration",
     "stated times of events": "events at the stated times",
+    "stated switching times, to the spacing of the nodes": "controls switch between the nodes beside the stated times",
     "stated times of saturation": "controls meet their bounds at the stated times",
     "minimisers of H that a jump joins stay as good": "minimisers of H differ on either side of a jump",
     "coinciding switching times": "switching times distinct",
@@ -115,10 +116,7 @@ def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
 
 def claim(certificate: Certificate) -> str:
     """What a certificate claims, in a few words."""
-    if certificate.scope is Scope.LOCAL:
-        return meaning(certificate.verdict)
-    strict = certificate.verdict in (Verdict.CERTIFIED, Verdict.LOCAL_MINIMUM)
-    return say("global minimum") if strict else say("global minimum; others may cost the same")
+    return meaning(certificate.verdict) if certificate.scope is Scope.LOCAL else say("global minimum")
 
 
 def theorem_lines(certificate: Certificate) -> list[str]:

@@ -15,7 +15,7 @@ def examination_text(found: Examination, colour: bool) -> str:
     stated = message(found.stated.value) if found.stated else say("no certificate")
     heading = say("<name>, model <model>", name=instance.name, model=spec.name)
     rows = [(one.key, str(one.stated), str(one.found)) for one in found.differences]
-    agreement = say("every number of result.json is what the other files say")
+    agreement = say("what result.json says of the answer is what the other files say")
     if len(rows) == 1:
         agreement = say("one number of result.json is not what the other files say")
     elif rows:

@@ -28,10 +28,12 @@ THEOREMS = {
     "no proof of a minimum along singular arcs: not convex": "convexity around the extremal (Mangasarian 1966)",
     "second variation in lengths of arcs and directions": "strict signs of the switching functions and a positive "
     "second variation in arc lengths and directions (Chen, Caillau and Chitour 2016)",
+    "second variation with the active arcs fixed": "positive multipliers and a positive second variation with the "
+    "active arcs fixed (Maurer 1981; Bonnans and Hermant 2009)",
+    "multiplier vanishes on a boundary": "positive multipliers, strict signs of the switching functions and a positive "
+    "second variation in the switching and junction times (Maurer and Vossen 2009)",
     "second variation in the switching times": "the strict bang-bang condition and a positive second variation in the "
     "switching times (Agrachev, Stefani and Zezza 2002; Maurer and Osmolovskii 2004)",
-    "second variation with the active arcs fixed": "positive multipliers and a positive second variation with the "
-    "active arcs fixed (Maurer 1981)",
     "conjugate points: none": "the strict Legendre-Clebsch condition and no conjugate points (Bryson and Ho 1975, "
     "chapter 6)",
     "switching function vanishes on an arc": "signs of the switching functions in a problem that is convex around the "
@@ -48,15 +50,13 @@ states there that are none."""
 def with_scope(certificate: Certificate, solution: Solution) -> Certificate:
     """Say whether the claim of a certificate is local or global, and what carries it.
 
-    An extremal of which no sufficient condition was shown can still be a global minimum: others may cost the same.
+    Where a condition does not hold, or something cheaper was found, nothing is claimed: that condition is named.
     """
     certificate = replace(certificate, scope=Scope.LOCAL, because=_first_failed(certificate))
-    if certificate.verdict is Verdict.FAILED:
+    if certificate.verdict in (Verdict.FAILED, Verdict.EXTREMAL_ONLY):
         return certificate
     if reason := tried(lambda: _no_other(solution)) or "":
         return replace(certificate, scope=Scope.GLOBAL, because=reason)
-    if certificate.verdict is Verdict.EXTREMAL_ONLY:
-        return certificate
     names = {check.name for check in certificate.checks}
     return replace(certificate, because=next((text for name, text in THEOREMS.items() if name in names), ""))
 
