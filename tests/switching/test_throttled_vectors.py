@@ -21,10 +21,10 @@ from satsym.instance import Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
 from satsym.solvers.certificate.competitors.searched import Searched
 from satsym.solvers.certificate.reintegration.flow import typical
-from satsym.solvers.certificate.switching import comparison
 from satsym.solvers.certificate.switching.arc_lengths import quadratic
 from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
@@ -419,7 +419,7 @@ def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
     found = shipped("transfer-fuel")
     cheapest = found.objective if arrived else math.nan
     competitors = (Competitors(Kind.STARTS, 2, arrived, cheapest),)
-    monkeypatch.setattr(comparison, "searched", lambda *_: Searched(competitors, None))
+    monkeypatch.setattr(comparing, "searched", lambda *_: Searched(competitors, None))
     again = certify(found)
     assert again is not None
     assert [check.name for check in again.checks if not check.passed] == ([] if arrived else [UNCOMPARED])

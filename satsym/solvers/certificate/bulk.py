@@ -17,6 +17,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.conclusion import OF_FLOW, OF_NODES, concluded
 from satsym.solvers.certificate.corners import positive
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
@@ -169,20 +170,14 @@ def _confirmed(solutions: Sequence[Solution]) -> list[Certificate | None]:
 
 def _judged(solution: Solution, flow: Flow, without: Array, defect: float) -> Certificate | None:
     first = [
-        *first_order(solution, flow, conditions.OF_FLOW, without),
-        Check(conditions.OF_NODES, defect, DEFECT),
+        *first_order(solution, flow, OF_FLOW, without),
+        Check(OF_NODES, defect, DEFECT),
     ]
     legendre = conditions.legendre_clebsch(solution)
     if not (all(check.passed for check in first) and legendre > 0.0):
         return None
     second = (Check("legendre-clebsch", 0.0, 0.0), Check("conjugate points: none", 0.0, 0.0))
-    return Certificate(
-        Verdict.LOCAL_MINIMUM,
-        **conditions.headlines(first),
-        legendre_clebsch=legendre,
-        conjugate_time=None,
-        checks=(*first, *second),
-    )
+    return concluded(first, second, legendre, compared=False)
 
 
 def _flows(together: _Together) -> list[Flow | None]:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
-
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solution import Check, Solution
+from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
 from satsym.solvers.certificate.reintegration.flow import (
     FAINT,
@@ -30,25 +27,8 @@ from satsym.solvers.simulation.extrapolation import leap
 CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
 
-
 STRICT = 1e-12
 """Share of its largest slope by a control with which H falls beyond a bound that holds it."""
-
-BOUNDARY, STATIONARITY, HAMILTONIAN = "boundary residual", "stationarity", "hamiltonian drift"
-OF_FLOW, OF_SEGMENTS, OF_NODES = "dynamics defect", "junction defect", "node defect"
-"""What checks are called. The last three are distances of the solution from the flow from the initial costates, of
-segments between nodes from the next node, and of the motion from each node from the next one."""
-
-
-def headlines(checks: Iterable[Check]) -> dict[str, Any]:
-    """What a certificate states beside its checks, by its names."""
-    measured = {check.name: check.value for check in checks}
-    return {
-        "boundary_residual": measured[BOUNDARY],
-        "dynamics_defect": measured[OF_FLOW] if OF_FLOW in measured else measured[OF_SEGMENTS],
-        "stationarity": measured[STATIONARITY],
-        "hamiltonian_drift": measured.get(HAMILTONIAN),
-    }
 
 
 def boundary_residual(solution: Solution, flow: Flow, without: Array | None = None, more: float = 0.0) -> float:

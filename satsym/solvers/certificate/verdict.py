@@ -12,6 +12,16 @@ from satsym.solvers.certificate import conditions, jumps
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.solvers.certificate.competitors.neighbours import Neighbours, neighbours
+from satsym.solvers.certificate.conclusion import (
+    BOUNDARY,
+    HAMILTONIAN,
+    OF_FLOW,
+    OF_NODES,
+    OF_SEGMENTS,
+    STATIONARITY,
+    concluded,
+    unmeasured,
+)
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
@@ -23,8 +33,7 @@ from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
-from satsym.solvers.iteration import deadline_of
-from satsym.status import Verdict
+from satsym.solvers.iteration import MOST, Limits, deadline_of
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
@@ -81,11 +90,11 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
 
         with np.errstate(all="ignore"):
             return chattering.certify(solution, solution.interval), None
-    if solution.method == "bang-bang" or solution.instance.model.spec.switching:
-        from satsym.solvers.certificate.switching import conditions as switching
+    if comparing.switching(solution):
+        from satsym.solvers.certificate.switching import conditions as of_arcs
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution, deadline, compared, seed)
+            return of_arcs.certify(solution, deadline, compared, seed)
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 
@@ -94,7 +103,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         along = segments(solution)
         first = _first_order(solution, along)
         if not first:
-            return _without_flow(), None
+            return unmeasured("flow from the initial costates is finite"), None
         if solution.instance.model.spec.path_constraints:
             from satsym.solvers.constrained.violation import VIOLATED, violation
 
@@ -107,20 +116,15 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             close = neighbours(solution)
             second = _sufficient(solution, legendre, field, close)
             if compared:
-                others = comparing.compared(solution, deadline, seed)
-                second += others.checks
-    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
-    certificate = Certificate(
-        verdict=verdict,
-        **conditions.headlines(first),
-        legendre_clebsch=legendre,
+                others = comparing.compared(solution, Limits(MOST, deadline), seed)
+    certificate = concluded(
+        first,
+        second,
+        legendre,
+        others,
+        compared=compared,
         conjugate_time=field.time,
-        checks=(*first, *second),
-        competitors=(
-            *((close.competitors,) if close else ()),
-            *(kind.summary for kind in others.kinds),
-        ),
-        not_checked=others.not_checked,
+        beside=(close.competitors,) if close else (),
     )
     return certificate, others.better
 
@@ -131,16 +135,16 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
     recomputed = (along and closed_flow(solution, along)) or flow(solution)
-    checks = first_order(solution, recomputed, conditions.OF_FLOW) if recomputed else []
+    checks = first_order(solution, recomputed, OF_FLOW) if recomputed else []
     if checks:
-        checks.append(Check(conditions.OF_NODES, node_defect(solution), DEFECT))
+        checks.append(Check(OF_NODES, node_defect(solution), DEFECT))
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
     reached = node_by_node(solution, along)
     if reached is None:
         return checks
     moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
-    return [*first_order(solution, reached, conditions.OF_SEGMENTS), moved]
+    return [*first_order(solution, reached, OF_SEGMENTS), moved]
 
 
 def first_order(solution: Solution, recomputed: Flow, defect: str, without: Array | None = None) -> list[Check]:
@@ -155,14 +159,14 @@ def first_order(solution: Solution, recomputed: Flow, defect: str, without: Arra
     """
     model = solution.instance.model
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed, without), RESIDUAL),
+        Check(BOUNDARY, conditions.boundary_residual(solution, recomputed, without), RESIDUAL),
         Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
-        Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
+        Check(STATIONARITY, conditions.stationarity(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, recomputed), COST),
         Check("domain violation", float(not model.in_domain(recomputed.x)), 0.0),
     ]
     drift = conditions.hamiltonian_drift(solution, recomputed)
-    return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
+    return checks if drift is None else [*checks, Check(HAMILTONIAN, drift, DRIFT)]
 
 
 def _sufficient(solution: Solution, legendre: float, field: Conjugate, close: Neighbours) -> list[Check]:
@@ -173,9 +177,3 @@ def _sufficient(solution: Solution, legendre: float, field: Conjugate, close: Ne
         *field.checks,
         *close.checks,
     ]
-
-
-def _without_flow() -> Certificate:
-    missing = float("nan")
-    check = Check("flow from the initial costates is finite", 1.0, 0.0)
-    return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))

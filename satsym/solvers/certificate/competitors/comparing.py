@@ -1,4 +1,4 @@
-"""Competitors of smooth extremals: what other starts of the direct search come to, and controls that are drawn.
+"""Competitors: what other starts of the direct search come to, and controls that are drawn.
 
 How far each start may go is limited by work, so that what is found is the same on every machine; only time that is up
 can end it before, and that is said.
@@ -6,58 +6,93 @@ can end it before, and that is said.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from satsym import activity
-from satsym.instance import Guess
-from satsym.solution import Check, Kind, Solution
-from satsym.solvers.certificate.competitors.comparison import Compared, Comparison, summed
+from satsym.instance import Guess, Instance
+from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
+from satsym.solvers.certificate.competitors.needles import needles
 from satsym.solvers.certificate.competitors.searched import kinds, searched
+from satsym.solvers.certificate.competitors.shorter import shorter
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
-from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.linear.linear_motion import linear_motion
+
+COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
+"""Relative difference of costs that is none between motions whose controls switch, where it is not ``SAME_COST``."""
 
 WORK = 1_000_000
 """Unknowns times iterations that the search may take from a control that was drawn."""
 
 
-def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
+def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     """Compare a solution with competitors of every kind.
 
     Parameters
     ----------
-    deadline
-        On the clock of :func:`~satsym.solvers.iteration.computed`.
+    limits
+        Of time; what the clock ends is not checked.
     seed
         Of controls that are drawn: another one where a solution was found from such a control.
     """
-    if none_conceivable(solution):
+    instance, switches = solution.instance, switching(solution)
+    if not switches and none_conceivable(solution):
         return Comparison(proved=(Check("no cheaper competitor", 0.0, 0.0),))
-    if convex(solution.instance):
+    if not switches and convex(instance):
         return Comparison(proved=(Check("not convex", 0.0, 0.0),))
-    limits = Limits(MOST, deadline)
     activity.tell("certificate: comparing with other starts of the search ...")
     with np.errstate(all="ignore"):
-        found = searched(solution, limits, seed)
-    compared, exact = list[Compared](), found.better
-    for one in found.competitors:
-        costs = [one.cheapest] if one.solved else []
-        own = replace(summed(solution, one.kind, one.tried, costs, limits.late), summary=one)
-        if one.kind is Kind.STARTS and own.margin >= 0.0 and not limits.late:
-            drawn, led = _from_controls(solution, seed, limits)
-            own = replace(own if drawn is None else own.joined(drawn), simulated=drawable(solution))
-            exact = exact or led
-        compared.append(own)
-    known = {one.kind for one in found.competitors if one.solved and not limits.late}
-    missing = tuple(kind for kind in kinds(solution.instance) if kind not in known)
-    begun = {one.kind for one in found.competitors}
-    if limits.late or not begun:  # nothing to compare with is said
-        compared += [summed(solution, kind, 0, [], limits.late) for kind in missing if kind not in begun]
-    return Comparison(tuple(compared), missing, exact)
+        by_search = searched(solution, limits, seed)
+        found = _by_kind(solution, [*by_search.competitors, *(_close_by(solution, limits) if switches else ())], limits)
+    possible, exact = kinds_of(instance), by_search.better
+    enough = {kind for kind, one in found.items() if one.summary.solved and not limits.late}
+    if switches and not limits.late and linear_motion(instance) is not None:  # nothing of it arrives anywhere else
+        enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
+    missing = tuple(kind for kind in possible if kind not in enough)
+    if not switches and Kind.STARTS in found and found[Kind.STARTS].margin >= 0.0 and not limits.late:
+        drawn, led = _from_controls(solution, seed, limits)
+        own = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)
+        found[Kind.STARTS], exact = replace(own, enough=drawable(solution)), exact or led
+    if limits.late or not (found or switches):  # nothing to compare with is said
+        found |= {kind: summed(solution, kind, 0, [], limits.late) for kind in missing if kind not in found}
+    return Comparison(tuple(found[kind] for kind in possible if kind in found), missing, exact)
+
+
+def switching(solution: Solution) -> bool:
+    """Whether an answer consists of arcs between which controls switch."""
+    return solution.method == "bang-bang" or solution.instance.model.spec.switching
+
+
+def kinds_of(instance: Instance) -> list[Kind]:
+    """Kinds of competitors that a problem has: neighbours where no set but a box limits a control that switches."""
+    spec = instance.model.spec
+    near = spec.switching and not (spec.throttled or spec.in_arcs)
+    return [*([Kind.NEIGHBOURS] if near else []), *kinds(instance)]
+
+
+def _by_kind(solution: Solution, every: Iterable[Competitors], limits: Limits) -> dict[Kind, Compared]:
+    """What competitors of each kind came to."""
+    found: dict[Kind, Compared] = {}
+    for one in every:
+        coarse = COARSE.get(one.kind, SAME_COST) if switching(solution) else SAME_COST
+        own = summed(solution, one.kind, one.tried, [one.cheapest] if one.solved else [], limits.late, coarse)
+        own = replace(own, summary=one)
+        found[one.kind] = found[one.kind].joined(own) if one.kind in found else own
+    return found
+
+
+def _close_by(solution: Solution, limits: Limits) -> Iterator[Competitors]:
+    """Other switching times and shorter durations of a motion whose controls switch."""
+    for source in (needles, shorter) if Kind.NEIGHBOURS in kinds_of(solution.instance) else ():
+        if not limits.late and (one := source(solution, limits)) is not None and not limits.late:
+            yield one
 
 
 def _from_controls(solution: Solution, seed: int, limits: Limits) -> tuple[Compared | None, Solution | None]:

@@ -18,9 +18,8 @@ HIDDEN = 1e-14
 COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
-SAME = 1e-9
+SAME_COST = 1e-9
 """Relative error of refined costs; it makes no difference."""
-
 
 UNCOMPARED = "compared with nothing: no competitor was solved"
 """The check that fails where that is so."""
@@ -39,8 +38,8 @@ class Compared:
     """Excess of the cheapest, relative to the cost; negative where it is cheaper, infinite without any."""
     interrupted: bool
     """Whether time was up before all were tried."""
-    simulated: bool = False
-    """Whether motions under drawn controls were compared, none of which was cheaper unless it is among the others."""
+    enough: bool = False
+    """Whether it says something even where none was solved: controls were drawn, or the motion is linear."""
 
     @property
     def checks(self) -> list[Check]:
@@ -78,7 +77,7 @@ class Comparison:
     @property
     def checks(self) -> list[Check]:
         """Those of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
-        none = not any(kind.summary.solved or kind.interrupted or kind.simulated for kind in self.kinds)
+        none = not any(kind.summary.solved or kind.interrupted or kind.enough for kind in self.kinds)
         found = [*self.proved, *(check for kind in self.kinds for check in kind.checks)]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
 
@@ -90,10 +89,18 @@ def going_round(instance: Instance) -> list[Kind]:
     return [Kind.REVOLUTIONS] if rotation(instance) else []
 
 
-def summed(solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool) -> Compared:
-    """What so many attempts at a kind came to, of which some have costs."""
+def summed(
+    solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool, coarse: float = SAME_COST
+) -> Compared:
+    """What so many attempts at a kind came to, of which some have costs.
+
+    Parameters
+    ----------
+    coarse
+        Relative difference of costs that is none.
+    """
     cheapest = min(costs, default=float("nan"))
-    excess = margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
+    excess = margin(cheapest, solution.objective, coarse=coarse, hidden=hidden(solution))
     return Compared(Competitors(kind, count, len(costs), cheapest), excess, interrupted)
 
 

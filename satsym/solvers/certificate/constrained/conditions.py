@@ -9,14 +9,23 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solution import Certificate, Check, Solution
+from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.competitors import comparing
-from satsym.solvers.certificate.competitors.comparison import Comparison
-from satsym.solvers.certificate.constrained import comparison
+from satsym.solvers.certificate.competitors.comparison import Comparison, summed
+from satsym.solvers.certificate.conclusion import (
+    BOUNDARY,
+    HAMILTONIAN,
+    OF_FLOW,
+    OF_SEGMENTS,
+    STATIONARITY,
+    concluded,
+    unmeasured,
+)
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.solvers.certificate.constrained.variants import near
 from satsym.solvers.certificate.reintegration.flow import FAINT, typical
 from satsym.solvers.constrained.active import control, deciding, multipliers
 from satsym.solvers.constrained.arcs import holds_control, sizes, values
@@ -24,12 +33,12 @@ from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
-from satsym.status import Verdict
+from satsym.solvers.iteration import MOST, Limits
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
-NAMES = {conditions.OF_FLOW: conditions.OF_SEGMENTS}
+NAMES = {OF_FLOW: OF_SEGMENTS}
 """What is called otherwise where it is measured part by part."""
 
 SIGN = 1e-9
@@ -50,9 +59,7 @@ def certify(
     with np.errstate(all="ignore"):
         again = replay(solution)
         if again is None:
-            missing = float("nan")
-            check = Check("flow from the initial costates is finite", 1.0, 0.0)
-            return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,)), None
+            return unmeasured("flow from the initial costates is finite"), None
         first, again = _in_segments(solution, again)
         curved = _legendre_clebsch(solution, again)
         second: list[Check] = []
@@ -64,20 +71,17 @@ def certify(
             elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
-                    others = comparing.compared(solution, deadline, seed)
+                    others = comparing.compared(solution, Limits(MOST, deadline), seed)
                     if again.meets_a_boundary(solution):
-                        others = others.joined(comparison.compared(solution, deadline))
-                    second += others.checks
-    certificate = Certificate(
-        verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),
-        **conditions.headlines(first),
-        legendre_clebsch=curved,
-        conjugate_time=None,
-        checks=(*first, *second),
-        competitors=tuple(kind.summary for kind in others.kinds),
-        not_checked=others.not_checked,
-    )
-    return certificate, others.better
+                        others = others.joined(_of_other_structures(solution, deadline))
+    return concluded(first, second, curved, others, compared=compared), others.better
+
+
+def _of_other_structures(solution: Solution, deadline: float) -> Comparison:
+    """What extremals come to whose structure of boundary arcs is near that of a solution."""
+    count, costs, late = near(solution, deadline)
+    found = summed(solution, Kind.ARCS, count, costs, late)
+    return Comparison((found,), () if count and not late else (Kind.ARCS,))
 
 
 def _legendre_clebsch(solution: Solution, again: Replay) -> float:
@@ -108,12 +112,12 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     flow = again.flow(solution)
     checks = [
         Check(
-            conditions.BOUNDARY,
+            BOUNDARY,
             conditions.boundary_residual(solution, flow, more=more_at_end(solution, again)),
             RESIDUAL,
         ),
-        Check(conditions.OF_FLOW, _defect(solution, again), DEFECT),
-        Check(conditions.STATIONARITY, _stationarity(solution, again), STATIONARY),
+        Check(OF_FLOW, _defect(solution, again), DEFECT),
+        Check(STATIONARITY, _stationarity(solution, again), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("domain violation", float(not solution.instance.model.in_domain(flow.x)), 0.0),
         Check("path constraint violated", _violated(solution, again), VIOLATED),
@@ -128,7 +132,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         checks.append(Check("jump of costates off the constraint's gradient", again.off_gradient, DEFECT))
     checks += passing(solution, again)
     drift = _drift(solution, again)
-    return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
+    return checks if drift is None else [*checks, Check(HAMILTONIAN, drift, DRIFT)]
 
 
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:

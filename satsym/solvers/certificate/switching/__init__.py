@@ -1,1 +1,1 @@
-"""Certificates of bang-bang and singular arcs: competitors of other structures, needles, the second variation."""
+"""Certificates of bang-bang and singular arcs: the extremal again, strict switching, the second variation."""

@@ -15,13 +15,14 @@ from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, CostInterval, Solution
 from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.competitors.comparing import kinds_of
+from satsym.solvers.certificate.competitors.comparison import Comparison
+from satsym.solvers.certificate.conclusion import BOUNDARY, OF_SEGMENTS, STATIONARITY, concluded, unmeasured
 from satsym.solvers.certificate.reintegration.segments import segments, values
-from satsym.solvers.certificate.switching.comparison import allowed
 from satsym.solvers.certificate.switching.variation import convex
 from satsym.solvers.control.regularised import regularised, smoothed_law
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
-from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, COST = 1e-9, 1e-7, 1e-8, 1e-8
 """Largest boundary residual, defect, violation of the smoothed law and error of the stated cost, relative."""
@@ -43,15 +44,15 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
     reached = None if along is None else conditions.node_by_node(smooth, along)
     measured = _integrated(smooth)
     if along is None or reached is None or measured is None:
-        return _without_flow()
+        return unmeasured("flow from node to node is finite")
     cost, gap = measured
     size = max(abs(cost), 1e-300)
     width = max(cost - interval.lower, 0.0)
     first = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(smooth, reached), RESIDUAL),
-        Check(conditions.OF_SEGMENTS, conditions.dynamics_defect(smooth, reached), DEFECT),
+        Check(BOUNDARY, conditions.boundary_residual(smooth, reached), RESIDUAL),
+        Check(OF_SEGMENTS, conditions.dynamics_defect(smooth, reached), DEFECT),
         Check("correction of the nodes", conditions.correction(smooth, along, reached), DEFECT),
-        Check(conditions.STATIONARITY, _off_law(smooth), STATIONARY),
+        Check(STATIONARITY, _off_law(smooth), STATIONARY),
         Check("cost", abs(cost - solution.objective) / size, COST),
         Check("cost interval too narrow", max(interval.lower - (cost - gap), 0.0), SAME * width),
         Check("domain violation", float(not solution.instance.model.in_domain(reached.x)), 0.0),
@@ -61,14 +62,8 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
     second += [Check("infinitely many switching times: chattering", 1.0, 0.0)]
     if not proved:
         second.append(Check("lower end of the cost interval is an estimate: not convex", 1.0, 0.0))
-    return Certificate(
-        verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second)),
-        **conditions.headlines(first),
-        legendre_clebsch=float("nan"),
-        conjugate_time=None,
-        checks=(*first, *second),
-        not_checked=() if proved else tuple(allowed(solution.instance)),
-    )
+    others = Comparison((), () if proved else tuple(kinds_of(solution.instance)))
+    return concluded(first, second, float("nan"), others)
 
 
 def _smooth(solution: Solution, interval: CostInterval) -> Solution:
@@ -134,9 +129,3 @@ def _excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Arr
             best = np.minimum(best, model.hamiltonian_batch(t, x, moved, lam, p))
         total += here - best
     return total
-
-
-def _without_flow() -> Certificate:
-    missing = float("nan")
-    check = Check("flow from node to node is finite", 1.0, 0.0)
-    return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))

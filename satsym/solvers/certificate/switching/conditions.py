@@ -6,12 +6,14 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Certificate, Check, Kind, Solution
+from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.competitors.comparing import compared, kinds_of
+from satsym.solvers.certificate.competitors.comparison import Comparison
+from satsym.solvers.certificate.conclusion import BOUNDARY, HAMILTONIAN, OF_FLOW, STATIONARITY, concluded, unmeasured
 from satsym.solvers.certificate.reintegration.flow import Flow, typical
 from satsym.solvers.certificate.switching import boundaries
 from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
-from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
 from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, Span, TooMuchWork
 from satsym.solvers.certificate.switching.next_switch import noise
@@ -53,30 +55,19 @@ def certify(
     except TooMuchWork:
         again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
     except OutOfTime:
-        check = Check("time was up before: flow from the initial costates", 1.0, 0.0)
-        return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance))), None
+        late, kinds = "time was up before: flow from the initial costates", tuple(kinds_of(solution.instance))
+        return unmeasured(late, Verdict.EXTREMAL_ONLY, kinds), None
     first = [] if again is None else _first_order(solution, again)
     if not first or not all(c.passed for c in first):
         again, first = _closely(solution, limits) or (again, first)
     if again is None:
-        return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ()), None
+        return unmeasured(failed), None
     second: list[Check] = []
-    comparison = Comparison()
+    others = Comparison()
     if all(c.passed for c in first):
         second = _sufficient(solution, again, limits)
-        comparison = compared(solution, limits, seed) if compare else Comparison()
-        second += comparison.checks
-    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compare)
-    certificate = Certificate(
-        verdict=verdict,
-        **conditions.headlines(first),
-        legendre_clebsch=_legendre(again),
-        conjugate_time=None,
-        checks=(*first, *second),
-        competitors=comparison.competitors,
-        not_checked=comparison.not_checked,
-    )
-    return certificate, comparison.better
+        others = compared(solution, limits, seed) if compare else others
+    return concluded(first, second, _legendre(again), others, compared=compare), others.better
 
 
 def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
@@ -91,19 +82,14 @@ def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] |
     return (again, first) if all(c.passed for c in first) else None
 
 
-def _without_flow(verdict: Verdict, check: Check, not_checked: tuple[Kind, ...]) -> Certificate:
-    missing = float("nan")
-    return Certificate(verdict, missing, missing, missing, None, missing, None, (check,), not_checked=not_checked)
-
-
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
     instance, n = solution.instance, len(solution.instance.initial)
     flow = Flow(again.times, again.z[:n], again.z[n:], again.cost)
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, flow), RESIDUAL),
-        Check(conditions.OF_FLOW, conditions.dynamics_defect(solution, flow), DEFECT),
+        Check(BOUNDARY, conditions.boundary_residual(solution, flow), RESIDUAL),
+        Check(OF_FLOW, conditions.dynamics_defect(solution, flow), DEFECT),
         Check("switching times", _moved(solution, again), TIMES),
-        Check(conditions.STATIONARITY, _excess(solution), STATIONARY),
+        Check(STATIONARITY, _excess(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("domain violation", float(not instance.model.in_domain(again.z[:n])), 0.0),
     ]
@@ -112,7 +98,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     if instance.model.spec.path_constraints:
         checks += boundaries.necessary(solution, again)
     if instance.model.spec.autonomous and boundaries.still(again):
-        checks.append(Check(conditions.HAMILTONIAN, _drift(solution, again), DRIFT))
+        checks.append(Check(HAMILTONIAN, _drift(solution, again), DRIFT))
     return checks
 
 
