@@ -73,7 +73,7 @@ class Check:
 class Kind(str, Enum):
     """Kinds of competitors; which one a trajectory is of can be decided by looking at it."""
 
-    NEIGHBOURS = "neighbours"
+    NEIGHBOURS = "neighbours"  # in results that version 0.2 saved
     REVOLUTIONS = "revolutions"
     DURATIONS = "duration"
     STARTS = "seeded starts"

@@ -81,10 +81,7 @@ def test_the_return_to_orbit_is_certified(returned: Solution) -> None:
     assert certificate.verdict == "certified"
     assert certificate.conjugate_time is None
     assert certificate.boundary_residual < 1e-11
-    assert {c.name for c in certificate.checks} >= {
-        "cheaper by: neighbours",
-        "cheaper by: seeded starts",
-    }
+    assert "cheaper by: seeded starts" in {c.name for c in certificate.checks}
 
 
 @pytest.mark.parametrize("component", range(3))

@@ -14,9 +14,13 @@ from satsym.report.results.objects import solution_object
 from satsym.solution import Solution
 from satsym.solvers import certificate
 from satsym.solvers.by_search import bang_bang
+from satsym.solvers.certificate.reintegration.flow import typical
+from satsym.solvers.certificate.second_variation import Quadratic, units
 from satsym.solvers.certificate.switching.conditions import _terms
+from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
-from satsym.solvers.certificate.switching.variation import Variation, variation
+from satsym.solvers.certificate.switching.variation import form_of
+from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.trajectory import PANELS, POINTS, _panels
 from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
@@ -103,9 +107,8 @@ def test_the_second_variation_is_that_of_the_closed_form() -> None:
     found = bang_bang(case(FUEL, initial=(1.3, 0.4), tf=None, parameters=(weight,)))
     again = replay(found)
     assert again is not None
-    second = variation(found.instance, again)
-    assert second is not None
-    assert second.asymmetry < 1e-9
+    by = Integration(np.concatenate(typical(found)), Limits(10**6, math.inf))
+    second = form_of(found, again, by, 20)
     duration, step = float(found.times[-1]), 1e-3
 
     def known(t: float) -> Known:
@@ -116,22 +119,28 @@ def test_the_second_variation_is_that_of_the_closed_form() -> None:
     before, here, after = (known(duration + k * step) for k in (-1, 0, 1))
     assert here.cost + weight * duration == pytest.approx(found.objective, abs=1e-9)
     curvature = (after.cost - 2.0 * here.cost + before.cost) / step**2
-    (direction,) = second.kernel.T
-    direction = direction / direction[-1]
+    (direction,) = second.reduced()[1].T
+    direction = direction / direction.sum()  # of the lengths of arcs, in units of the duration
     slopes = [(b - a) / (2.0 * step) for a, b in zip(before.switches, after.switches, strict=True)]
-    assert direction[:2] == pytest.approx(slopes, rel=1e-5)
-    assert direction @ second.hessian @ direction == pytest.approx(curvature, rel=1e-5)
+    assert np.cumsum(direction)[:2] == pytest.approx(slopes, rel=1e-5)
+    unit = units(found, typical(found)[0])[1] / duration**2
+    assert 2.0 * unit * (direction @ second.form @ direction) == pytest.approx(curvature, rel=1e-5)
 
 
 def test_a_shift_in_time_is_the_reason_where_the_form_vanishes_along_it_alone() -> None:
-    later, rest = np.ones(3) / np.sqrt(3.0), np.array([1.0, -1.0, 0.0]) / np.sqrt(2.0)
-    across = np.eye(3) - np.outer(later, later)
+    """All arcs but the last, to which none is added here, begin later where the first one lasts longer."""
+    later, rest, other = np.eye(3)
     kept, tied = np.zeros((0, 3)), later[None]
-    assert Variation(across, kept, 0.0).flat_by_shift(1e-7)
-    assert not Variation(np.eye(3), kept, 0.0).flat_by_shift(1e-7)
-    assert not Variation(np.eye(3) - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)
-    assert not Variation(across - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)  # flat across it as well
-    assert not Variation(across, tied, 0.0).flat_by_shift(1e-7)  # the end does not allow it
+
+    def flat(form: np.ndarray, ties: np.ndarray) -> bool:
+        return Quadratic((None,) * 3, form, ties, free_time=True).flat_by_shift(1e-7)
+
+    across = np.eye(3) - np.outer(later, later)
+    assert flat(across, kept)
+    assert not flat(np.eye(3), kept)
+    assert not flat(np.eye(3) - np.outer(rest, rest), kept)
+    assert not flat(across - np.outer(other, other), kept)  # flat across it as well
+    assert not flat(across, tied)  # the end does not allow it
 
 
 def test_h_is_compared_with_its_own_terms_at_one_time() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -13,8 +14,12 @@ from scipy.optimize import brentq
 import satsym
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.switching.junction_times import reduced
+from satsym.solvers.certificate.reintegration.flow import typical
+from satsym.solvers.certificate.second_variation import units
+from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.certificate.switching.variation import form_of
+from satsym.solvers.iteration import Limits
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError
@@ -144,8 +149,12 @@ def test_the_second_variation_is_that_of_the_top_where_all_else_is_given():
     case = satsym.load("goddard-pressure").with_(parameters={"q_max": 5.0})
     found = satsym.solve(case)
     assert found.certificate.verdict == "certified"
-    form, _ = reduced(found.found.instance, replay(found.found))
-    assert form == pytest.approx(np.array([[1.0 / found.found.x[0, -1] ** 2]]), rel=1e-6)
+    answer = found.found
+    by = Integration(np.concatenate(typical(answer)), Limits(10**6, math.inf))
+    second = form_of(answer, replay(answer), by, 20)
+    (direction,), lasting = second.reduced()[1].T, float(np.ptp(answer.times))
+    unit = units(answer, typical(answer)[0])[1] / (lasting * direction.sum()) ** 2
+    assert 2.0 * unit * (direction @ second.form @ direction) == pytest.approx(1.0 / answer.x[0, -1] ** 2, rel=1e-6)
 
 
 def test_the_multiplier_keeps_the_switching_function_zero():

@@ -25,10 +25,11 @@ from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
 from satsym.solvers.certificate.competitors.searched import Searched
 from satsym.solvers.certificate.reintegration.flow import typical
-from satsym.solvers.certificate.switching.arc_lengths import quadratic
+from satsym.solvers.certificate.second_variation import units
 from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.certificate.switching.variation import form_of
 from satsym.solvers.iteration import Limits
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of
@@ -406,7 +407,7 @@ def test_the_form_in_the_lengths_of_arcs_is_that_of_differences(tmp_path: Path):
         for b in unit
     ]
     by = Integration(np.concatenate(typical(found)), Limits(10**6, math.inf))
-    form, _, cost = quadratic(found, again, by, 20)
+    form, cost = form_of(found, again, by, 20).form, units(found, typical(found)[0])[1]
     in_lengths = 2.0 * cost * form[: len(lengths), : len(lengths)] / 4.0**2
     assert in_lengths == pytest.approx(np.array(hessian), rel=1e-4, abs=1e-4)
 

@@ -52,7 +52,6 @@ _HOLDS = {
     "derivative of the cost by the times of points": "cost stationary in the times of points on the way",
     "second variation in lengths of arcs and directions": "second variation in arc lengths and directions positive",
     "second variation in the switching times": "second variation in the switching times positive",
-    "second variation on pieces of the control": "second variation over pieces of the control not negative",
     "second variation with the active arcs fixed": "second variation with the active arcs fixed positive",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
     "second-order condition at the free start": "second-order condition at the free start holds",

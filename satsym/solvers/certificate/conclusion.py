@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from satsym.solution import Certificate, Check, Competitors, Kind
+from satsym.solution import Certificate, Check, Kind
 from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.status import Verdict
 
@@ -24,7 +24,6 @@ def concluded(
     *,
     compared: bool = True,
     conjugate_time: float | None = None,
-    beside: Sequence[Competitors] = (),
 ) -> Certificate:
     """The certificate of an extremal.
 
@@ -40,8 +39,6 @@ def concluded(
         Whether any were looked for.
     conjugate_time
         The first one, if there is one.
-    beside
-        Competitors whose checks are among ``second`` already.
     """
     others, measured = others or Comparison(), {check.name: check.value for check in first}
     second = [*second, *others.checks]
@@ -54,7 +51,7 @@ def concluded(
         legendre_clebsch=legendre,
         conjugate_time=conjugate_time,
         checks=(*first, *second),
-        competitors=(*beside, *(kind.summary for kind in others.kinds)),
+        competitors=tuple(kind.summary for kind in others.kinds),
         not_checked=others.not_checked,
     )
 

@@ -11,7 +11,6 @@ from satsym.solvers import revolutions
 from satsym.solvers.certificate import conditions, jumps
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison
-from satsym.solvers.certificate.competitors.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.conclusion import (
     BOUNDARY,
     HAMILTONIAN,
@@ -111,10 +110,9 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         field = conjugate(solution, along)
         second: list[Check] = []
         legendre = conditions.legendre_clebsch(solution)
-        close, others = None, Comparison()
+        others = Comparison()
         if all(c.passed for c in first):
-            close = neighbours(solution)
-            second = _sufficient(solution, legendre, field, close)
+            second = _sufficient(solution, legendre, field)
             if compared:
                 others = comparing.compared(solution, Limits(MOST, deadline), seed)
     certificate = concluded(
@@ -124,7 +122,6 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         others,
         compared=compared,
         conjugate_time=field.time,
-        beside=(close.competitors,) if close else (),
     )
     return certificate, others.better
 
@@ -169,11 +166,10 @@ def first_order(solution: Solution, recomputed: Flow, defect: str, without: Arra
     return checks if drift is None else [*checks, Check(HAMILTONIAN, drift, DRIFT)]
 
 
-def _sufficient(solution: Solution, legendre: float, field: Conjugate, close: Neighbours) -> list[Check]:
+def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[Check]:
     """Each is a deficit that must not be positive."""
     return [
         Check("legendre-clebsch", float(not legendre > 0.0), 0.0),
         *jumps.checks(solution),
         *field.checks,
-        *close.checks,
     ]

@@ -17,11 +17,11 @@ from satsym.arrays import Array, distinct
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.switching.arrivals import Arrivals, stated
+from satsym.solvers.certificate.jacobi import INDEPENDENT
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import NEGLIGIBLE, TOLERANCE
 from satsym.solvers.certificate.switching.conditions import CLOSE, CURVED, DRIFT, RESIDUAL, STRICT, TIMES
 from satsym.solvers.certificate.switching.end_switches import AT_SWITCH
-from satsym.solvers.certificate.switching.variation import RANK
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Status, Verdict
 
@@ -277,7 +277,7 @@ def positive_across(by: Array, hessian: Array) -> NDArray[np.bool_]:
     finite = np.asarray(np.isfinite(by).all(axis=(1, 2)) & np.isfinite(hessian).all(axis=(1, 2)))
     by, hessian = (np.where(finite[:, None, None], table, 0.0) for table in (by, hessian))
     _, values, rows = np.linalg.svd(by)
-    fine: NDArray[np.bool_] = np.asarray(finite & (values[:, -1] > RANK * values[:, 0]))
+    fine: NDArray[np.bool_] = np.asarray(finite & (values[:, -1] > INDEPENDENT * values[:, 0]))
     if rows.shape[1] > values.shape[1]:
         free = rows[:, values.shape[1] :]
         form = free @ hessian @ free.swapaxes(1, 2)

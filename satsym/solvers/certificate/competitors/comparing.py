@@ -6,17 +6,16 @@ can end it before, and that is said.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
 from satsym import activity
-from satsym.instance import Guess, Instance
+from satsym.instance import Guess
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
-from satsym.solvers.certificate.competitors.needles import needles
 from satsym.solvers.certificate.competitors.searched import kinds, searched
 from satsym.solvers.certificate.competitors.shorter import shorter
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
@@ -25,7 +24,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 
-COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
+COARSE = {Kind.DURATIONS: 1e-6}
 """Relative difference of costs that is none between motions whose controls switch, where it is not ``SAME_COST``."""
 
 WORK = 1_000_000
@@ -50,8 +49,10 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     activity.tell("certificate: comparing with other starts of the search ...")
     with np.errstate(all="ignore"):
         by_search = searched(solution, limits, seed)
-        found = _by_kind(solution, [*by_search.competitors, *(_close_by(solution, limits) if switches else ())], limits)
-    possible, exact = kinds_of(instance), by_search.better
+        unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
+        quicker = shorter(solution, limits) if unhindered and not limits.late else None
+        found = _by_kind(solution, [*by_search.competitors, *filter(None, [quicker])], limits)
+    possible, exact = kinds(instance), by_search.better
     enough = {kind for kind, one in found.items() if one.summary.solved and not limits.late}
     if switches and not limits.late and linear_motion(instance) is not None:  # nothing of it arrives anywhere else
         enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
@@ -70,13 +71,6 @@ def switching(solution: Solution) -> bool:
     return solution.method == "bang-bang" or solution.instance.model.spec.switching
 
 
-def kinds_of(instance: Instance) -> list[Kind]:
-    """Kinds of competitors that a problem has: neighbours where no set but a box limits a control that switches."""
-    spec = instance.model.spec
-    near = spec.switching and not (spec.throttled or spec.in_arcs)
-    return [*([Kind.NEIGHBOURS] if near else []), *kinds(instance)]
-
-
 def _by_kind(solution: Solution, every: Iterable[Competitors], limits: Limits) -> dict[Kind, Compared]:
     """What competitors of each kind came to."""
     found: dict[Kind, Compared] = {}
@@ -86,13 +80,6 @@ def _by_kind(solution: Solution, every: Iterable[Competitors], limits: Limits) -
         own = replace(own, summary=one)
         found[one.kind] = found[one.kind].joined(own) if one.kind in found else own
     return found
-
-
-def _close_by(solution: Solution, limits: Limits) -> Iterator[Competitors]:
-    """Other switching times and shorter durations of a motion whose controls switch."""
-    for source in (needles, shorter) if Kind.NEIGHBOURS in kinds_of(solution.instance) else ():
-        if not limits.late and (one := source(solution, limits)) is not None and not limits.late:
-            yield one
 
 
 def _from_controls(solution: Solution, seed: int, limits: Limits) -> tuple[Compared | None, Solution | None]:

@@ -16,7 +16,7 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
-from satsym.solvers.certificate.competitors.accessory import accessory
+from satsym.solvers.certificate.competitors.accessory import along
 from satsym.solvers.certificate.competitors.drawn import drawn_below, natural
 from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of, stated_control
 
@@ -91,11 +91,12 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
     if solution.instance.tf is None or simulations is None:
         return None
     grid = simulations.grid()
-    second = accessory(solution, grid)
-    if second is None:
+    found = along(solution, grid)
+    steepest = None if found is None else found.second.steepest()
+    if found is None or steepest is None:
         return None
-    curvature, direction = second.smallest
-    shape = second.along(direction[:, None]).controls[:, :, 0]
+    curvature, direction = steepest
+    shape = found.controls(direction)
     largest = float(np.abs(shape).max(initial=0.0))
     if not (curvature < 0.0 and largest > 0.0):
         return None

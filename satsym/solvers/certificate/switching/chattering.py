@@ -15,11 +15,11 @@ from satsym.arrays import Array, distinct
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, CostInterval, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.competitors.comparing import kinds_of
 from satsym.solvers.certificate.competitors.comparison import Comparison
+from satsym.solvers.certificate.competitors.searched import kinds
 from satsym.solvers.certificate.conclusion import BOUNDARY, OF_SEGMENTS, STATIONARITY, concluded, unmeasured
 from satsym.solvers.certificate.reintegration.segments import segments, values
-from satsym.solvers.certificate.switching.variation import convex
+from satsym.solvers.certificate.switching.convexity import convex
 from satsym.solvers.control.regularised import regularised, smoothed_law
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
@@ -62,7 +62,7 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
     second += [Check("infinitely many switching times: chattering", 1.0, 0.0)]
     if not proved:
         second.append(Check("lower end of the cost interval is an estimate: not convex", 1.0, 0.0))
-    others = Comparison((), () if proved else tuple(kinds_of(solution.instance)))
+    others = Comparison((), () if proved else tuple(kinds(solution.instance)))
     return concluded(first, second, float("nan"), others)
 
 

@@ -8,18 +8,19 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.competitors.comparing import compared, kinds_of
+from satsym.solvers.certificate.competitors.comparing import compared
 from satsym.solvers.certificate.competitors.comparison import Comparison
+from satsym.solvers.certificate.competitors.searched import kinds
 from satsym.solvers.certificate.conclusion import BOUNDARY, HAMILTONIAN, OF_FLOW, STATIONARITY, concluded, unmeasured
 from satsym.solvers.certificate.reintegration.flow import Flow, typical
 from satsym.solvers.certificate.switching import boundaries
-from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
+from satsym.solvers.certificate.switching.convexity import convex
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
 from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, Span, TooMuchWork
 from satsym.solvers.certificate.switching.next_switch import noise
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
-from satsym.solvers.certificate.switching.variation import convex, variation
+from satsym.solvers.certificate.switching.variation import curvature
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
@@ -55,8 +56,8 @@ def certify(
     except TooMuchWork:
         again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
     except OutOfTime:
-        late, kinds = "time was up before: flow from the initial costates", tuple(kinds_of(solution.instance))
-        return unmeasured(late, Verdict.EXTREMAL_ONLY, kinds), None
+        late = "time was up before: flow from the initial costates"
+        return unmeasured(late, Verdict.EXTREMAL_ONLY, tuple(kinds(solution.instance))), None
     first = [] if again is None else _first_order(solution, again)
     if not first or not all(c.passed for c in first):
         again, first = _closely(solution, limits) or (again, first)
@@ -118,30 +119,26 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
         checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
-    elif boundaries.on_boundary(again):
-        checks += boundaries.sufficient(solution, again)
-    elif solution.instance.model.spec.throttled:
-        checks += _in_lengths(solution, extended, limits)
-    elif not any(free):
-        second = variation(solution.instance, extended)
-        flat = second is None or not second.curvature > CURVED
-        checks.append(Check("second variation in the switching times", float(flat), 0.0))
-        checks += [LATER] if second is not None and flat and second.flat_by_shift(CURVED) else []
+    elif boundaries.on_boundary(again) and boundaries.jumping(again):
+        checks.append(Check("not resolved: second variation where costates jump", 1.0, 0.0))
+    elif solution.instance.model.spec.throttled or not any(free):
+        checks += boundaries.strict(again) if boundaries.on_boundary(again) else []
+        checks += _in_times(solution, extended, limits)
     return checks
 
 
-def _in_lengths(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
-    """The second variation in the lengths of arcs and the directions of vectors."""
-    name = "second variation in lengths of arcs and directions"
-    by = Integration(np.concatenate(typical(solution)), limits)
+def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
+    """The second variation in the times of junctions and, where vectors are throttled, in directions as well."""
+    throttled = solution.instance.model.spec.throttled
+    name = f"second variation in {'lengths of arcs and directions' if throttled else 'the switching times'}"
     try:
-        flat = not curvature(solution, extended, by) > CURVED
-        later = flat and flat_by_shift(solution, extended, by, CURVED)
+        least, form = curvature(solution, extended, Integration(np.concatenate(typical(solution)), limits))
     except TooMuchWork:
         return [Check(f"{name} is integrated within {EVALUATIONS} evaluations", 1.0, 0.0)]
     except OutOfTime:
         return [Check(f"time was up before: {name}", 1.0, 0.0)]
-    return [Check(name, float(flat), 0.0), *([LATER] if later else [])]
+    flat = not least > CURVED
+    return [Check(name, float(flat), 0.0), *([LATER] if flat and form.flat_by_shift(CURVED) else [])]
 
 
 def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bool:

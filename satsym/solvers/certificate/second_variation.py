@@ -1,0 +1,237 @@
+"""The second variation as a matrix: in the lengths of arcs, and in what continuous controls change on short pieces.
+
+Stretched to a fixed length each arc is a smooth problem with a parameter, so that nothing jumps: to the integral of the
+accessory problem (Bryson and Ho, Applied Optimal Control, 6.3) a change of the length adds its share of the rates, and
+of H_x. Where arcs are saturated their lengths are all there is; on a boundary the control follows the state, and keeps
+to it where the state is on it at the entry. Where this form is positive on what keeps the end and the entries, an
+extremal that switches strictly, with Legendre's condition strict on its arcs and strictly pressed against its
+boundaries, is a strict strong local minimum (Osmolovskii and Maurer, Applications to Regular and Bang-Bang Control,
+2012, chapters 6 and 7; with boundaries Maurer and Vossen, Sufficient conditions and sensitivity analysis for optimal
+bang-bang control problems with state constraints, System Modeling and Optimization, 2009). Of a smooth extremal, which
+is one arc, it has a negative eigenvalue where the second variation has one; it knows nothing of conjugate times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solution import Solution
+from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
+from satsym.solvers.certificate.jacobi import kernel
+from satsym.solvers.collocation.scaling import final_argument
+
+DROWNED = 1e-8
+"""Share of the weight of a control's change that rounding of the form may come to."""
+
+ALONG = 1.0 - 1e-6
+"""Least cosine between directions that are the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """The accessory problem at the ends and in the middle of each step of an arc, shapes (2 K + 1, ...), in units.
+
+    States x have the time as their last one. Changes follow x' = motion x + push w + f / T dT and cost
+    (x' restoring x + w'w) / 2 + H_x x / T dT; those of the continuous controls, w, are constant on each piece. An arc
+    of no length has a single place and no pieces.
+    """
+
+    lasting: float
+    pieces: int
+    motion: Array
+    push: Array
+    restoring: Array
+    rates: Array
+    slope: Array
+    entered: Array | None = None
+    """The gradient of the constraint on whose boundary the arc begins to be, shape (n + 1,), if there is one."""
+
+    @property
+    def widths(self) -> tuple[float, int]:
+        """The length of a step, and how many there are in a piece or, without any, in the whole arc."""
+        steps = (len(self.motion) - 1) // 2
+        return self.lasting / max(steps, 1), steps // max(self.pieces, 1)
+
+    def stepped(self, k: int, x: Array, w: Array, share: Array) -> tuple[Array, Array]:
+        """Where changes are in the middle and at the end of a step, by the classical Runge-Kutta method.
+
+        Parameters
+        ----------
+        share
+            The change of the arc's length, relative to it.
+        """
+        h, (a, b, c) = self.widths[0], (2 * k, 2 * k + 1, 2 * k + 2)
+
+        def rate(at: int, y: Array) -> Array:
+            return self.motion[at] @ y + self.push[at] @ w + np.multiply.outer(self.rates[at], share)
+
+        f1 = rate(a, x)
+        f2 = rate(b, x + h / 2.0 * f1)
+        f3 = rate(b, x + h / 2.0 * f2)
+        f4 = rate(c, x + h * f3)
+        after = x + h / 6.0 * (f1 + 2.0 * (f2 + f3) + f4)
+        return (x + after) / 2.0 + h / 8.0 * (f1 - rate(c, after)), after
+
+
+@dataclass(frozen=True, eq=False)
+class Quadratic:
+    """The form in changes of the lengths of arcs, in units of the duration, and then of the continuous controls.
+
+    The latter are normed so that by themselves they would give the unit matrix.
+    """
+
+    arcs: Sequence[Arc]
+    form: Array
+    """Shape (P, P), in units of the cost."""
+    ties: Array
+    """Rows that vanish where the end and the entries are kept, shape (c, P)."""
+    free_time: bool
+
+    def kept(self) -> tuple[Array, Array]:
+        """Units that make all changes comparable, and directions in these in which the ties vanish, as columns."""
+        size, lengths = np.sqrt(np.abs(np.diag(self.form))), len(self.arcs)
+        size[:lengths] = max(size[:lengths].max(), 1e-300)
+        size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
+        rows = self.ties / size
+        return size, kernel(rows / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300))
+
+    def reduced(self) -> tuple[Array, Array]:
+        """The form where the ties vanish, relative to its diagonal, and those directions in units of all changes."""
+        size, free = self.kept()
+        return free.T @ (self.form / size / size[:, None]) @ free, size[:, None] * free
+
+    @property
+    def curvature(self) -> float:
+        """The smallest eigenvalue where the ties vanish, relative; infinite where they fix all."""
+        form = self.reduced()[0]
+        return float(np.linalg.eigvalsh(form).min()) if form.size else float("inf")
+
+    def flat_by_shift(self, flat: float) -> bool:
+        """Whether the form vanishes where all happens later, in that direction and no other.
+
+        Parameters
+        ----------
+        flat
+            Up to which an eigenvalue counts as zero.
+        """
+        form, free = self.reduced()
+        if not form.size:
+            return False
+        later = np.zeros(len(self.form))
+        later[0] = 1.0
+        if not self.free_time:  # what begins with a longer arc ends with a shorter one
+            later[len(self.arcs) - 1] -= 1.0
+        values, axes = np.linalg.eigh(form)
+        direction = free.T @ later
+        along = abs(float(axes[:, 0] @ direction)) / max(float(np.linalg.norm(direction)), 1e-300)
+        return bool(abs(values[0]) <= flat and (values[1:] > flat).all() and along > ALONG)
+
+    def steepest(self) -> tuple[float, Array] | None:
+        """The least eigenvalue, in units of what changes of the controls cost by themselves, and its direction.
+
+        ``None`` where numbers fail, or motions part so quickly that rounding drowns the form.
+        """
+        if not np.abs(np.diag(self.form)).max() * np.finfo(float).eps < DROWNED:
+            return None
+        free = kernel(self.ties / np.maximum(np.abs(self.ties).max(axis=1, keepdims=True, initial=1e-300), 1e-300))
+        if not free.shape[1]:
+            return float("inf"), np.zeros(len(self.form))
+        values, axes = np.linalg.eigh(free.T @ self.form @ free)
+        return float(values[0]), free @ axes[:, 0]
+
+
+def units(solution: Solution, state: Array) -> tuple[Array, float]:
+    """Units of states and, as the last one, of time; and that of the cost.
+
+    Parameters
+    ----------
+    state
+        Typical sizes of the states, shape (n,).
+    """
+    cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
+    return np.append(state, float(solution.times[-1] - solution.times[0])), cost
+
+
+def roots(follow: Array) -> Array:
+    """Square roots of a stack of symmetric matrices that are not negative."""
+    values, axes = np.linalg.eigh((follow + follow.transpose(0, 2, 1)) / 2.0)
+    return np.asarray((axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1))
+
+
+def quadratic(solution: Solution, arcs: Sequence[Arc], state: Array, cost: float) -> Quadratic:
+    """Add up what arcs and the end give.
+
+    Parameters
+    ----------
+    state, cost
+        Units of states and time, shape (n + 1,), and of the cost.
+    """
+    n, lasting, own = len(state), float(state[-1]), len(arcs)
+    total = own + n * sum(arc.pieces for arc in arcs)
+    form, x, ties = np.zeros((total, total)), np.zeros((n, total)), list[Array]()
+    for k, arc in enumerate(arcs):
+        length = np.zeros(total)
+        length[k] = lasting
+        if arc.entered is not None:
+            ties.append(arc.entered @ x)
+        if not arc.lasting:
+            jump = np.outer(arc.rates[0], length)
+            form += np.outer(length, arc.slope[0] @ (x + 0.5 * jump))
+            x = x + jump
+            continue
+        form, x = _added(arc, form, x, length / arc.lasting, own)
+        own += n * arc.pieces
+    duration = np.zeros(total)
+    duration[: len(arcs)] = lasting
+    ties += [*_ended(solution, form, x, duration, state, cost)]
+    return Quadratic(arcs, (form + form.T) / 2.0, np.array(ties).reshape(-1, total), solution.instance.tf is None)
+
+
+def _added(arc: Arc, form: Array, x: Array, share: Array, own: int) -> tuple[Array, Array]:
+    """The form with what an arc adds, and the states at its end, by all changes.
+
+    Parameters
+    ----------
+    share
+        The change of the arc's length, relative to it, by all changes.
+    own
+        The first column of its continuous controls.
+    """
+    (h, per), n = arc.widths, len(x)
+    unit = np.sqrt(2.0 / (h * per)) * np.eye(n)
+
+    def integrand(at: int, y: Array) -> Array:
+        return y.T @ arc.restoring[at] @ y / 2.0 + np.outer(share, arc.slope[at] @ y)
+
+    for k in range((len(arc.motion) - 1) // 2):
+        w, first = np.zeros_like(x), own + n * (k // per)
+        if arc.pieces:
+            w[:, first : first + n] = unit
+            form[first : first + n, first : first + n] += np.eye(n) / per
+        middle, after = arc.stepped(k, x, w, share)
+        form = form + h / 6.0 * (integrand(2 * k, x) + 4.0 * integrand(2 * k + 1, middle) + integrand(2 * k + 2, after))
+        x = after
+    return form, x
+
+
+def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Array, cost: float) -> Array:
+    """Add to the form what the end does, and return the rows that vanish."""
+    instance, n, (tf, end, lam) = solution.instance, len(solution.x), final_values(solution)
+    nu, _ = multipliers(instance, tf, end, lam)
+    table = instance.model.boundary_jacobian(
+        tf, end, lam, nu, instance.parameters, instance.control_set.arguments, final_argument(instance)
+    )
+    slopes = np.array(table).reshape(n + len(nu) + 1, -1)
+    fixed = fixed_states(instance)
+    both = np.concatenate([(state[:, None] * x)[:n], duration[None]])
+    by = np.column_stack([slopes[:, :n], slopes[:, -1]])
+    curved = np.zeros((n + 1, n + 1))
+    curved[:n][~fixed] = -by[:n][~fixed]
+    curved[n, :n], curved[n, n] = curved[:n, n], by[-1, -1]
+    form += both.T @ curved @ both / (2.0 * cost)
+    ties = np.concatenate([by[:n][fixed], by[n:-1]]) @ both
+    return ties if instance.tf is None else np.concatenate([ties, duration[None]])
