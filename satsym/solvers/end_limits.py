@@ -19,7 +19,7 @@ from satsym.instance.ends import Side
 from satsym.solution import Kind, Progress, Solution
 from satsym.solvers import iteration
 from satsym.solvers.certificate.competitors.comparison import summed
-from satsym.solvers.certificate.end_limits import BEYOND, SIGN, beyond, pushes
+from satsym.solvers.certificate.end_limits import BEYOND_LIMIT, SIGN, beyond, pushes
 from satsym.status import BadInput, Status, Verdict
 from satsym.wording import counted
 
@@ -133,7 +133,7 @@ class Trials:
 def changed(solution: Solution) -> dict[str, Side] | None:
     """Other limits that a solution asks for: one that it is beyond, or none that pulls; ``None`` where these do."""
     met = dict(solution.instance.met)
-    violated = {place: by for place, by in beyond(solution).items() if by > BEYOND}
+    violated = {place: by for place, by in beyond(solution).items() if by > BEYOND_LIMIT}
     if violated:
         name, side = max(violated, key=lambda place: violated[place])
         return {**met, name: side}
@@ -145,7 +145,7 @@ def changed(solution: Solution) -> dict[str, Side] | None:
 
 def _inside(solution: Solution) -> bool:
     """Whether it is an answer, all of whose final states are in their ranges."""
-    return solution.status.answered and max(beyond(solution).values(), default=0.0) <= BEYOND
+    return solution.status.answered and max(beyond(solution).values(), default=0.0) <= BEYOND_LIMIT
 
 
 def _found(trials: Trials, met: Met) -> Solution:

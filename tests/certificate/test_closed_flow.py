@@ -9,7 +9,7 @@ import pytest
 
 from satsym import instance, solvers
 from satsym.solution import Solution
-from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
+from satsym.solvers.certificate.reintegration.closed_flow import carried, closed_flow
 from satsym.solvers.certificate.reintegration.flow import Flow, flow, typical
 from satsym.solvers.certificate.reintegration.segments import segments
 
@@ -61,3 +61,12 @@ def test_what_does_not_settle_is_left_to_steps() -> None:
     assert along is not None
     begins = along.begins * 1.3
     assert closed_flow(solution, replace(along, begins=begins, transition=0.9 * along.transition)) is None
+
+
+def test_gaps_are_carried_on_by_the_steps_after_them() -> None:
+    rng = np.random.default_rng(3)
+    transition, gaps = rng.normal(size=(7, 4, 4)), rng.normal(size=(7, 4))
+    now = np.zeros(4)
+    for matrix, gap, found in zip(transition, gaps, carried(transition, gaps), strict=True):
+        now = matrix @ now + gap
+        assert np.abs(found - now).max() < 1e-12 * max(1.0, np.abs(now).max())

@@ -18,10 +18,10 @@ from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED
-from satsym.solvers.certificate.corners import CLEAR, inverses, positive
+from satsym.solvers.certificate.corners import CLEAR_PIVOT, inverses, positive
 from satsym.solvers.certificate.jacobi import TURN, followed
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-from satsym.solvers.certificate.reintegration.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, NEGLIGIBLE, ROUNDED, TOLERANCE
 from satsym.solvers.certificate.reintegration.node_defect import FINE
 from satsym.solvers.certificate.reintegration.segments import TURN as QUARTER
 from satsym.solvers.certificate.reintegration.segments import balanced
@@ -100,7 +100,7 @@ def minima(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
 
 def _along_flow(many: Many, z: Array, cost: Array, sizes: Sizes) -> NDArray[np.bool_]:
     """Whether the flow from the initial costates leads through the nodes to the end, at the cost stated, H constant."""
-    n, faint = many.states, sizes.both(FAINT)
+    n, faint = many.states, sizes.both(FAINT_COSTATE)
     scale = np.concatenate([faint, (faint[:n] * faint[n:]).sum(axis=0)[None]])
     start = np.concatenate([many.initial, z[n:, 0], np.zeros((1, many.count))])
     for parts in PARTS:
@@ -170,7 +170,10 @@ def _flat(many: Many, z: Array) -> tuple[Array, Array, Array, Array, tuple[Array
 def _from_nodes(many: Many, z: Array, sizes: Sizes) -> NDArray[np.bool_]:
     """Whether the canonical equations, begun at each node, lead to the next one."""
     t, start, h, p = many.segments(z)
-    ends, scale = np.ascontiguousarray(z[:, 1:]).reshape(len(z), -1), np.tile(sizes.both(FAINT), len(many.mesh) - 1)
+    ends, scale = (
+        np.ascontiguousarray(z[:, 1:]).reshape(len(z), -1),
+        np.tile(sizes.both(FAINT_COSTATE), len(many.mesh) - 1),
+    )
     for parts in PARTS:
         now, error = np.concatenate([start, np.zeros((1, len(t)))]), np.zeros(len(t))
         for part in range(parts):
@@ -250,7 +253,7 @@ def _phases_clear(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
     found = np.asarray(wrong.max(axis=(0, 1, 2)) <= FOLLOWED * np.abs(whole).max(axis=(0, 1, 2)))
     for k in np.flatnonzero(found):
         phases = followed(whole[..., k].transpose(2, 0, 1))
-        found[k] = phases is not None and bool((phases.values < (1.0 - CLEAR) * TURN).all())
+        found[k] = phases is not None and bool((phases.values < (1.0 - CLEAR_PIVOT) * TURN).all())
     return found
 
 

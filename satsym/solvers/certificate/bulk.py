@@ -20,7 +20,7 @@ from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.conclusion import OF_FLOW, OF_NODES, concluded
 from satsym.solvers.certificate.corners import positive
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
-from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, typical, unit_sizes
 from satsym.solvers.certificate.reintegration.node_defect import Parameters, joined, missed, stretches
 from satsym.solvers.certificate.reintegration.segments import balanced
 from satsym.solvers.certificate.verdict import DEFECT, certify, first_order
@@ -34,7 +34,7 @@ FINER = (1, 2, 4)
 """Into how many parts leaps are taken until their errors are small enough."""
 
 COLUMNS, UNDRIVEN = 6, 4
-"""Of the extrapolation table; for the uncontrolled motion only its size matters."""
+"""How many the extrapolation table has, and for the uncontrolled motion, of which only the size matters."""
 
 SEGMENTS = (16, 20, 25, 40, 50, 64, 80, 100, 125)
 """Numbers of segments of the variational equations that are tried, one after the other."""
@@ -51,7 +51,7 @@ WHOLE = 0.9 * 2.0 * np.pi
 TOGETHER = 4
 """Solutions from whose nodes it is integrated at once."""
 
-SAME = 1e-12
+SAME_TIME = 1e-12
 """Share of the duration by which a node may miss an even one that it is."""
 
 
@@ -100,7 +100,7 @@ def _alike(one: Instance, other: Instance) -> bool:
 def _places(solution: Solution) -> NDArray[np.intp] | None:
     """Where the even nodes are among those of a solution; ``None`` where some are not."""
     times, steps = solution.times, solution.instance.solver.steps
-    even, slack = np.linspace(times[0], times[-1], steps + 1), SAME * float(times[-1] - times[0])
+    even, slack = np.linspace(times[0], times[-1], steps + 1), SAME_TIME * float(times[-1] - times[0])
     found = np.minimum(np.searchsorted(times, even - slack), len(times) - 1)
     return found if (np.abs(times[found] - even) <= slack).all() else None
 
@@ -118,13 +118,13 @@ class _Together:
     instance: Instance
     """The first; what all share is taken from it."""
     parameters: tuple[Array, ...]
-    """Of each, shapes (M,)."""
+    """The model's parameters of each solution, shapes (M,)."""
     start: Array
     """Initial states and costates, shape (2n, M)."""
     sizes: Array
     """To which errors of these are held, shape (2n, M)."""
     times: Array
-    """Of the even nodes, shape (M, N+1)."""
+    """Times of the even nodes, shape (M, N+1)."""
     nodes: Array
     """States and costates there, shape (2n, M, N+1)."""
 
@@ -137,7 +137,7 @@ class _Together:
             solutions[0].instance,
             tuple(np.array([s.instance.parameters for s in solutions]).T.copy()),
             np.array([[*s.instance.initial, *s.lam[:, 0]] for s in solutions]).T.copy(),
-            np.array([np.concatenate(typical(s, FAINT)) for s in solutions]).T.copy(),
+            np.array([np.concatenate(typical(s, FAINT_COSTATE)) for s in solutions]).T.copy(),
             np.array([s.times[k] for s, k in both]),
             np.array([np.concatenate([s.x[:, k], s.lam[:, k]]) for s, k in both]).transpose(1, 0, 2).copy(),
         )

@@ -8,7 +8,7 @@ from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
 from satsym.solvers.certificate.reintegration.flow import (
-    FAINT,
+    FAINT_COSTATE,
     NEGLIGIBLE,
     Flow,
     costing,
@@ -86,7 +86,7 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
     again = np.append(False, np.diff(solution.times) == 0.0)  # the second of two nodes at one time: after a jump
     here[again] = np.searchsorted(flow.times, flow.times[here[again]], side="right") - 1
     same = np.abs(flow.times[here] - solution.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
-    state, costate = typical(solution, FAINT)
+    state, costate = typical(solution, FAINT_COSTATE)
     parts = [
         (np.abs(mine[:, here[same]] - theirs[:, same]).max(axis=1) / size).max()
         for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
@@ -129,7 +129,7 @@ def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
     terms = (np.abs(flow.lam) * rates).sum(axis=0).max()
     unit, n = unit_sizes(solution), len(solution.x)
     slowest = NEGLIGIBLE * unit[:n] / float(solution.times[-1] - solution.times[0])
-    faint = FAINT * unit[n:] @ np.maximum(np.broadcast_to(rates, flow.x.shape).max(axis=1), slowest)
+    faint = FAINT_COSTATE * unit[n:] @ np.maximum(np.broadcast_to(rates, flow.x.shape).max(axis=1), slowest)
     return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), faint, 1e-300))
 
 
@@ -210,7 +210,7 @@ def correction(solution: Solution, along: Segments, reached: Flow) -> float:
         moved, _ = matching.correction(gaps[:, 1:].T, np.zeros(size // 2), finish)
     except np.linalg.LinAlgError:
         return float("inf")
-    sizes = np.concatenate(typical(solution, FAINT))
+    sizes = np.concatenate(typical(solution, FAINT_COSTATE))
     return float((np.abs(moved.T * scale) / sizes[:, None]).max())
 
 

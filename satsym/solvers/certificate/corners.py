@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 
-CLEAR = 1e-3
+CLEAR_PIVOT = 1e-3
 """Least pivot of what the nodes before one leave of the second derivatives there, in units of the square roots of
 these, that is positive beyond doubt."""
 
 
 def inverses(matrices: Array) -> Array:
-    """Of a stack; without numbers where one is singular."""
+    """Inverses of a stack of matrices; without numbers where one is singular."""
     try:
         return np.asarray(np.linalg.inv(matrices))
     except np.linalg.LinAlgError:
@@ -54,7 +54,7 @@ def positive(transition: Array, inverse: Array | None = None) -> NDArray[np.bool
     left = scaled[0] if len(scaled) else np.ones((0, 0, len(clear)))
     for k in range(len(scaled)):
         pivots, taken = _eliminated(left, across[k] if k + 1 < len(scaled) else left[:, :0])
-        clear &= (pivots > CLEAR).all(axis=0)
+        clear &= (pivots > CLEAR_PIVOT).all(axis=0)
         if k + 1 < len(scaled):
             left = scaled[k + 1] - taken
     return clear

@@ -22,7 +22,7 @@ from satsym.solvers.certificate.end_form import final_values, multipliers
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.status import Verdict
 
-BEYOND = 1e-9
+BEYOND_LIMIT = 1e-9
 """Largest distance beyond a limit, relative to what is limited, that is none."""
 
 SIGN, STRICT = 1e-9, 1e-7
@@ -54,7 +54,7 @@ class _Inequality:
     by_state: Array
     by_time: float
     size: float
-    """Of its terms."""
+    """The size of its terms."""
     on_time: float
     """What its multiplier adds to the transversality of the final time."""
 
@@ -136,7 +136,7 @@ def with_limits(certificate: Certificate, solution: Solution) -> Certificate:
         return certificate
     pressing = min(pushes(solution).values(), default=np.inf)
     first = [
-        Check("limit of the end violated", max([0.0, *beyond(solution).values()]), BEYOND),
+        Check("limit of the end violated", max([0.0, *beyond(solution).values()]), BEYOND_LIMIT),
         Check("negative multiplier of a limit of the end", max(0.0, -pressing), SIGN),
     ]
     second = [Check("multiplier of a limit of the end vanishes", float(not pressing > STRICT), 0.0)]

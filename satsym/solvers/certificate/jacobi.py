@@ -40,11 +40,11 @@ INDEPENDENT = 1e-9
 MIXTURES = (0.4, 1.0, 2.1)
 """Angles at which real and imaginary parts are mixed."""
 
-APART = 1e-10
+OFF_DIAGONAL = 1e-10
 """Beside the diagonal where the eigenvectors of a mixture are those of both parts: phases are off by its square."""
 
 PARTS, ROUNDS = 16, 6
-"""Of a step in which a conjugate time is looked for, and how often it is taken apart."""
+"""Into how many a step is taken apart in which a conjugate time is looked for, and how often."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ def _angles(frames: Array) -> Array:
     cosine, sine = ((axes * part).sum(axis=1) for part in turned)
     angles = np.arctan2(sine, cosine)
     off = (np.abs(part - axes * own[:, None]) for part, own in zip(turned, (cosine, sine), strict=True))
-    mixed = np.flatnonzero(~(np.maximum(*off).max(axis=(1, 2)) <= APART))
+    mixed = np.flatnonzero(~(np.maximum(*off).max(axis=(1, 2)) <= OFF_DIAGONAL))
     if len(mixed):
         angles[mixed] = np.angle(np.linalg.eigvals(real[mixed] + 1j * imaginary[mixed]))
     found: Array = np.sort(angles % TURN, axis=1)

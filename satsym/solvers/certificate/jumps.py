@@ -15,7 +15,7 @@ CROSSED = 1e-9
 LOOKED_AT, GRID = 9, 201
 """Times within a solution and values of a control at which other minimisers of H are looked for."""
 
-EQUAL, APART = 1e-9, 1e-3
+EQUAL, OTHER_CONTROL = 1e-9, 1e-3
 """Share of H's range by which one may be worse that is as good, and of the control's by which it is another one."""
 
 
@@ -66,6 +66,6 @@ def _tied(solution: Solution, node: int) -> bool:
             if variable.kind == "angle":
                 distance = abs(np.remainder(other.x - u[k] + np.pi, 2.0 * np.pi) - np.pi)
             best = min(other.fun, values[at])
-            if distance > APART * (high - low) and best - h(u[k]) <= EQUAL * np.ptp(values):
+            if distance > OTHER_CONTROL * (high - low) and best - h(u[k]) <= EQUAL * np.ptp(values):
                 return True
     return False

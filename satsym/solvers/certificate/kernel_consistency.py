@@ -20,12 +20,12 @@ from satsym.solvers.control.slopes import slope
 from satsym.status import Verdict
 
 NODES = 4
-"""Of a solution at which its kernels are looked at, once with its own and twice with narrow bounds."""
+"""At how many nodes kernels are looked at, once with its own and twice with narrow bounds."""
 
-ASIDE = 1e-3
+ASIDE_OF_NODES = 1e-3
 """How far aside of the nodes, relative to the largest value of each component."""
 
-FAINT = 1e-20
+FAINT_COMPONENT = 1e-20
 """Share of the largest component below which another is none but rounding."""
 
 WIDE, NARROW = 1e3, 0.5
@@ -49,8 +49,8 @@ def _places(solution: Solution) -> dict[str, Any]:
     columns = len(chosen)
 
     def aside(values: Array, unit: Array) -> Array:
-        unit = np.where(unit > FAINT * unit.max(initial=0.0), unit, 0.0)
-        return values + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(unit), columns))
+        unit = np.where(unit > FAINT_COMPONENT * unit.max(initial=0.0), unit, 0.0)
+        return values + ASIDE_OF_NODES * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(unit), columns))
 
     def near(table: Array, unit: Array | None = None) -> Array:
         return aside(table[:, chosen], np.abs(table).max(axis=-1, keepdims=True) if unit is None else unit)
@@ -103,7 +103,7 @@ def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
 
 
 def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
-    """The same where the control set is a product of sets; what regularises is as large as slopes of H are."""
+    """Bounds where the control set is a product of sets; what regularises is as large as slopes of H are."""
     u, spec, found = at["u"], instance.model.spec, list[Array]()
     owned = np.arange(u.shape[-1]) < NODES
     for places, part in instance.control_set.parts:

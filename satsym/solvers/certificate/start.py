@@ -38,7 +38,7 @@ class Slope:
 
     value: float
     size: float
-    """Of the terms that it consists of."""
+    """The size of the terms that it consists of."""
 
     @property
     def relative(self) -> float:
@@ -85,7 +85,7 @@ def _along(solution: Solution, index: int) -> tuple[float, float]:
     moved = _stepped(p, index)
 
     def terms(*at: Array) -> Array:
-        """Those of H_p: each costate times the slope of a rate, and the slope of the running cost."""
+        """Terms of H_p: each costate times the slope of a rate, and the slope of the running cost."""
         found = np.zeros((len(x) + 1, len(at[0])))
         found[:-1] = at[3] * np.imag(model.dynamics_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
         found[-1] = np.imag(model.running_cost_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
@@ -125,7 +125,7 @@ def _stepped(parameters: tuple[float, ...], index: int) -> tuple[Any, ...]:
 
 @dataclass(frozen=True)
 class Curvature:
-    """Of the minimum cost in what is free."""
+    """How the minimum cost is curved in what is free."""
 
     smallest: float
     """Relative; NaN where it was not resolved."""
@@ -161,5 +161,5 @@ def with_start(certificate: Certificate, solution: Solution, sufficient: Sequenc
 
 
 def settled(solution: Solution) -> Solution:
-    """The same, of an instance with everything given as it was found."""
+    """A solution as one of the instance in which everything is given as it was found."""
     return replace(solution, instance=replace(solution.instance, free=()))

@@ -20,7 +20,7 @@ from satsym.solvers.batch.switching.arrivals import Arrivals, stated
 from satsym.solvers.certificate.jacobi import INDEPENDENT
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import NEGLIGIBLE, TOLERANCE
-from satsym.solvers.certificate.switching.conditions import CLOSE, CURVED, DRIFT, RESIDUAL, STRICT, TIMES
+from satsym.solvers.certificate.switching.conditions import CLOSE_TO_SWITCH, CURVED, DRIFT, RESIDUAL, STRICT, TIMES
 from satsym.solvers.certificate.switching.end_switches import AT_SWITCH
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Status, Verdict
@@ -199,7 +199,7 @@ def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
         fine &= (strict | ~which).all(axis=0)
         gaps = np.minimum(gaps, np.where(which, edge - last, np.inf).min(axis=0))
         last = np.where(which, edge, last)
-        away &= ~which | (np.abs(t - edge)[:, :, None] > CLOSE * lasting)
+        away &= ~which | (np.abs(t - edge)[:, :, None] > CLOSE_TO_SWITCH * lasting)
     gaps = np.minimum(gaps, (flow.begins[0] + lasting - last).min(axis=0))
     for t, z in ((flow.begins[0], flow.values[0]), (flow.begins[-1] + flow.lengths[-1], flow.values[-1])):
         beside = np.abs(many.model.switching_function_batch(t, z[:n], z[n : 2 * n], p)) * (high - low)

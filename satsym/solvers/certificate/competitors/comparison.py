@@ -24,7 +24,7 @@ SAME_COST = 1e-9
 UNCOMPARED = "compared with nothing: no competitor was solved"
 """The check that fails where that is so."""
 
-LARGEST = 1e300
+LARGEST_MARGIN = 1e300
 """Beyond this no margin is: one that is infinite has nothing to compare."""
 
 
@@ -43,7 +43,7 @@ class Compared:
 
     @property
     def checks(self) -> list[Check]:
-        """That none is cheaper, if one has a cost, and that there was time for all."""
+        """Checks that no competitor is cheaper, if one has a cost, and that there was time for all."""
         cheaper = Check(f"cheaper by: {self.summary.kind.value}", max(0.0, -self.margin), COST_MARGIN)
         late = Check(f"time was up before: {self.summary.kind.value}", 1.0, 0.0)
         return [*([cheaper] if math.isfinite(self.margin) else []), *([late] if self.interrupted else [])]
@@ -61,9 +61,9 @@ class Comparison:
     """All kinds that a problem allows."""
 
     kinds: tuple[Compared, ...] = ()
-    """Those that were compared."""
+    """What was compared, kind by kind."""
     not_checked: tuple[Kind, ...] = ()
-    """Those that nobody tried, of which nothing was solved, or for which time was up."""
+    """Kinds that nobody tried, of which nothing was solved, or for which time was up."""
     better: Solution | None = None
     """A cheaper extremal that is exact."""
     proved: tuple[Check, ...] = ()
@@ -76,7 +76,7 @@ class Comparison:
 
     @property
     def checks(self) -> list[Check]:
-        """Those of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
+        """Checks of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
         none = not any(kind.summary.solved or kind.interrupted or kind.enough for kind in self.kinds)
         found = [*self.proved, *(check for kind in self.kinds for check in kind.checks)]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
@@ -116,5 +116,5 @@ def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 
     """
     if not np.isfinite(competitor):
         return float("inf")
-    margin = float(np.clip((competitor - cost) / max(abs(cost), 1e-300), -LARGEST, LARGEST))
+    margin = float(np.clip((competitor - cost) / max(abs(cost), 1e-300), -LARGEST_MARGIN, LARGEST_MARGIN))
     return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

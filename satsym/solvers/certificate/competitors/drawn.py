@@ -28,7 +28,7 @@ from satsym.solvers.switching.linear.linear_motion import linear_motion
 GROUPS, DRAWN, WAVES = 8, 96, 4
 """Groups of controls, apart lest all gather in the basin of the solution; controls of each, and harmonics."""
 
-SMALLEST, LARGEST = 0.5, 60.0
+SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE = 0.5, 60.0
 """Amplitudes of the groups, in sizes of a control."""
 
 ROUNDS, ELITE = 4, 6
@@ -38,7 +38,7 @@ LONGER = 0.7
 """Size of the logarithms by which durations that are chosen are multiplied."""
 
 STEPS = 48
-"""Of each motion that is drawn."""
+"""How many each motion that is drawn has."""
 
 CERTAIN = 0.1
 """Share of what a control saves by which twice as many steps may make it cost something else."""
@@ -60,7 +60,7 @@ class Drawn:
 
     simulations: Simulations
     grid: Grid
-    """Of its own duration, where that is chosen."""
+    """As long as the motion, whose duration may be chosen."""
     control: Array
     """At nodes and midpoints, shape (m, 2 N + 1)."""
     stated: Array
@@ -108,13 +108,13 @@ def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
 
 
 def _cheapest_change(solution: Solution, seed: int) -> tuple[Array, float]:
-    """Of those drawn in all rounds, shares (m, WAVES) of waves that cost least when added, and how much later the end.
+    """Draw in rounds: shares (m, WAVES) of waves that cost least when added, and how much later the cheapest ends.
 
     What is drawn are these and the logarithm of the duration over the solution's.
     """
     rng, m = np.random.default_rng(seed), len(solution.u)
     sizes = np.repeat(np.maximum(np.abs(solution.u).max(axis=1), natural(solution)), WAVES)
-    far = np.geomspace(SMALLEST, LARGEST, GROUPS)[:, None, None] * np.append(sizes, 0.0)
+    far = np.geomspace(SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE, GROUPS)[:, None, None] * np.append(sizes, 0.0)
     far[1::2, :, -1] = LONGER if solution.instance.tf is None else 0.0  # the other groups keep the duration
     drawn = far * rng.normal(size=(GROUPS, DRAWN, m * WAVES + 1))
     costs = _costs(solution, drawn)

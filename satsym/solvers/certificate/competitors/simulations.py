@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +33,9 @@ class Simulations:
     scale: Array
     """Sizes of these."""
     steps: int
-    """Of each simulation."""
+    """How many steps each simulation takes."""
     end: float
     """The final time."""
-    own: tuple[Array, float] = (np.zeros((0, 0)), 0.0)
-    """States at the nodes and the integral of the running cost under the solution's own control."""
-    missed: float = 0.0
-    """Relative distance of the end to which that leads from the solution's."""
 
     def grid(self, longer: float = 0.0) -> Grid:
         """To a final time that much later."""
@@ -47,11 +43,8 @@ class Simulations:
 
     def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
         """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
-        return self.measured(*self.motion(control, grid), grid)
-
-    def measured(self, x: Array, running: float, grid: Grid) -> tuple[float, Array]:
-        """The same of a motion."""
-        instance, end = self.instance, tuple(x[:, -1].tolist())
+        instance, (x, running) = self.instance, self.motion(control, grid)
+        end = tuple(x[:, -1].tolist())
         terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
         none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
         if instance.model.spec.throttled:
@@ -78,10 +71,9 @@ def simulations_of(solution: Solution) -> Simulations | None:
     for steps, limit in STEPS:
         found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
         grid = found.grid()
-        own = found.motion(stated_control(solution, grid), grid)
-        missed = float((np.abs(own[0][:, -1] - solution.x[:, -1]) / size).max())
-        if missed < limit:
-            return replace(found, own=own, missed=missed)
+        own, _ = found.motion(stated_control(solution, grid), grid)
+        if float((np.abs(own[:, -1] - solution.x[:, -1]) / size).max()) < limit:
+            return found
     return None
 
 

@@ -26,7 +26,7 @@ from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.constrained.variants import near
-from satsym.solvers.certificate.reintegration.flow import FAINT, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, typical
 from satsym.solvers.constrained.active import control, deciding, multipliers
 from satsym.solvers.constrained.arcs import holds_control, sizes, values
 from satsym.solvers.constrained.convexity import convex
@@ -179,11 +179,11 @@ def more_at_end(solution: Solution, again: Replay) -> float:
 def _defect(solution: Solution, again: Replay) -> float:
     """Largest distance of the solver's states and costates from the flow, relative to the size of each."""
     mine = np.concatenate([solution.x, solution.lam])
-    return float((np.abs(mine - again.z).max(axis=1) / np.concatenate(typical(solution, FAINT))).max())
+    return float((np.abs(mine - again.z).max(axis=1) / np.concatenate(typical(solution, FAINT_COSTATE))).max())
 
 
 def _sizes(solution: Solution, again: Replay) -> Array:
-    """Of each constraint along the way."""
+    """Sizes of the constraints along the way."""
     return np.asarray(np.max([sizes(solution.instance, *_controls(solution, p)) for p in again.pieces], axis=0))
 
 

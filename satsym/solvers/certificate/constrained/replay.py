@@ -15,7 +15,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
-from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, typical
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import conditions, gradient
@@ -62,7 +62,7 @@ class Replay:
     z: Array
     """At the solution's nodes, shape (2n, N)."""
     cost: float
-    """Of the whole motion, the terminal cost included."""
+    """What the whole motion costs, its end included."""
     end: Array
     """States and costates at the end, the latter after a jump there."""
     gap: float = 0.0
@@ -95,7 +95,7 @@ def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
     if len(breaks) != len(within(solution)):
         return None
     edges = [0, *(breaks + 1).tolist(), len(solution.times)]
-    sizes, known = np.concatenate(typical(solution, FAINT)), np.concatenate([solution.x, solution.lam])
+    sizes, known = np.concatenate(typical(solution, FAINT_COSTATE)), np.concatenate([solution.x, solution.lam])
     value, cost, pieces, jumps, off, gap = known[:, 0], 0.0, [], [], 0.0, 0.0
     try:
         for k, active in enumerate(arcs):

@@ -15,7 +15,7 @@ from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
-SHORT = 0.02
+SHORT_ARC = 0.02
 """Share of the duration by which an arc begins before, and ends after, the touch point that it replaces."""
 
 WORK = 20_000
@@ -69,7 +69,7 @@ def _variants(solution: Solution) -> Iterator[Structure]:
         others = [*known[:k], *known[k + 1 :]]
         yield ordered(others)
         if one.touches and not one.closes:
-            half = min(SHORT * lasting, one.start - solution.times[0], solution.times[-1] - one.start) / 2
+            half = min(SHORT_ARC * lasting, one.start - solution.times[0], solution.times[-1] - one.start) / 2
             yield ordered([*others, replace(one, start=one.start - half, end=one.end + half)])
         if not one.touches and spec[one.constraint].order > 1 and not (one.opens or one.closes):
             yield ordered([*others, Contact(one.constraint, one.middle, one.middle)])

@@ -12,9 +12,9 @@ from itertools import islice
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.lapack import lapack
 from satsym.solution import Solution
-from satsym.solvers.certificate.reintegration.chain import Chain
-from satsym.solvers.certificate.reintegration.flow import FAINT, TOLERANCE, Flow, costing, sizes, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, costing, sizes, typical
 from satsym.solvers.certificate.reintegration.segments import Segments
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leaps
@@ -22,7 +22,7 @@ from satsym.solvers.simulation.extrapolation import leaps
 FEWEST = 5
 """Columns of the extrapolation table, at least."""
 
-SETTLED = 1e-11
+SETTLED_CORRECTION = 1e-11
 """Relative correction of stations whose square is nothing, and that changes the cost by nothing that is checked."""
 
 ROUNDS = 3
@@ -41,7 +41,7 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
     last = np.concatenate([solution.x[:, -1:], solution.lam[:, -1:]])
     z = np.concatenate([along.begins, last], axis=1)
     z[:n, 0] = solution.instance.initial
-    faint, size = np.concatenate(typical(solution, FAINT))[:, None], sizes(solution)[:, None]
+    faint, size = np.concatenate(typical(solution, FAINT_COSTATE))[:, None], sizes(solution)[:, None]
     rates, scale = costing(solution), np.append(size, size[:n].T @ size[n:], axis=0)
     for _ in range(ROUNDS):
         start = np.append(z[:, :-1], np.zeros((1, len(widths))), axis=0)
@@ -55,7 +55,7 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
             return None
         moved = _moved(along, ends[:-1] - z[:, 1:])
         z[:, 1:] += moved
-        if (np.abs(moved) <= SETTLED * faint).all():
+        if (np.abs(moved) <= SETTLED_CORRECTION * faint).all():
             end = tuple(z[:n, -1].tolist())
             terminal = solution.instance.model.terminal_cost(float(times[-1]), end, solution.instance.parameters)
             return Flow(times, z[:n], z[n:], float(ends[-1].sum()) + float(terminal))
@@ -64,5 +64,22 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
 
 def _moved(along: Segments, gaps: Array) -> Array:
     """By how much stations but the first move for the motion from each to end at the next, shape (2n, K-1)."""
-    carried = Chain(along.transition).carried((gaps / along.scale[:, None]).T[:, :, None])
-    return np.asarray(carried[:, :, 0].T * along.scale[:, None])
+    return carried(along.transition, (gaps / along.scale[:, None]).T).T * along.scale[:, None]
+
+
+def carried(transition: Array, gaps: Array) -> Array:
+    """Sums of gaps up to each station but the first, each carried on by the steps after it, shape (K, s).
+
+    Parameters
+    ----------
+    transition
+        From each station to the next, shape (K, s, s).
+    gaps
+        At the ends of the steps, shape (K, s).
+    """
+    count, size = transition.shape[:2]
+    band = np.zeros((count, size, 2 * size))  # below the diagonal, column by column, as LAPACK has it
+    for k in range(size):
+        np.negative(transition[1:, :, k], out=band[:-1, k, size - k : 2 * size - k])
+    found, _ = lapack().dtbtrs(band.reshape(-1, 2 * size).T, gaps.reshape(-1, 1), uplo="L", diag="U")
+    return np.asarray(found.reshape(gaps.shape))

@@ -36,11 +36,11 @@ NEGLIGIBLE = 1e-3
 ROUNDED = 1e-13
 """Share of its unit up to which a costate may be made of rounding."""
 
-SMALL, FAINT = 1e-4, 1e-6
+SMALL_COSTATE, FAINT_COSTATE = 1e-4, 1e-6
 """Share of its unit at which a smaller costate counts: states are rounded, and with them what a costate must be at
 the end; the flow from the initial costates is not, but that it depends on the states."""
 
-APART = 1e-15
+BREAK_WIDTH = 1e-15
 """Share of the time between the last instant before a break of a schedule and the first one after it, at most."""
 
 STATIONS = 64
@@ -57,7 +57,7 @@ class Flow:
     lam: Array
     """States and costates there, shapes (n, K)."""
     cost: float
-    """Of the whole motion, the terminal cost included."""
+    """What the whole motion costs, its end included."""
 
 
 def flow(solution: Solution) -> Flow | None:
@@ -85,7 +85,7 @@ def flow(solution: Solution) -> Flow | None:
     found = [values]
     try:
         for held, part in _parts(solution, stations):
-            beside_breaks = np.flatnonzero(np.diff(part) <= APART * np.abs(part).max()) + 1
+            beside_breaks = np.flatnonzero(np.diff(part) <= BREAK_WIDTH * np.abs(part).max()) + 1
             for number, unbroken in enumerate(np.split(part, beside_breaks)):
                 found += [found[-1]] if number else []
                 if len(unbroken) > 1:
@@ -116,7 +116,11 @@ def undriven(solution: Solution) -> Array | None:
     """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
     instance, model = solution.instance, solution.instance.model
     none, p, size = (0.0,) * len(model.spec.controls), instance.parameters, typical(solution)[0]
-    ends = [idle_end(solution, steps) for steps in IDLE_STEPS]
+    start, tf = solution.times[[0, -1]]
+    grids = [np.linspace(start, tf, steps + 1) for steps in IDLE_STEPS]
+    rest = [np.zeros((len(none), len(nodes))) for nodes in grids]
+    moved = [model.forward(t, instance.initial, u, u[:, 1:], p)[0] for t, u in zip(grids, rest, strict=True)]
+    ends = [x[:, -1] for x in moved]
     coarse, fine = (np.abs(end - solution.x[:, -1]) / size for end in ends)
     if (np.abs(fine - coarse) <= IDLE_ERROR * fine.max()).all():
         return ends[-1]
@@ -129,17 +133,6 @@ def undriven(solution: Solution) -> Array | None:
         return integrate(rates, times, np.array(instance.initial), ROUGHLY, size)[0].end
     except FAILURES:
         return None
-
-
-@lru_cache(maxsize=16)
-def idle_end(solution: Solution, steps: int) -> Array:
-    """The same by so many steps of RK4, whether accurate or not."""
-    instance, model = solution.instance, solution.instance.model
-    nodes = np.linspace(solution.times[0], solution.times[-1], steps + 1)
-    idle = np.zeros((len(model.spec.controls), steps + 1))
-    found: Array = model.forward(nodes, instance.initial, idle, idle[:, 1:], instance.parameters)[0][:, -1]
-    found.flags.writeable = False  # what several conditions ask for is computed once
-    return found
 
 
 def costing(solution: Solution) -> Callable[[Array, Array], Array]:
@@ -160,7 +153,7 @@ def costing(solution: Solution) -> Callable[[Array, Array], Array]:
 
 def sizes(solution: Solution) -> Array:
     """To which errors of steps are held, shape (2n,)."""
-    return np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
+    return np.maximum(np.concatenate(typical(solution, FAINT_COSTATE)), _resolved(solution) / STATIONS)
 
 
 def _resolved(solution: Solution) -> Array:
@@ -180,7 +173,7 @@ def _resolved(solution: Solution) -> Array:
 
 @lru_cache(maxsize=256)
 def unit_sizes(solution: Solution) -> Array:
-    """Of states and costates, those of the scaled problem, shape (2n,)."""
+    """Units of states and costates, those of the scaled problem, shape (2n,)."""
     found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
     found.flags.writeable = False  # what several conditions ask for is computed once
     return found
@@ -200,7 +193,7 @@ def products(solution: Solution) -> float:
     return float(state @ costate)
 
 
-def typical(solution: Solution, faint: float = SMALL) -> tuple[Array, Array]:
+def typical(solution: Solution, faint: float = SMALL_COSTATE) -> tuple[Array, Array]:
     """Sizes to which errors of states and costates are held, shapes (n,).
 
     Each its largest magnitude along the way, but what is far below its unit counts as a share of that: states are

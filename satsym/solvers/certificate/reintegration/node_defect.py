@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.reintegration.flow import FAINT, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, typical
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap, leap_and_error
 
 FINE = 1e-10
@@ -28,7 +28,7 @@ MOST_PARTS = 256
 """Into which what lies between two nodes is taken where that does not suffice."""
 
 Parameters = tuple[Any, ...]
-"""Of a model, each a number, or an array with one for each column."""
+"""What a model is given, each a number, or an array with one for each column."""
 Rates = Callable[[Array, Array, Parameters], Array]
 
 
@@ -45,7 +45,7 @@ class Stretches:
     sizes: Array
     """To which errors of these are held, shape (2n, K)."""
     parameters: Parameters
-    """Of the model."""
+    """What the model is given."""
 
     def only(self, chosen: NDArray[np.intp]) -> Stretches:
         """Some of them."""
@@ -103,14 +103,14 @@ def node_defect(solution: Solution) -> float:
 
 def stretches(solution: Solution) -> Stretches:
     """What lies between the nodes of a solution."""
-    z, sizes = np.concatenate([solution.x, solution.lam]), np.concatenate(typical(solution, FAINT))
+    z, sizes = np.concatenate([solution.x, solution.lam]), np.concatenate(typical(solution, FAINT_COSTATE))
     columns = np.repeat(sizes[:, None], len(solution.times) - 1, axis=1)
     begins, lasting = solution.times[:-1], np.diff(solution.times)
     return Stretches(begins, lasting, z[:, :-1], z[:, 1:], columns, solution.instance.parameters)
 
 
 def joined(parts: Sequence[Stretches]) -> Stretches:
-    """Those of several solutions, one after the other."""
+    """Put the stretches of several solutions one after the other."""
     table = np.concatenate([np.repeat([one.parameters], len(one.begins), axis=0) for one in parts])
     begins, lasting, start, end, sizes = (
         np.concatenate([getattr(one, name) for one in parts], axis=-1)

@@ -14,7 +14,7 @@ from satsym.solvers.control.jumps import Jump, Saltation, jumps, saltation
 LEFT = 1e-6
 """Share of the largest control by which it jumps."""
 
-CLOSE = 1e-8
+CLOSE_NODES = 1e-8
 """Share of the duration within which the nodes on both sides of a jump that is located lie."""
 
 
@@ -56,7 +56,7 @@ def passages(solution: Solution) -> tuple[Passage, ...]:
     found = []
     for jump in jumps(law, t, LEFT):
         node = int(np.searchsorted(t, jump.time)) - 1
-        near = CLOSE * float(t[-1] - t[0])
+        near = CLOSE_NODES * float(t[-1] - t[0])
         last = bool(t[-1] - jump.time <= near)
         found.append(Passage(jump, node, last or bool(t[node + 1] - t[node] <= near), last))
     return tuple(found)

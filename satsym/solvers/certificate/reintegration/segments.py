@@ -20,7 +20,7 @@ from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap_varied
 FEWEST = 64
 """Segments."""
 
-MOST = 20_000
+MOST_STEPS = 20_000
 """Steps: neighbouring extremals that turn about each other more often are not followed."""
 
 TURN = np.pi / 2.0
@@ -28,17 +28,17 @@ TURN = np.pi / 2.0
 that it is known from where it begins and ends."""
 
 FRACTION = 0.75
-"""Of the largest turn, that segments between nodes are to have."""
+"""Share of the largest turn that segments between nodes are to have."""
 
 COLUMNS, ACCURATE = (3, 5), 3e-7
-"""Of the extrapolation table, for transitions: the fewer where they differ by no more than that from those of the next
-lower order, whose error is hundreds of times their own; but not where bounds make corners, of which such differences
-say little. Errors of phases matter only where they are a full turn."""
+"""How many the extrapolation table has for transitions: the fewer where they differ by no more than that from those of
+the next lower order, whose error is hundreds of times their own; but not where bounds make corners, of which such
+differences say little. Errors of phases matter only where they are a full turn."""
 
 PLACES = 2048
 """At which derivatives are known at a time: few enough to stay in memory that is at hand."""
 
-BEYOND = 1e16
+LOST_DIGITS = 1e16
 """Growth at which nothing is left of a number's digits."""
 
 SWEEPS, STEADY = 12, 1e-2
@@ -72,20 +72,20 @@ class Segments:
         for matrix in self.transition:
             total = matrix @ total
             found = max(found, float(np.abs(total).max()))
-            if not found < BEYOND:
+            if not found < LOST_DIGITS:
                 return float("inf")
         return found
 
 
 def segments(solution: Solution) -> Segments | None:
-    """Integrate from node to node; ``None`` where that is not finite or takes more than ``MOST`` steps."""
+    """Integrate from node to node; ``None`` where that is not finite or takes more than ``MOST_STEPS`` steps."""
     times, z = solution.times, values(solution)
     slopes = _slopes(solution, times, z)
     if not np.isfinite(slopes).all():
         return None
     for scale in _scales(solution, slopes):
         turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
-        if turned[-1] <= MOST * TURN:
+        if turned[-1] <= MOST_STEPS * TURN:
             break
     else:
         return None

@@ -30,11 +30,11 @@ RESIDUAL, DEFECT, STATIONARY, COST = 1e-9, 1e-7, 1e-8, 1e-8
 NARROW = 1e-3
 """Largest width of the cost interval, relative to the cost."""
 
-SAME = 1e-2
+SAME_WIDTH = 1e-2
 """By this share of its width the lower end of the interval may be off."""
 
 PARTS = 8
-"""Of a step between nodes: what H exceeds its minimum by is tiny beside states, and has corners of its own."""
+"""How many a step between nodes is taken in: what H exceeds its minimum by is tiny, and has corners of its own."""
 
 
 def certify(solution: Solution, interval: CostInterval) -> Certificate:
@@ -54,7 +54,7 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
         Check("correction of the nodes", conditions.correction(smooth, along, reached), DEFECT),
         Check(STATIONARITY, _off_law(smooth), STATIONARY),
         Check("cost", abs(cost - solution.objective) / size, COST),
-        Check("cost interval too narrow", max(interval.lower - (cost - gap), 0.0), SAME * width),
+        Check("cost interval too narrow", max(interval.lower - (cost - gap), 0.0), SAME_WIDTH * width),
         Check("domain violation", float(not solution.instance.model.in_domain(reached.x)), 0.0),
     ]
     proved = convex(solution)
@@ -67,7 +67,7 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
 
 
 def _smooth(solution: Solution, interval: CostInterval) -> Solution:
-    """The same as a solution of the regularised problem, with the times at which bounds are met and left."""
+    """A motion as a solution of the regularised problem, with the times at which bounds are met and left."""
     instance, t = solution.instance, solution.times
     low, high = instance.control_set.box
     changes = np.diff((solution.u >= high).astype(int) - (solution.u <= low), axis=1) != 0

@@ -36,7 +36,7 @@ STRICT = 1e-6
 """Least rate of a switching function at a switch, relative to its size over the duration; least distance between
 switches and least distance of a switching function from its zero elsewhere, relative as well."""
 
-CLOSE = 0.01
+CLOSE_TO_SWITCH = 0.01
 """Share of the duration around a switch within which a switching function may be as small as it likes."""
 
 CURVED = 1e-7
@@ -72,7 +72,7 @@ def certify(
 
 
 def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
-    """The same where one flow loses its digits: part by part, without gaps; ``None`` where that fails as well."""
+    """Replay part by part, without gaps, where one flow loses its digits; ``None`` where that fails as well."""
     try:
         again = replay(solution, limits, closely=True)
     except (TooMuchWork, OutOfTime):
@@ -166,7 +166,7 @@ def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
         for piece in again.pieces:
             own = extended.switching_times(control)
             away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
-            here = (times >= piece.start) & (times <= piece.end) & (away > CLOSE * lasting)
+            here = (times >= piece.start) & (times <= piece.end) & (away > CLOSE_TO_SWITCH * lasting)
             errors = noise(Span(piece.field, piece.start, piece.end, piece.before), control, by, piece.spread)
             if (margin[here] <= max(errors, UNDECIDED * sizes[control])).any():
                 return True
@@ -203,7 +203,7 @@ def _excess(solution: Solution) -> float:
 
 
 def _excess_by_law(solution: Solution) -> float:
-    """The same where vectors are throttled, by the law that minimises H."""
+    """By how much H exceeds its minimum where vectors are throttled, by the law that minimises it."""
     instance, model = solution.instance, solution.instance.model
     t, x, lam, p = solution.times, solution.x, solution.lam, instance.parameters
     law = model.control_law_batch(t, x, lam, p, instance.control_set.arguments)
@@ -287,7 +287,7 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
             continue
         own = extended.switching_times(control)
         away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
-        far = (away > CLOSE * lasting) & np.isfinite(margin)
+        far = (away > CLOSE_TO_SWITCH * lasting) & np.isfinite(margin)
         distances.append(float((margin[far] / sizes[control]).min(initial=np.inf)))
     return min(rates), float(gaps.min()), min(distances)
 

@@ -40,7 +40,7 @@ class Span:
         return self.end - self.start
 
     def until(self, end: float) -> Span:
-        """The same up to another time."""
+        """A span from the same start to another end."""
         return replace(self, end=end)
 
 
@@ -61,7 +61,7 @@ class Integration:
         return last
 
     def transition(self, span: Span) -> tuple[Array, Array]:
-        """The same, and their derivatives by those at its start, shape (2n, 2n)."""
+        """States and costates at the end of a span, and their derivatives by those at its start, shape (2n, 2n)."""
         rows = len(span.z)
         if span.end <= span.start:
             return span.z, np.eye(rows)

@@ -20,7 +20,7 @@ AT_ONCE = 1e-9
 """Share of the time that is left within which a switch is the one that began the arc; and share of its size at which a
 switching function counts as zero there."""
 
-CLEAR = 1e-6
+CLEAR_CHANGE = 1e-6
 """Share of its size by which a switching function changes in the time that is left, at its rate at a zero, where nobody
 doubts that it passes it."""
 
@@ -49,7 +49,7 @@ class Mark:
         return self.field.passing(t, y, self.control, self.ratio)
 
     def size(self, t: float, z: Array, sizes: Array) -> float:
-        """That of the switching function."""
+        """The size of the switching function."""
         return max(float(np.abs(self.field.gradient(t, z.tolist(), self.control)) @ sizes), 1e-300)
 
     def blurred(self, span: Span, sizes: Array) -> float:
@@ -62,7 +62,7 @@ class Mark:
         return AT_ONCE**0.5 if flat else AT_ONCE
 
     def sign(self, span: Span, by: Integration) -> float:
-        """That of the gap at the start of a span, or right after it."""
+        """The sign of the gap at the start of a span, or right after it."""
         now, rate = self.gap(span.start, span.z.tolist())
         if abs(now) > AT_ONCE * self.size(span.start, span.z, by.sizes):
             return float(np.sign(now))
@@ -157,7 +157,7 @@ def _told(mark: Mark, span: Span, when: float, by: Integration, spread: Array) -
     """Whether a switching function is anywhere after a zero further beyond it than errors take it."""
     there = by.end(span.until(when))
     _, rate = mark.gap(when, there.tolist())
-    if abs(rate) * (span.end - when) > CLEAR * mark.size(when, there, by.sizes):
+    if abs(rate) * (span.end - when) > CLEAR_CHANGE * mark.size(when, there, by.sizes):
         return True
     least = noise(span, mark.control, by, spread)
 

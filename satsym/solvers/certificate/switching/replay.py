@@ -17,19 +17,19 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.next_switch import at_once, best_level, next_switch
-from satsym.solvers.certificate.switching.restarts import restarts
 from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none, jump
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.boundary import BoundaryField
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.structure import REST, SINGULAR
+from satsym.solvers.switching.stops import stops
+from satsym.solvers.switching.structure import REST, SINGULAR, Course, Guess, Structure
 from satsym.solvers.switching.throttled import equations
 
 MOST_SWITCHES = 200
 
 EVALUATIONS = 1_000_000
-"""Of the rates that it may take."""
+"""How often the rates may be evaluated."""
 
 ROUNDING = 1e-12
 """Share of its size up to which rounding makes a switching function what it is."""
@@ -55,7 +55,7 @@ class Piece:
     transition: Array
     """Derivatives of ``after`` by ``before``, shape (2n, 2n)."""
     spread: Array
-    """Those of ``before`` by what the flow began with, times of switches moving as well, shape (2n, 2n)."""
+    """Derivatives of ``before`` by what the flow began with, times of switches moving as well, shape (2n, 2n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Replay:
     u: Array
     """The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K)."""
     cost: float
-    """Of the motion, the terminal cost included."""
+    """What the motion costs, its end included."""
     gap: float = 0.0
     """Where it began anew, the largest difference to what was reached, relative to sizes."""
 
@@ -80,7 +80,7 @@ class Replay:
         return np.concatenate([[piece.start], self.times[inside], [piece.end]]), z
 
     def switching_times(self, control: int) -> list[float]:
-        """Of one control."""
+        """When one control switches."""
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
@@ -107,7 +107,7 @@ def replay(solution: Solution, within: Limits | None = None, closely: bool = Fal
         stated,
         [decided_by_none(solution, control) for control in controls],
         Integration(np.concatenate(typical(solution)), limits),
-        restarts(solution, stated) if closely else [],
+        _restarts(solution, stated) if closely else [],
         closely,
     )
     try:
@@ -121,11 +121,11 @@ class _Again:
     """What is needed to integrate a solution again."""
 
     solution: Solution
-    """Of which the initial costates are taken, and the nodes."""
+    """What the initial costates are taken of, and the nodes."""
     stated: Stated
     """Arcs of each control as it states them."""
     settled: list[bool]
-    """Of each control whether these stand, for no sign shows its switches."""
+    """Whether the stated arcs of each control stand, for no sign shows its switches."""
     by: Integration
     """The integration."""
     anew: list[tuple[float, Array]]
@@ -241,6 +241,34 @@ class _Again:
             found = self.by.solved(rates, span, start, scale, t_eval=times)
             z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
         return (times, z, field.along(times, z)[0]), cost
+
+
+def _restarts(solution: Solution, stated: Stated) -> list[tuple[float, Array]]:
+    """Nodes where a flow begins anew, and values (2n,) there: within arcs where it grows, and where singular ones end.
+
+    Parameters
+    ----------
+    stated
+        Arcs of each control.
+    """
+    times, z = solution.times, np.concatenate([solution.x, solution.lam])
+    structure = Structure(tuple(tuple(level for *_, level in row) for row in stated))
+    switches, end = np.array([end for row in stated for _, end, _ in row[:-1]]), float(times[-1])
+    course = Course(times, z)
+    inside = stops(
+        solution.instance,
+        Guess(structure, switches, solution.lam[:, 0], end),
+        course,
+        np.concatenate(typical(solution)),
+    )[1]
+    ends = {
+        until
+        for row in stated
+        for start, until, level in row
+        if level >= SINGULAR and until < end and any(start < time < until for time in inside)
+    }
+    near = {int(np.abs(times - time).argmin()) for time in (*inside, *ends)}
+    return [(float(times[k]), z[:, k]) for k in sorted(near)]
 
 
 def _joined(first: Piece, second: Piece) -> Piece:
