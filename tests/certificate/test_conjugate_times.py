@@ -83,9 +83,9 @@ def second_order(solution: Solution) -> tuple[Conjugate, float]:
     """What conjugate points say, and the least eigenvalue of the second variation, which knows none of them."""
     grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), 200)
     found = along(solution, grid)
-    steepest = None if found is None else found.second.steepest()
-    assert steepest is not None
-    return conjugate(solution, segments(solution)), steepest[0]
+    assert found is not None
+    assert not found.second.drowned
+    return conjugate(solution, segments(solution)), found.second.steepest()[0]
 
 
 def failing(certificate: Certificate | None) -> set[str]:

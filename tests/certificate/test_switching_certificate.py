@@ -133,7 +133,7 @@ def test_a_shift_in_time_is_the_reason_where_the_form_vanishes_along_it_alone() 
     kept, tied = np.zeros((0, 3)), later[None]
 
     def flat(form: np.ndarray, ties: np.ndarray) -> bool:
-        return Quadratic((None,) * 3, form, ties, free_time=True).flat_by_shift(1e-7)
+        return Quadratic((), form, 3, ties, free_time=True).flat_by_shift(1e-7)
 
     across = np.eye(3) - np.outer(later, later)
     assert flat(across, kept)

@@ -13,8 +13,8 @@ is one arc, it has a negative eigenvalue where the second variation has one; it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
 from satsym.solvers.certificate.jacobi import kernel
+from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.collocation.scaling import final_argument
 
 DROWNED = 1e-8
@@ -47,8 +48,10 @@ class Arc:
     restoring: Array
     rates: Array
     slope: Array
-    entered: Array | None = None
-    """The gradient of the constraint on whose boundary the arc begins to be, shape (n + 1,), if there is one."""
+    met: Mapping[int, Met] = field(default_factory=dict)
+    """What is met where steps begin, by their numbers, and at the end."""
+    basis: Array | None = None
+    """In what changes w are combined on each piece, shape (pieces, n, r); all of the states without it."""
 
     @property
     def widths(self) -> tuple[float, int]:
@@ -76,6 +79,61 @@ class Arc:
         after = x + h / 6.0 * (f1 + 2.0 * (f2 + f3) + f4)
         return (x + after) / 2.0 + h / 8.0 * (f1 - rate(c, after)), after
 
+    @property
+    def columns(self) -> int:
+        """How many changes of the continuous controls there are."""
+        return self.pieces * (self.motion.shape[1] if self.basis is None else self.basis.shape[2])
+
+    def added(self, form: Array, x: Array, length: Array, own: int, ties: list[Array]) -> Array:
+        """Add what the arc gives to a form and to ties, and return the states at its end by all changes.
+
+        Parameters
+        ----------
+        x
+            Those at its beginning.
+        length
+            The change of its length.
+        own
+            The first column of its continuous controls.
+        """
+        self._meet(0, form, x, ties)
+        if not self.lasting:
+            jump = np.outer(self.rates[0], length)
+            form += np.outer(length, self.slope[0] @ (x + 0.5 * jump))
+            return np.asarray(x + jump)
+        (h, per), n, share = self.widths, len(x), length / self.lasting
+        basis = np.eye(n)[None] if self.basis is None else self.basis
+        unit, r = np.sqrt(2.0 / (h * per)), basis.shape[2]
+
+        def integrand(at: int, y: Array) -> Array:
+            return np.asarray(y.T @ (self.restoring[at] @ y) / 2.0 + np.outer(share, self.slope[at] @ y))
+
+        for k in range((len(self.motion) - 1) // 2):
+            w, piece = np.zeros_like(x), k // per
+            if self.pieces:
+                place = slice(own + r * piece, own + r * (piece + 1))
+                w[:, place] = unit * basis[piece % len(basis)]
+                form[place, place] += np.eye(r) / per
+            middle, after = self.stepped(k, x, w, share)
+            form += h / 6.0 * (integrand(2 * k, x) + 4.0 * integrand(2 * k + 1, middle) + integrand(2 * k + 2, after))
+            x = after
+            self._meet(k + 1, form, x, ties)
+        return x
+
+    def _meet(self, place: int, form: Array, x: Array, ties: list[Array]) -> None:
+        if (met := self.met.get(place)) is not None:
+            ties += [*(met.kept @ x)]
+            if met.curved is not None:
+                form += x.T @ met.curved @ x / 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Met:
+    """Conditions at one time: rows that vanish on the states, shape (c, n), and a form in these, shape (n, n)."""
+
+    kept: Array
+    curved: Array | None = None
+
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
@@ -87,13 +145,14 @@ class Quadratic:
     arcs: Sequence[Arc]
     form: Array
     """Shape (P, P), in units of the cost."""
+    lengths: int
     ties: Array
     """Rows that vanish where the end and the entries are kept, shape (c, P)."""
     free_time: bool
 
     def kept(self) -> tuple[Array, Array]:
         """Units that make all changes comparable, and directions in these in which the ties vanish, as columns."""
-        size, lengths = np.sqrt(np.abs(np.diag(self.form))), len(self.arcs)
+        size, lengths = np.sqrt(np.abs(np.diag(self.form))), self.lengths
         size[:lengths] = max(size[:lengths].max(), 1e-300)
         size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
         rows = self.ties / size
@@ -124,24 +183,35 @@ class Quadratic:
         later = np.zeros(len(self.form))
         later[0] = 1.0
         if not self.free_time:  # what begins with a longer arc ends with a shorter one
-            later[len(self.arcs) - 1] -= 1.0
+            later[self.lengths - 1] -= 1.0
         values, axes = np.linalg.eigh(form)
         direction = free.T @ later
         along = abs(float(axes[:, 0] @ direction)) / max(float(np.linalg.norm(direction)), 1e-300)
         return bool(abs(values[0]) <= flat and (values[1:] > flat).all() and along > ALONG)
 
-    def steepest(self) -> tuple[float, Array] | None:
-        """The least eigenvalue, in units of what changes of the controls cost by themselves, and its direction.
+    @property
+    def drowned(self) -> bool:
+        """Whether motions part so quickly that nothing but rounding is left of the form."""
+        return not np.abs(np.diag(self.form)).max() * np.finfo(float).eps < DROWNED
 
-        ``None`` where numbers fail, or motions part so quickly that rounding drowns the form.
+    def steepest(self) -> tuple[float, Array]:
+        """The least eigenvalue, in units of what changes cost by themselves, and its direction.
+
+        Infinite where the ties fix all changes, NaN where numbers fail.
         """
-        if not np.abs(np.diag(self.form)).max() * np.finfo(float).eps < DROWNED:
-            return None
-        free = kernel(self.ties / np.maximum(np.abs(self.ties).max(axis=1, keepdims=True, initial=1e-300), 1e-300))
+        if not np.isfinite(self.form).all():
+            return float("nan"), np.zeros(len(self.form))
+        free = kernel(self.ties / np.maximum(np.abs(self.ties).max(axis=1, keepdims=True), 1e-300))
         if not free.shape[1]:
             return float("inf"), np.zeros(len(self.form))
         values, axes = np.linalg.eigh(free.T @ self.form @ free)
         return float(values[0]), free @ axes[:, 0]
+
+
+def scaled_units(solution: Solution) -> tuple[Array, float]:
+    """Units of states and, as the last one, of time, and that of the cost: those of the scaled problem."""
+    unit, n = unit_sizes(solution), len(solution.x)
+    return np.append(unit[:n], float(solution.times[-1] - solution.times[0])), float(unit[0] * unit[n])
 
 
 def units(solution: Solution, state: Array) -> tuple[Array, float]:
@@ -162,60 +232,33 @@ def roots(follow: Array) -> Array:
     return np.asarray((axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1))
 
 
-def quadratic(solution: Solution, arcs: Sequence[Arc], state: Array, cost: float) -> Quadratic:
-    """Add up what arcs and the end give.
+def quadratic(
+    solution: Solution, arcs: Sequence[Arc], state: Array, cost: float, groups: Sequence[int] | None = None
+) -> Quadratic:
+    """Add up what arcs, junctions and the end give.
 
     Parameters
     ----------
     state, cost
         Units of states and time, shape (n + 1,), and of the cost.
+    groups
+        Which change of length each arc has its share of; its own without these.
     """
-    n, lasting, own = len(state), float(state[-1]), len(arcs)
-    total = own + n * sum(arc.pieces for arc in arcs)
-    form, x, ties = np.zeros((total, total)), np.zeros((n, total)), list[Array]()
-    for k, arc in enumerate(arcs):
+    lasting, groups = float(state[-1]), groups if groups is not None else range(len(arcs))
+    lengths, own = max(groups) + 1, max(groups) + 1
+    total = lengths + sum(arc.columns for arc in arcs)
+    each = [sum(arc.lasting for arc, one in zip(arcs, groups, strict=True) if one == k) for k in range(lengths)]
+    form, x, ties = np.zeros((total, total)), np.zeros((len(state), total)), list[Array]()
+    for arc, group in zip(arcs, groups, strict=True):
         length = np.zeros(total)
-        length[k] = lasting
-        if arc.entered is not None:
-            ties.append(arc.entered @ x)
-        if not arc.lasting:
-            jump = np.outer(arc.rates[0], length)
-            form += np.outer(length, arc.slope[0] @ (x + 0.5 * jump))
-            x = x + jump
-            continue
-        form, x = _added(arc, form, x, length / arc.lasting, own)
-        own += n * arc.pieces
+        length[group] = lasting * (arc.lasting / each[group] if each[group] else 1.0)
+        x = arc.added(form, x, length, own, ties)
+        own += arc.columns
     duration = np.zeros(total)
-    duration[: len(arcs)] = lasting
+    duration[:lengths] = lasting
     ties += [*_ended(solution, form, x, duration, state, cost)]
-    return Quadratic(arcs, (form + form.T) / 2.0, np.array(ties).reshape(-1, total), solution.instance.tf is None)
-
-
-def _added(arc: Arc, form: Array, x: Array, share: Array, own: int) -> tuple[Array, Array]:
-    """The form with what an arc adds, and the states at its end, by all changes.
-
-    Parameters
-    ----------
-    share
-        The change of the arc's length, relative to it, by all changes.
-    own
-        The first column of its continuous controls.
-    """
-    (h, per), n = arc.widths, len(x)
-    unit = np.sqrt(2.0 / (h * per)) * np.eye(n)
-
-    def integrand(at: int, y: Array) -> Array:
-        return y.T @ arc.restoring[at] @ y / 2.0 + np.outer(share, arc.slope[at] @ y)
-
-    for k in range((len(arc.motion) - 1) // 2):
-        w, first = np.zeros_like(x), own + n * (k // per)
-        if arc.pieces:
-            w[:, first : first + n] = unit
-            form[first : first + n, first : first + n] += np.eye(n) / per
-        middle, after = arc.stepped(k, x, w, share)
-        form = form + h / 6.0 * (integrand(2 * k, x) + 4.0 * integrand(2 * k + 1, middle) + integrand(2 * k + 2, after))
-        x = after
-    return form, x
+    table = np.array(ties).reshape(-1, total)
+    return Quadratic(arcs, (form + form.T) / 2.0, lengths, table, solution.instance.tf is None)
 
 
 def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Array, cost: float) -> Array:

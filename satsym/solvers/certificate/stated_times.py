@@ -21,12 +21,13 @@ ARCS = ("bang-bang", BOUNDARY_ARCS)
 TIMES = "stated times of events"
 SATURATION = "stated times of saturation"
 TO_A_NODE = "stated switching times, to the spacing of the nodes"
-APART, MET = 1e-8, 1e-6
+TIMES_APART, MET = 1e-8, 1e-6
 """Share of the duration by which a stated time may be off a junction, and share of the range of a control by which the
 law may be off its bound at a stated time."""
 
-ACTIVE = 1e-9
-"""Share of its size along the way up to which a path constraint is active."""
+ACTIVE, ROUNDED_OFF = 1e-9, 1e-12
+"""Shares of its size along the way up to which a path constraint is active, and above which it is seen not to be all
+along: between a touch point and an arc soon after it is hardly left."""
 
 
 def with_stated_times(certificate: Certificate, solution: Solution) -> Certificate:
@@ -50,9 +51,9 @@ def checks(solution: Solution) -> list[Check]:
         return [Check(TO_A_NODE, _off_changes(solution), 0.0)]
     in_arcs = solution.method in ARCS or any(one.kind != "jump" for one in solution.events)
     if in_arcs:
-        return [Check(TIMES, _off_junctions(solution), APART)]
+        return [Check(TIMES, _off_junctions(solution), TIMES_APART)]
     bounded = solution.instance.control_set.bounded and not solution.instance.model.spec.switching
-    found = [Check(TIMES, _off_jumps(solution), APART)] if solution.events else []
+    found = [Check(TIMES, _off_jumps(solution), TIMES_APART)] if solution.events else []
     return [*found, Check(SATURATION, _off_bounds(solution), MET)] if bounded else found
 
 
@@ -83,15 +84,16 @@ def _shown(solution: Solution, kind: str, name: str, t: float) -> bool:
         return False
     row = values(instance, times, solution.x, solution.u)[names.index(name)]
     size = max(float(sizes(instance, times, solution.x, solution.u)[names.index(name)]), float(np.abs(row).max()))
-    active, near = np.abs(row) <= ACTIVE * size, APART * float(times[-1] - times[0])
-    if not active[np.abs(times - t) <= near].any():
+    off, near = np.abs(row) / size, TIMES_APART * float(times[-1] - times[0])
+    if not (off[np.abs(times - t) <= near] <= ACTIVE).any():
         return False
     stated = [float(times[0]), *(one.t for one in solution.events if one.name == name), float(times[-1])]
     before = (times < t - near) & (times > max((one for one in stated if one < t - near), default=t) + near)
     after = (times > t + near) & (times < min((one for one in stated if one > t + near), default=t) - near)
     shown = {"entry": (False, True), "exit": (True, False), "touch": (False, False)}[kind]
     return all(
-        not side.any() or bool(active[side].all()) is one for side, one in zip((before, after), shown, strict=True)
+        not side.any() or (float(off[side].max()) <= ACTIVE if on else float(off[side].max()) > ROUNDED_OFF)
+        for side, on in zip((before, after), shown, strict=True)
     )
 
 

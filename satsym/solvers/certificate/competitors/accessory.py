@@ -10,8 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
-from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, roots, units
+from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, roots, scaled_units
 
 PIECES = 50
 """On which the control's change is constant, at most."""
@@ -57,7 +56,7 @@ def along(solution: Solution, grid: Grid) -> Along | None:
     instance, n, t = solution.instance, len(solution.x), interleave(grid.nodes, grid.midpoints)
     model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
     z = np.array([np.interp(t, solution.times, row) for row in np.concatenate([solution.x, solution.lam])])
-    state, cost = units(solution, unit_sizes(solution)[:n])
+    state, cost = scaled_units(solution)
     scale = np.concatenate([state[:-1], cost / state[:-1]])
     slopes = model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds).transpose(2, 0, 1) * (scale / scale[:, None])
     law = _law_slopes(solution, t, z, scale)

@@ -16,12 +16,12 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
-from satsym.solvers.certificate.competitors.accessory import along
+from satsym.solvers.certificate.competitors.accessory import Along, along
 from satsym.solvers.certificate.competitors.drawn import drawn_below, natural
 from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of, stated_control
 
 DOUBLINGS = 12
-"""Of the change, from the size of the control on that moves the state by its own size."""
+"""How often a change is doubled, from the size of the control on that moves the state by its own size."""
 
 FALLS = 6
 """Last ones of these over which the cost must fall at least in proportion."""
@@ -92,16 +92,30 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
         return None
     grid = simulations.grid()
     found = along(solution, grid)
-    steepest = None if found is None else found.second.steepest()
-    if found is None or steepest is None:
+    if found is None or found.second.drowned:
         return None
-    curvature, direction = steepest
+    curvature, direction = found.second.steepest()
     shape = found.controls(direction)
     largest = float(np.abs(shape).max(initial=0.0))
     if not (curvature < 0.0 and largest > 0.0):
         return None
     unit = max(float(np.abs(solution.u).max()), float(natural(solution).min())) / largest
-    return simulations, grid, stated_control(solution, grid), unit * shape
+    u = stated_control(solution, grid)
+    return simulations, grid, u, _keeping_the_end(simulations, grid, u, unit * shape, found)
+
+
+def _keeping_the_end(simulations: Simulations, grid: Grid, u: Array, change: Array, found: Along) -> Array:
+    """A change without what the grid makes of the end, to first order: on its steps changes are no constants."""
+    ties = found.second.ties[:-1]  # the last keeps the duration
+    if not len(ties):
+        return change
+    others = [found.controls(one) for one in np.linalg.pinv(ties).T]
+    size = float(np.abs(change).max())
+    others = [one * size / max(float(np.abs(one).max()), 1e-300) for one in others]
+    _, end = simulations(u, grid)
+    response = np.array([simulations(u + one, grid)[1] - end for one in others]).T
+    added = np.linalg.lstsq(response, end - simulations(u + change, grid)[1], rcond=None)[0]
+    return change + np.einsum("c,cmN->mN", added, np.array(others))
 
 
 def _far(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:

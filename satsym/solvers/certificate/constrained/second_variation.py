@@ -1,230 +1,157 @@
 """The second variation with the active arcs held: whether it is positive for all variations that keep to these.
 
-Variations of the control are constant between nodes of a mesh, those of the state follow by the linearised motion. They
-keep to given ends, to g_x dx = 0 along boundary arcs and at touch points, to g_x dx + g_u du = 0 while a constraint is
-active that holds a control. To the form along the way a touch point of
-order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
-it moves with the variation, the constraint is harder to keep. Boundary arcs and junctions, the end among them where a
-constraint pushes there, add the curvature of g times its multiplier. A final time that is free varies by itself, with
-the states on beyond the end as they would move: that is in the form of the end, and holds where the motion ends on no
-boundary.
+Variations keep to given ends, and to g_x dx = 0 along arcs on boundaries of constraints on states and at touch points;
+while a constraint is active that holds a control, that control is the one which keeps to it. To the form along the way
+a touch point of order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, No-gap second-order
+optimality conditions, Mathematical Programming 117, 2009): where it moves with the variation, the constraint is harder
+to keep. Boundary arcs and junctions, the end among them where a constraint pushes there, add the curvature of g times
+its multiplier. Between points on the way the motion is stretched, and as a whole up to a final time that is free, which
+holds where it ends on no boundary; a point adds the curvature of its conditions times their multipliers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solution import Solution
-from satsym.solvers.certificate.constrained.moving_times import Moving
-from satsym.solvers.certificate.constrained.replay import Replay
-from satsym.solvers.certificate.end_form import end_form
-from satsym.solvers.certificate.reintegration.flow import unit_sizes
-from satsym.solvers.constrained.active import control, multipliers
-from satsym.solvers.constrained.arcs import effects, gradient, holds_control
-from satsym.solvers.constrained.structure import FREE, Active, within
+from satsym.solvers.certificate.constrained.passing import places
+from satsym.solvers.certificate.constrained.replay import Piece, Replay
+from satsym.solvers.certificate.second_variation import Arc, Met, quadratic, roots, scaled_units
+from satsym.solvers.constrained.active import control, field, multipliers
+from satsym.solvers.constrained.arcs import conditions, gradient, holds_control, missed
+from satsym.solvers.constrained.equations import hamiltonian
+from satsym.solvers.constrained.structure import FREE, within
 
-MESH = 160
-"""Intervals."""
+MESH, FEWEST = 160, 4
+"""Intervals on which changes of the controls are constant, and how many an arc has at least."""
+
+DIFFERENCE = 1e-5
+"""Share of an arc by which a derivative by time is differenced once more."""
 
 
 def curvature(solution: Solution, again: Replay) -> float:
-    """Least eigenvalue of the form over that of H_uu alone, and of a final time that varies by its unit."""
-    instance, n, free_time = solution.instance, len(solution.x), solution.instance.tf is None
-    times, which, ends = _mesh(solution, again)
-    middles, h = (times[1:] + times[:-1]) / 2, np.diff(times)
-    z = _values(again, middles)
-    a, b, u, second, weight = _along(solution, middles, z, which)
-    moves, inputs, solved = _transitions(a, b, h)
-    m, count = b.shape[2], len(h)
-    points = Moving(solution, again)
-    size = m * count + len(points.arcs) + free_time
-    moving = slice(m * count, m * count + len(points.arcs))
-    shift, pace = points.shifts(middles), np.diff(points.shifts(times), axis=1) / h
-    drives = points.drives(middles, z[:n], u, shift, pace)
-    mixed, twice = points.mixed(middles, z[:n], u, z[n:], shift, pace)
-    form, pure = np.zeros((size, size)), np.zeros((size, size))
-    state, ties, met = np.zeros((n, size)), [], dict(zip(ends, _met_at_ends(solution, again), strict=False))
-    for k in range(count):
-        moved = np.zeros((m, size))
-        moved[:, m * k : m * (k + 1)] = np.eye(m)
-        after = moves[k] @ state + inputs[k] @ moved
-        after[:, moving] += solved[k] @ drives[..., k].T
-        both = np.vstack([(state + after) / 2, moved])
-        form += h[k] * both.T @ second[k] @ both
-        beside = h[k] * mixed[..., k] @ both
-        form[moving] += beside
-        form[:, moving] += beside.T
-        form[moving, moving] += h[k] * twice[..., k]
-        held = [each for each in which[k] if holds_control(instance, each)]
-        ties += [_held(solution, which[k], each, middles[k : k + 1], z[:, k : k + 1]) @ both for each in held]
-        pure += h[k] * moved.T @ weight[k] @ moved
-        state = after
-        at = times[k + 1 : k + 2]
-        states = (each for each in which[k] if each not in held)
-        ties += [gradient(instance, each, at, _values(again, at)[:n])[:, 0] @ state for each in states]
-        for one in met.get(k + 1, ()):
-            ties.append(one.gradient @ state)
-            form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
-        for place, arc in enumerate(points.arcs):
-            if ends[arc] == k + 1:
-                kept, curved = points.passed(place)
-                total = np.vstack([state, np.eye(size)[moving.start + place]])
-                ties += list(kept @ total)
-                form += total.T @ curved @ total
-    unit = unit_sizes(solution)
-    after = np.column_stack([solution.lam[:, :-1], again.end[n:]])  # multipliers at the end are those after its jump
-    end = end_form(replace(solution, lam=after), unit)
-    scaled = state / unit[:n, None]
-    if free_time:
-        scaled = np.vstack([scaled, np.eye(size)[-1]])
-        pure[-1, -1] = unit[0] * unit[n]
-    pure[moving, moving] += np.eye(len(points.arcs)) * unit[0] * unit[n]
-    form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
-    ties += list(end.ties @ scaled)
-    return _least(form, pure, np.array(ties).reshape(-1, size))
+    """Least eigenvalue of the form over that of the control alone, and of a time that varies by the duration."""
+    state, cost = scaled_units(solution)
+    passed, arcs, groups = places(solution), list[Arc](), list[int]()
+    for k, piece in enumerate(again.pieces):
+        arcs.append(_arc(solution.instance, piece, _met_at_end(solution, again, k), state, cost))
+        groups.append(sum(place < k for place in passed))
+    pushed = np.column_stack([solution.lam[:, :-1], again.end[len(solution.x) :]])  # after the jump at the end
+    return quadratic(replace(solution, lam=pushed), arcs, state, cost, groups).steepest()[0]
 
 
-def _least(form: Array, pure: Array, ties: Array) -> float:
-    """Least generalised eigenvalue on what keeps the ties: infinite where nothing does, NaN where numbers fail."""
-    from scipy.linalg import LinAlgError, eigh
+def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], state: Array, cost: float) -> Arc:
+    n, lasting = len(instance.initial), float(piece.times[-1] - piece.times[0])
+    count = max(FEWEST, int(np.ceil(MESH * lasting / state[-1])))
+    t = np.linspace(piece.times[0], piece.times[-1], 2 * count + 1)
+    z = np.array([np.interp(t, piece.times, row) for row in piece.dense])
+    held = tuple(k for k in piece.active if holds_control(instance, k))
+    eta = dict(zip(piece.active, multipliers(instance, piece.active, t, z), strict=True))
+    kept = {k: push for k, push in eta.items() if k not in held}
 
-    if not np.isfinite(form).all():  # a constraint is crossed at its touch point
-        return float("nan")
-    rows = ties / np.maximum(np.abs(ties).max(axis=1, keepdims=True), 1e-300)
-    _, strengths, kept = np.linalg.svd(rows)
-    basis = kept[int((strengths > 1e-9 * strengths.max(initial=0.0)).sum()) :].T
-    if not basis.size:
-        return float("inf")
-    kept_form, kept_pure = basis.T @ form @ basis, basis.T @ pure @ basis
-    try:
-        return float(eigh(kept_form, kept_pure, eigvals_only=True, subset_by_index=[0, 0])[0])
-    except LinAlgError:  # controls are not weighed by squares that are positive
-        return float("nan")
+    def rates(v: NDArray[Any]) -> NDArray[Any]:
+        """Rates of states and costates where multipliers of constraints on states are as they are."""
+        found = np.array(field(instance, held, v[-1], v[:-1]))
+        for k, push in kept.items():
+            found[n:] -= push * gradient(instance, k, v[-1], v[:n])
+        return found
 
-
-def _held(solution: Solution, active: Active, constraint: int, t: Array, z: Array) -> Array:
-    """g_x and g_u of a constraint that holds a control, in one row."""
-    instance, x = solution.instance, z[: len(solution.x)]
-    u = control(instance, active, t, z)
-    return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x, u)[constraint]])[:, 0]
-
-
-def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[Active], list[int]]:
-    """Times with all events among them, what is active on each interval, and after how many each arc ends."""
-    whole = float(solution.times[-1] - solution.times[0])
-    times, which, ends = [np.array([solution.times[0]])], list[Active](), list[int]()
-    for piece in again.pieces:
-        a, b = piece.times[0], piece.times[-1]
-        count = max(4, int(np.ceil(MESH * (b - a) / whole)))
-        times.append(np.linspace(a, b, count + 1)[1:])
-        which += [piece.active] * count
-        ends.append(len(which))
-    return np.concatenate(times), which, ends
-
-
-def _values(again: Replay, times: Array) -> Array:
-    """States and costates by lines between the dense places of the replay."""
-    known = np.concatenate([piece.times for piece in again.pieces])
-    rows = np.concatenate([piece.dense for piece in again.pieces], axis=1)
-    return np.array([np.interp(times, known, row) for row in rows])
-
-
-def _along(
-    solution: Solution, t: Array, z: Array, which: list[Active]
-) -> tuple[Array, Array, Array, list[Array], list[Array]]:
-    """Jacobians of the motion, controls, second derivatives of H + eta g by state and control, and H_uu, in between."""
-    instance, n = solution.instance, len(solution.x)
-    model, p, x, lam = instance.model, instance.parameters, z[:n], z[n:]
-    m, count = len(model.spec.controls), len(t)
-    u, eta = np.empty((m, count)), np.zeros((len(model.spec.path_constraints), count))
-    for active in set(which):
-        here = np.array([one == active for one in which])
-        u[:, here] = control(instance, active, t[here], z[:, here])
-        for k, row in zip(active, multipliers(instance, active, t[here], z[:, here]), strict=True):
-            eta[k, here] = row
-    a = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)).reshape(n, n, -1), (n, n, count))
-    b = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)).reshape(n, m, -1), (n, m, count))
-
-    def slopes(y: Array) -> Array:
-        by_x = -np.asarray(model.costate_rate_batch(t, y[:n], y[n:], lam, p))
-        by_u = np.asarray(model.stationarity_batch(t, y[:n], y[n:], lam, p))
-        return np.concatenate([np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)])
-
-    table = _slopes(slopes, np.concatenate([x, u]))
-    for k in {one for active in which for one in active}:
-
-        def pushes(y: Array, k: int = k) -> Array:
-            by_x = gradient(instance, k, t, y[:n], y[n:])
-            return np.concatenate([by_x, np.broadcast_to(effects(instance, t, y[:n], y[n:])[k], u.shape)])
-
-        table += _slopes(pushes, np.concatenate([x, u])) * eta[k]
-    second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
-    return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), u, second, [one[n:, n:] for one in second]
+    here = np.concatenate([z, t[None]])
+    slopes = np.moveaxis(_slopes(rates, here), -1, 0)
+    motion, follow, restoring = np.zeros((3, len(t), n + 1, n + 1))
+    motion[:, :n, :n], motion[:, :n, n], follow[:, :n, :n] = slopes[:, :n, :n], slopes[:, :n, -1], -slopes[:, :n, n:-1]
+    restoring[:, :n, :n] = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
+    restoring[:, :n, n] = restoring[:, n, :n] = -slopes[:, n:, -1]
+    by_time, step = np.zeros(len(t)), DIFFERENCE * lasting
+    if not instance.model.spec.autonomous:
+        by_time = _by_time(instance, piece, t, z)
+        restoring[:, n, n] = (_by_time(instance, piece, t + step, z) - _by_time(instance, piece, t - step, z)) / (
+            2 * step
+        )
+    forward, backward = np.real(rates(here))[:n], np.append(-np.real(rates(here))[n:], by_time[None], axis=0)
+    push = roots(follow / state[:, None] / state * cost)
+    middles = push[1::2] @ push[1::2]
+    basis = np.linalg.eigh(middles)[1][:, :, -min(len(instance.model.spec.controls), n) :]
+    rows = {k: gradient(instance, k, t, z[:n]) for k in kept}
+    met = {
+        place: Met(np.array([np.append(row[:, 2 * place], 0.0) for row in rows.values()]) * state)
+        for place in (range(1, count + 1) if rows else ())
+    }
+    if at_end:
+        along = met[count].kept if count in met else np.zeros((0, n + 1))
+        ties = np.concatenate([along, *(row * state for row, _ in at_end)])
+        met[count] = Met(ties, sum(curved for _, curved in at_end) * state[:, None] * state / cost)
+    return Arc(
+        lasting,
+        count,
+        motion * state / state[:, None],
+        push,
+        restoring * state[:, None] * state / cost,
+        np.append(forward, np.ones((1, len(t))), axis=0).T / state,
+        backward.T * state / cost,
+        met,
+        basis,
+    )
 
 
-def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array], list[Array]]:
-    """The midpoint rule's step of the linearised motion: by states, by controls, and by what is added to rates."""
-    moves, inputs, solved = [], [], []
-    for one, push, step in zip(a, b, h, strict=True):
-        unit = np.eye(len(one))
-        inverse = np.linalg.inv(unit - step / 2 * one)
-        moves.append(inverse @ (unit + step / 2 * one))
-        inputs.append(inverse @ (step * push))
-        solved.append(step * inverse)
-    return moves, inputs, solved
+def _by_time(instance: Instance, piece: Piece, t: Array, z: Array) -> Array:
+    """H by explicit time along an arc, shape (N,)."""
+    ahead: NDArray[Any] = t + 1j * COMPLEX_STEP
+    return np.broadcast_to(np.imag(hamiltonian(instance, piece.active, ahead, z)) / COMPLEX_STEP, t.shape)
 
 
-@dataclass(frozen=True, eq=False)
-class Met:
-    """A junction: g_x, the derivative of the rate of g, what multiplies its square, and zeta times g_xx."""
-
-    gradient: Array
-    rate: Array
-    factor: float
-    curved: Array
-
-
-def _met_at_ends(solution: Solution, again: Replay) -> list[list[Met]]:
-    """What is met where each arc ends; at the end of the motion, which stays where it is, what pushes there."""
+def _met_at_end(solution: Solution, again: Replay, arc: int) -> list[tuple[Array, Array]]:
+    """Rows that vanish where an arc ends, and forms there, in states and time; at the very end of what pushes there."""
     instance, spec = solution.instance, solution.instance.model.spec.path_constraints
-    names = [one.name for one in spec]
-    found = list[list[Met]]()
-    for group, piece, jumps in zip(within(solution), again.pieces, again.jumps, strict=False):
-        at, touched = (piece.times[-1:], piece.z[:, -1:]), {e.name for e in group if e.kind == "touch"}
-        # what holds a control is kept by its control alone
-        own = {names.index(event.name) for event in group if event.kind != "interior"}
-        own |= {k for k in jumps if k < len(spec)}
-        states = sorted(k for k in own if spec[k].order > 0)
-        found.append([_met(instance, k, *at, jumps.get(k, 0.0), names[k] in touched) for k in states])
-    end = again.pieces[-1].times[-1:], again.end[:, None]
-    found.append([_met(instance, k, *end, zeta, touches=False) for k, zeta in again.pressed.items()])
-    return found
+    names, piece, n = [one.name for one in spec], again.pieces[arc], len(solution.x)
+    if arc == len(again.pieces) - 1:
+        end = piece.times[-1:], again.end[:, None]
+        return [_met(instance, k, *end, zeta, touches=False) for k, zeta in again.pressed.items()]
+    group, jumps = within(solution)[arc], again.jumps[arc]
+    at, touched = (piece.times[-1:], piece.z[:, -1:]), {event.name for event in group if event.kind == "touch"}
+    # what holds a control is kept by its control alone
+    own = {names.index(event.name) for event in group if event.kind != "interior"} | {k for k in jumps if k < len(spec)}
+    met = [_met(instance, k, *at, jumps.get(k, 0.0), names[k] in touched) for k in sorted(own) if spec[k].order > 0]
+    if arc in (passed := places(solution)):
+        which = conditions(instance)[passed.index(arc)]
+
+        def slopes(y: NDArray[Any]) -> NDArray[Any]:
+            by_x = [gradient(instance, k, y[-1], y[:-1]) for k in which]
+            by_t = missed(instance, which, y[-1], y[:-1])[1]
+            return np.concatenate([np.array(by_x), by_t[:, None]], axis=1)
+
+        here = np.concatenate([at[1][:n], at[0][None]])
+        pi = np.array([jumps[k] for k in which])
+        curved = _slopes(lambda y: np.einsum("c,cjN->jN", pi, slopes(y)), here)[..., 0]
+        met.append((np.real(slopes(here))[..., 0], (curved + curved.T) / 2.0))
+    return met
 
 
-def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, touches: bool) -> Met:
-    """The junction of a constraint at a time, with states and costates before it."""
+def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, touches: bool) -> tuple[Array, Array]:
+    """The junction of a constraint at a time, with states and costates before it: g_x, and the form that it adds."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
-    x, factor = z[:n], 0.0
+    x, found = z[:n], np.zeros((n + 1, n + 1))
     u = control(instance, FREE, t, z)
 
     def rates(y: Array) -> Array:
         return np.asarray(model.path_rates_batch(t, y, u.astype(y.dtype), p)).reshape(-1, 2, 1)[constraint]
 
+    found[:n, :n] = zeta * _slopes(lambda y: gradient(instance, constraint, t, y), x)[..., 0]
     if touches:
-        second = float(rates(x)[1, 0])
-        factor = -zeta / second if second < 0.0 else -np.inf
-    rate = _slopes(lambda y: rates(y)[:1], x)[0, :, 0]
-    curved = _slopes(lambda y: gradient(instance, constraint, t, y), x)[..., 0]
-    return Met(gradient(instance, constraint, t, x)[:, 0], rate, factor, zeta * curved)
+        second, rate = float(rates(x)[1, 0]), _slopes(lambda y: rates(y)[:1], x)[0, :, 0]
+        found[:n, :n] += np.outer(rate, rate) * (-zeta / second if second < 0.0 else -np.inf)
+    return np.append(gradient(instance, constraint, t, x)[:, 0], 0.0)[None], found
 
 
-def _slopes(function: Callable[[Array], Array], at: Array) -> Array:
+def _slopes(function: Callable[[Any], NDArray[Any]], at: Array) -> Array:
     """Derivatives by every component, shape (rows, d, N)."""
     columns = []
     for j in range(len(at)):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import typical
-from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, roots, units
+from satsym.solvers.certificate.second_variation import Arc, Met, Quadratic, quadratic, roots, units
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.boundary import BoundaryField, off_boundary
@@ -57,10 +59,10 @@ def form_of(solution: Solution, again: Replay, by: Integration, pieces: int) -> 
 
 def _arc(piece: Piece, entered: int | None, state: Array, cost: float, pieces: int, by: Integration) -> Arc:
     field, n, lasting = piece.field, piece.field.n, piece.end - piece.start
-    row = None
+    met = dict[int, Met]()
     if entered is not None:
         _, slopes, moved = off_boundary(field.instance, entered, piece.start, piece.before.tolist())
-        row = np.append(slopes[:n], moved) * state
+        met[0] = Met(np.append(slopes[:n], moved)[None] * state)
     share = pieces * lasting / state[-1]
     count = int(np.ceil(share)) if isinstance(field, ThrottledField) else 0
     steps = count * STEPS_PER_PIECE if count else max(FEWEST_STEPS, int(np.ceil(share * STEPS_PER_PIECE)))
@@ -83,7 +85,7 @@ def _arc(piece: Piece, entered: int | None, state: Array, cost: float, pieces: i
     forward = np.concatenate([rates[:n], np.ones((1, len(times)))]) / state[:, None]
     backward = np.concatenate([-rates[n:], by_time[None]]) * state[:, None] / cost
     motion, restoring = motion * state / state[:, None], restoring * state[:, None] * state / cost
-    return Arc(lasting, count, motion, push, restoring, forward.T, backward.T, row)
+    return Arc(lasting, count, motion, push, restoring, forward.T, backward.T, met)
 
 
 def _by_time(field: Field, times: Array, z: Array) -> Array:
@@ -100,4 +102,5 @@ def _drift(field: Field, times: Array, z: Array) -> Array:
     """The rates of states and costates by explicit time, shape (2n, N)."""
     if isinstance(field, ThrottledField):
         return np.array([field.drift(t, y) for t, y in zip(times.tolist(), z.T.tolist(), strict=True)]).T
-    return np.asarray(np.imag(field.along(times + 1j * NUDGE, z.astype(complex))[1]) / NUDGE)
+    ahead: tuple[Any, Any] = times + 1j * NUDGE, z.astype(complex)
+    return np.asarray(np.imag(field.along(*ahead)[1]) / NUDGE)
