@@ -18,12 +18,11 @@ from sympy import Rational, sqrt
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.solution import Competitors, Kind, Solution
+from satsym.solution import Kind, Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
-from satsym.solvers.certificate.competitors.searched import Searched
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.second_variation import units
 from satsym.solvers.certificate.switching.conditions import LATER
@@ -419,8 +418,7 @@ def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
 ) -> None:
     found = shipped("transfer-fuel")
     cheapest = found.objective if arrived else math.nan
-    competitors = (Competitors(Kind.STARTS, 2, arrived, cheapest),)
-    monkeypatch.setattr(comparing, "searched", lambda *_: Searched(competitors, None))
+    monkeypatch.setattr(comparing, "searched", lambda *_: ({Kind.STARTS: [math.nan, cheapest]}, None))
     again = certify(found)
     assert again is not None
     assert [check.name for check in again.checks if not check.passed] == ([] if arrived else [UNCOMPARED])

@@ -53,6 +53,57 @@ class Arc:
     basis: Array | None = None
     """In what changes w are combined on each piece, shape (pieces, n, r); all of the states without it."""
 
+    @classmethod
+    def of(
+        cls,
+        times: Array,
+        slopes: Array,
+        rates: Array,
+        hamiltonian: tuple[Array, Array],
+        state: Array,
+        cost: float,
+        pieces: int,
+        met: Mapping[int, Met] | None = None,
+        controls: int | None = None,
+    ) -> Arc:
+        """The accessory problem that linearised extremal equations give, by the derivatives of least H over controls.
+
+        Parameters
+        ----------
+        times
+            The ends and middles of steps, shape (2 K + 1,).
+        slopes
+            The rates of states and costates by these and by explicit time, shape (2 K + 1, 2 n, 2 n + 1).
+        rates
+            The rates themselves, shape (2 n, 2 K + 1).
+        hamiltonian
+            H by explicit time, once and twice, shapes (2 K + 1,).
+        state, cost
+            Units of states and time, shape (n + 1,), and of the cost.
+        controls
+            How many there are, if each piece is a step and its changes are to be as many.
+        """
+        n, (by_time, twice) = len(rates) // 2, hamiltonian
+        motion, follow, restoring = np.zeros((3, len(times), n + 1, n + 1))
+        motion[:, :n, :n], motion[:, :n, n] = slopes[:, :n, :n], slopes[:, :n, -1]
+        follow[:, :n, :n] = -slopes[:, :n, n : 2 * n]
+        restoring[:, :n, :n] = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
+        restoring[:, :n, n] = restoring[:, n, :n] = -slopes[:, n:, -1]
+        restoring[:, n, n] = twice
+        push = _roots(follow / state[:, None] / state * cost) if pieces else np.zeros_like(follow)
+        basis = np.linalg.eigh(push[1::2] @ push[1::2])[1][:, :, -min(controls, n) :] if controls else None
+        return cls(
+            float(times[-1] - times[0]),
+            pieces,
+            motion * state / state[:, None],
+            push,
+            restoring * state[:, None] * state / cost,
+            np.concatenate([rates[:n], np.ones((1, len(times)))]).T / state,
+            np.concatenate([-rates[n:], by_time[None]]).T * state / cost,
+            met or {},
+            basis,
+        )
+
     @property
     def widths(self) -> tuple[float, int]:
         """The length of a step, and how many there are in a piece or, without any, in the whole arc."""
@@ -226,7 +277,7 @@ def units(solution: Solution, state: Array) -> tuple[Array, float]:
     return np.append(state, float(solution.times[-1] - solution.times[0])), cost
 
 
-def roots(follow: Array) -> Array:
+def _roots(follow: Array) -> Array:
     """Square roots of a stack of symmetric matrices that are not negative."""
     values, axes = np.linalg.eigh((follow + follow.transpose(0, 2, 1)) / 2.0)
     return np.asarray((axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1))
@@ -248,7 +299,8 @@ def quadratic(
     lengths, own = max(groups) + 1, max(groups) + 1
     total = lengths + sum(arc.columns for arc in arcs)
     each = [sum(arc.lasting for arc, one in zip(arcs, groups, strict=True) if one == k) for k in range(lengths)]
-    form, x, ties = np.zeros((total, total)), np.zeros((len(state), total)), list[Array]()
+    form, ties = np.zeros((total, total)), list[Array]()
+    x: Array = np.zeros((len(state), total))
     for arc, group in zip(arcs, groups, strict=True):
         length = np.zeros(total)
         length[group] = lasting * (arc.lasting / each[group] if each[group] else 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
-from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, roots, scaled_units
+from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, scaled_units
 
 PIECES = 50
 """On which the control's change is constant, at most."""
@@ -58,21 +58,15 @@ def along(solution: Solution, grid: Grid) -> Along | None:
     z = np.array([np.interp(t, solution.times, row) for row in np.concatenate([solution.x, solution.lam])])
     state, cost = scaled_units(solution)
     scale = np.concatenate([state[:-1], cost / state[:-1]])
-    slopes = model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds).transpose(2, 0, 1) * (scale / scale[:, None])
-    law = _law_slopes(solution, t, z, scale)
-    rates = (np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds)) / scale[:, None]).T
+    slopes = np.zeros((len(t), 2 * n, 2 * n + 1))
+    slopes[:, :, :-1] = model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds).transpose(2, 0, 1)
+    law, rates = _law_slopes(solution, t, z, scale), np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
     if not (np.isfinite(slopes).all() and np.isfinite(law).all() and np.isfinite(rates).all()):
         return None
-    motion, follow, restoring = np.zeros((3, len(t), n + 1, n + 1))
-    motion[:, :n, :n], follow[:, :n, :n] = slopes[:, :n, :n], -slopes[:, :n, n:]
-    restoring[:, :n, :n] = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
-    push = roots(follow)
-    forward = np.column_stack([rates[:, :n], np.full(len(t), 1.0 / state[-1])])
-    backward = np.column_stack([-rates[:, n:], np.zeros(len(t))])
-    pieces = gcd(grid.steps, PIECES)
-    arc = Arc(grid.tf - grid.t0, pieces, motion, push, restoring, forward, backward)
+    still = np.zeros(len(t)), np.zeros(len(t))  # the final time is given
+    arc = Arc.of(t, slopes, rates, still, state, cost, gcd(grid.steps, PIECES))
     # the law follows the costates as -K B', where push is the root of B K B'
-    direct = -law[:, :, n:] @ np.linalg.pinv(push[:, :n, :n], rcond=NUDGE, hermitian=True)
+    direct = -law[:, :, n:] @ np.linalg.pinv(arc.push[:, :n, :n], rcond=NUDGE, hermitian=True)
     return Along(quadratic(solution, [arc], state, cost), law[:, :, :n], direct)
 
 

@@ -6,14 +6,13 @@ can end it before, and that is said.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
 from satsym import activity
 from satsym.instance import Guess
-from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solution import Check, Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
 from satsym.solvers.certificate.competitors.searched import kinds, searched
@@ -47,20 +46,24 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     if not switches and convex(instance):
         return Comparison(proved=(Check("not convex", 0.0, 0.0),))
     activity.tell("certificate: comparing with other starts of the search ...")
+    unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
     with np.errstate(all="ignore"):
-        by_search = searched(solution, limits, seed)
-        unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
-        quicker = shorter(solution, limits) if unhindered and not limits.late else None
-        found = _by_kind(solution, [*by_search.competitors, *filter(None, [quicker])], limits)
-    possible, exact = kinds(instance), by_search.better
+        costs, exact = searched(solution, limits, seed)
+        if unhindered and not limits.late and (quicker := shorter(solution, limits)) and not limits.late:
+            costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
+    found = dict[Kind, Compared]()
+    for kind, own in costs.items():
+        answered, coarse = [cost for cost in own if not np.isnan(cost)], COARSE.get(kind) if switches else None
+        found[kind] = summed(solution, kind, len(own), answered, limits.late, coarse or SAME_COST)
+    possible = kinds(instance)
     enough = {kind for kind, one in found.items() if one.summary.solved and not limits.late}
     if switches and not limits.late and linear_motion(instance) is not None:  # nothing of it arrives anywhere else
         enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
     missing = tuple(kind for kind in possible if kind not in enough)
     if not switches and Kind.STARTS in found and found[Kind.STARTS].margin >= 0.0 and not limits.late:
         drawn, led = _from_controls(solution, seed, limits)
-        own = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)
-        found[Kind.STARTS], exact = replace(own, enough=drawable(solution)), exact or led
+        starts = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)
+        found[Kind.STARTS], exact = replace(starts, enough=drawable(solution)), exact or led
     if limits.late or not (found or switches):  # nothing to compare with is said
         found |= {kind: summed(solution, kind, 0, [], limits.late) for kind in missing if kind not in found}
     return Comparison(tuple(found[kind] for kind in possible if kind in found), missing, exact)
@@ -69,17 +72,6 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
 def switching(solution: Solution) -> bool:
     """Whether an answer consists of arcs between which controls switch."""
     return solution.method == "bang-bang" or solution.instance.model.spec.switching
-
-
-def _by_kind(solution: Solution, every: Iterable[Competitors], limits: Limits) -> dict[Kind, Compared]:
-    """What competitors of each kind came to."""
-    found: dict[Kind, Compared] = {}
-    for one in every:
-        coarse = COARSE.get(one.kind, SAME_COST) if switching(solution) else SAME_COST
-        own = summed(solution, one.kind, one.tried, [one.cheapest] if one.solved else [], limits.late, coarse)
-        own = replace(own, summary=one)
-        found[one.kind] = found[one.kind].joined(own) if one.kind in found else own
-    return found
 
 
 def _from_controls(solution: Solution, seed: int, limits: Limits) -> tuple[Compared | None, Solution | None]:

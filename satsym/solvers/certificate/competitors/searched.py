@@ -6,11 +6,10 @@ Where these show nothing cheaper, extremals that are drawn are starts as well.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from satsym.instance import Guess, Instance
-from satsym.solution import Competitors, Kind, Solution
+from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, going_round, margin
 from satsym.solvers.certificate.competitors.drawn import extremals_below
 from satsym.solvers.iteration import Limits
@@ -26,22 +25,6 @@ GUESSED = 200_000
 """Unknowns times iterations that the search may take from an extremal that was drawn."""
 
 
-@dataclass(frozen=True)
-class Searched:
-    """What starts came to.
-
-    Attributes
-    ----------
-    competitors
-        One for each kind.
-    better
-        The cheapest extremal that costs less than the answer, if any.
-    """
-
-    competitors: tuple[Competitors, ...]
-    better: Solution | None
-
-
 def kinds(instance: Instance) -> list[Kind]:
     """Kinds of starts that an instance has."""
     round_ = [Kind.REVOLUTIONS] if _angles(instance) else going_round(instance)
@@ -49,7 +32,7 @@ def kinds(instance: Instance) -> list[Kind]:
     return [Kind.STARTS, *times, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
 
 
-def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
+def searched(solution: Solution, limits: Limits, seed: int = 0) -> tuple[dict[Kind, list[float]], Solution | None]:
     """Compare an answer with what the search's starts come to; starts that the clock ends are left out.
 
     Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
@@ -59,6 +42,13 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
     ----------
     seed
         Of what is drawn.
+
+    Returns
+    -------
+    dict
+        Costs of each kind that was tried, NaN where a start led to nothing.
+    Solution
+        The cheapest extremal that costs less than the answer, if any.
     """
     from satsym.solvers.search import solving
 
@@ -90,7 +80,7 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> Searched:
             break
     if instance.tf is None and math.isfinite(cost := _at_once(solution)):
         costs[Kind.DURATIONS].append(cost)
-    return Searched(tuple(_summed(costs)), better)
+    return {kind: own for kind, own in costs.items() if own}, better
 
 
 def _angles(instance: Instance) -> list[str]:
@@ -109,10 +99,3 @@ def _at_once(solution: Solution) -> float:
 
     lasting = float(solution.times[-1]) - solution.instance.t0
     return two_point(replace(solution.instance, guess=Guess(), free=()), lasting).at_once
-
-
-def _summed(costs: dict[Kind, list[float]]) -> Iterator[Competitors]:
-    for kind, own in costs.items():
-        solved: Sequence[float] = [cost for cost in own if not math.isnan(cost)]
-        if own:
-            yield Competitors(kind, len(own), len(solved), min(solved, default=math.nan))

@@ -24,7 +24,7 @@ from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.passing import places
 from satsym.solvers.certificate.constrained.replay import Piece, Replay
-from satsym.solvers.certificate.second_variation import Arc, Met, quadratic, roots, scaled_units
+from satsym.solvers.certificate.second_variation import Arc, Met, quadratic, scaled_units
 from satsym.solvers.constrained.active import control, field, multipliers
 from satsym.solvers.constrained.arcs import conditions, gradient, holds_control, missed
 from satsym.solvers.constrained.equations import hamiltonian
@@ -64,22 +64,9 @@ def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], st
             found[n:] -= push * gradient(instance, k, v[-1], v[:n])
         return found
 
-    here = np.concatenate([z, t[None]])
-    slopes = np.moveaxis(_slopes(rates, here), -1, 0)
-    motion, follow, restoring = np.zeros((3, len(t), n + 1, n + 1))
-    motion[:, :n, :n], motion[:, :n, n], follow[:, :n, :n] = slopes[:, :n, :n], slopes[:, :n, -1], -slopes[:, :n, n:-1]
-    restoring[:, :n, :n] = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
-    restoring[:, :n, n] = restoring[:, n, :n] = -slopes[:, n:, -1]
-    by_time, step = np.zeros(len(t)), DIFFERENCE * lasting
+    here, h, step = np.concatenate([z, t[None]]), [np.zeros(len(t))] * 3, DIFFERENCE * lasting
     if not instance.model.spec.autonomous:
-        by_time = _by_time(instance, piece, t, z)
-        restoring[:, n, n] = (_by_time(instance, piece, t + step, z) - _by_time(instance, piece, t - step, z)) / (
-            2 * step
-        )
-    forward, backward = np.real(rates(here))[:n], np.append(-np.real(rates(here))[n:], by_time[None], axis=0)
-    push = roots(follow / state[:, None] / state * cost)
-    middles = push[1::2] @ push[1::2]
-    basis = np.linalg.eigh(middles)[1][:, :, -min(len(instance.model.spec.controls), n) :]
+        h = [_by_time(instance, piece, t + k * step, z) for k in (-1, 0, 1)]
     rows = {k: gradient(instance, k, t, z[:n]) for k in kept}
     met = {
         place: Met(np.array([np.append(row[:, 2 * place], 0.0) for row in rows.values()]) * state)
@@ -89,17 +76,9 @@ def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], st
         along = met[count].kept if count in met else np.zeros((0, n + 1))
         ties = np.concatenate([along, *(row * state for row, _ in at_end)])
         met[count] = Met(ties, sum(curved for _, curved in at_end) * state[:, None] * state / cost)
-    return Arc(
-        lasting,
-        count,
-        motion * state / state[:, None],
-        push,
-        restoring * state[:, None] * state / cost,
-        np.append(forward, np.ones((1, len(t))), axis=0).T / state,
-        backward.T * state / cost,
-        met,
-        basis,
-    )
+    slopes, by_time = np.moveaxis(_slopes(rates, here), -1, 0), (h[1], (h[2] - h[0]) / (2.0 * step))
+    controls = len(instance.model.spec.controls)
+    return Arc.of(t, slopes, np.real(rates(here)), by_time, state, cost, count, met, controls)
 
 
 def _by_time(instance: Instance, piece: Piece, t: Array, z: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.reintegration.flow import typical
-from satsym.solvers.certificate.second_variation import Arc, Met, Quadratic, quadratic, roots, units
+from satsym.solvers.certificate.second_variation import Arc, Met, Quadratic, quadratic, units
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.boundary import BoundaryField, off_boundary
@@ -67,25 +67,18 @@ def _arc(piece: Piece, entered: int | None, state: Array, cost: float, pieces: i
     count = int(np.ceil(share)) if isinstance(field, ThrottledField) else 0
     steps = count * STEPS_PER_PIECE if count else max(FEWEST_STEPS, int(np.ceil(share * STEPS_PER_PIECE)))
     times = np.linspace(piece.start, piece.end, 2 * steps + 1) if lasting else np.array([piece.start])
-    motion, follow, restoring = np.zeros((3, len(times), n + 1, n + 1))
-    z = piece.before[:, None]
+    z, slopes, twice = piece.before[:, None], np.zeros((len(times), 2 * n, 2 * n + 1)), np.zeros(len(times))
     if lasting:
         span = Span(field, piece.start, piece.end, piece.before)
         z = by.solved(lambda t, y: field.rates(t, y.tolist()), span, piece.before, by.sizes, t_eval=times).y
-        slopes = np.stack([field.linearised(t, y)[1] for t, y in zip(times.tolist(), z.T.tolist(), strict=True)])
-        motion[:, :n, :n], follow[:, :n, :n] = slopes[:, :n, :n], -slopes[:, :n, n:]
-        restoring[:, :n, :n] = -slopes[:, n:, :n]
+        each = zip(times.tolist(), z.T.tolist(), strict=True)
+        slopes[:, :, :-1] = np.stack([field.linearised(t, y)[1] for t, y in each])
         if not field.model.spec.autonomous:
-            drift = _drift(field, times, z).T
-            motion[:, :n, n], restoring[:, :n, n], restoring[:, n, :n] = drift[:, :n], -drift[:, n:], -drift[:, n:]
+            slopes[:, :, -1] = _drift(field, times, z).T
             before, after = (_by_time(field, times + k * SHIFT * lasting, z) for k in (-1.0, 1.0))
-            restoring[:, n, n] = (after - before) / (2.0 * SHIFT * lasting)
-    push = roots(follow / state[:, None] / state * cost) if count else np.zeros_like(follow)
-    rates, by_time = field.along(times, z)[1], _by_time(field, times, z)
-    forward = np.concatenate([rates[:n], np.ones((1, len(times)))]) / state[:, None]
-    backward = np.concatenate([-rates[n:], by_time[None]]) * state[:, None] / cost
-    motion, restoring = motion * state / state[:, None], restoring * state[:, None] * state / cost
-    return Arc(lasting, count, motion, push, restoring, forward.T, backward.T, met)
+            twice = (after - before) / (2.0 * SHIFT * lasting)
+    by_time = _by_time(field, times, z), twice
+    return Arc.of(times, slopes, field.along(times, z)[1], by_time, state, cost, count, met)
 
 
 def _by_time(field: Field, times: Array, z: Array) -> Array:
