@@ -17,7 +17,7 @@ from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes
-from satsym.solvers.certificate.conditions import CANCELLED
+from satsym.solvers.certificate.conditions import CANCELLED, COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
 from satsym.solvers.certificate.corners import CLEAR_PIVOT, inverses, positive
 from satsym.solvers.certificate.jacobi import TURN, followed
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
@@ -25,7 +25,6 @@ from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, NEGLIGI
 from satsym.solvers.certificate.reintegration.node_defect import FINE
 from satsym.solvers.certificate.reintegration.segments import TURN as QUARTER
 from satsym.solvers.certificate.reintegration.segments import balanced
-from satsym.solvers.certificate.verdict import COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap

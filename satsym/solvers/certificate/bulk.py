@@ -17,13 +17,13 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.conclusion import OF_FLOW, OF_NODES, concluded
+from satsym.solvers.certificate.conclusion import OF_NODES, concluded
 from satsym.solvers.certificate.corners import positive
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, typical, unit_sizes
 from satsym.solvers.certificate.reintegration.node_defect import Parameters, joined, missed, stretches
 from satsym.solvers.certificate.reintegration.segments import balanced
-from satsym.solvers.certificate.verdict import DEFECT, certify, first_order
+from satsym.solvers.certificate.verdict import certify
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Verdict
 
@@ -170,8 +170,8 @@ def _confirmed(solutions: Sequence[Solution]) -> list[Certificate | None]:
 
 def _judged(solution: Solution, flow: Flow, without: Array, defect: float) -> Certificate | None:
     first = [
-        *first_order(solution, flow, OF_FLOW, without),
-        Check(OF_NODES, defect, DEFECT),
+        *conditions.first_order(solution, flow, without=without),
+        Check(OF_NODES, defect, conditions.DEFECT),
     ]
     legendre = conditions.legendre_clebsch(solution)
     if not (all(check.passed for check in first) and legendre > 0.0):

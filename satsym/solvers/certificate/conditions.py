@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solution import Solution
+from satsym.solution import Check, Solution
+from satsym.solvers.certificate.conclusion import BOUNDARY, HAMILTONIAN, OF_FLOW, STATIONARITY
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
 from satsym.solvers.certificate.reintegration.flow import (
     FAINT_COSTATE,
@@ -23,6 +24,9 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.slopes import undecided
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
+
+RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
+"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
 CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
@@ -115,22 +119,64 @@ def stationarity(solution: Solution) -> float:
     return float(apart.max() / size) if size > 0.0 else 0.0
 
 
-def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
-    """Largest change of H along the flow, relative to the terms it consists of; ``None`` with explicit time.
+def hamiltonian_drift(solution: Solution, flow: Flow, u: Array | None = None) -> float:
+    """Largest change of H along the flow, relative to the terms it consists of.
 
     Faint costates count as a share of their unit, as where they are compared: what is made of rounding keeps nothing.
+
+    Parameters
+    ----------
+    u
+        The controls along it, if the law alone does not give them.
     """
     instance, model = solution.instance, solution.instance.model
-    if not model.spec.autonomous:
-        return None
-    u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.control_set.arguments)
-    h = model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters)
-    rates = np.abs(model.dynamics_batch(flow.times, flow.x, u, instance.parameters))
-    terms = (np.abs(flow.lam) * rates).sum(axis=0).max()
+    t, x, lam, p = flow.times, flow.x, flow.lam, instance.parameters
+    u = model.control_law_batch(t, x, lam, p, instance.control_set.arguments) if u is None else u
+    h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)
+    rates = np.abs(model.dynamics_batch(t, x, u, p))
     unit, n = unit_sizes(solution), len(solution.x)
     slowest = NEGLIGIBLE * unit[:n] / float(solution.times[-1] - solution.times[0])
-    faint = FAINT_COSTATE * unit[n:] @ np.maximum(np.broadcast_to(rates, flow.x.shape).max(axis=1), slowest)
+    faint = FAINT_COSTATE * unit[n:] @ np.maximum(np.broadcast_to(rates, x.shape).max(axis=1), slowest)
+    terms = (np.abs(lam) * rates).sum(axis=0).max()
     return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), faint, 1e-300))
+
+
+def first_order(
+    solution: Solution,
+    flow: Flow,
+    defect: str = OF_FLOW,
+    *,
+    off_law: float | None = None,
+    u: Array | None = None,
+    constant: bool = True,
+    without: Array | None = None,
+    more: float = 0.0,
+) -> list[Check]:
+    """The first-order conditions along a flow; that H is constant comes last.
+
+    Parameters
+    ----------
+    defect
+        What the distance of the solution from the flow is called.
+    off_law
+        By how much controls violate the minimum of H, if that is not their difference from the law.
+    u
+        The controls along the flow, if the law alone does not give them.
+    constant
+        Whether H is constant in a model without explicit time.
+    without, more
+        As :func:`boundary_residual` has them.
+    """
+    checks = [
+        Check(BOUNDARY, boundary_residual(solution, flow, without, more), RESIDUAL),
+        Check(defect, dynamics_defect(solution, flow), DEFECT),
+        Check(STATIONARITY, stationarity(solution) if off_law is None else off_law, STATIONARY),
+        Check("cost", off_cost(solution, flow), COST),
+        Check("domain violation", float(not solution.instance.model.in_domain(flow.x)), 0.0),
+    ]
+    if constant and solution.instance.model.spec.autonomous:
+        checks.append(Check(HAMILTONIAN, hamiltonian_drift(solution, flow, u), DRIFT))
+    return checks
 
 
 def legendre_clebsch(solution: Solution) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.arrays import Array
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
@@ -12,30 +11,23 @@ from satsym.solvers.certificate import conditions, jumps
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.solvers.certificate.conclusion import (
-    BOUNDARY,
-    HAMILTONIAN,
-    OF_FLOW,
     OF_NODES,
     OF_SEGMENTS,
-    STATIONARITY,
     concluded,
     unmeasured,
 )
-from satsym.solvers.certificate.conditions import correction, node_by_node
+from satsym.solvers.certificate.conditions import DEFECT, RESIDUAL, correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
-from satsym.solvers.certificate.reintegration.flow import TOLERANCE, Flow, flow
+from satsym.solvers.certificate.reintegration.flow import TOLERANCE, flow
 from satsym.solvers.certificate.reintegration.node_defect import node_defect
 from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
 from satsym.solvers.iteration import MOST, Limits, deadline_of
-
-RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
-"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
 
 def certify(solution: Solution, compared: bool = True) -> Certificate | None:
@@ -132,7 +124,7 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
     recomputed = (along and closed_flow(solution, along)) or flow(solution)
-    checks = first_order(solution, recomputed, OF_FLOW) if recomputed else []
+    checks = conditions.first_order(solution, recomputed) if recomputed else []
     if checks:
         checks.append(Check(OF_NODES, node_defect(solution), DEFECT))
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
@@ -141,29 +133,7 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     if reached is None:
         return checks
     moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
-    return [*first_order(solution, reached, OF_SEGMENTS), moved]
-
-
-def first_order(solution: Solution, recomputed: Flow, defect: str, without: Array | None = None) -> list[Check]:
-    """The first-order conditions along a flow.
-
-    Parameters
-    ----------
-    defect
-        What the distance of the solution from the flow is called.
-    without
-        Where the motion would end without control, if that is known already.
-    """
-    model = solution.instance.model
-    checks = [
-        Check(BOUNDARY, conditions.boundary_residual(solution, recomputed, without), RESIDUAL),
-        Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
-        Check(STATIONARITY, conditions.stationarity(solution), STATIONARY),
-        Check("cost", conditions.off_cost(solution, recomputed), COST),
-        Check("domain violation", float(not model.in_domain(recomputed.x)), 0.0),
-    ]
-    drift = conditions.hamiltonian_drift(solution, recomputed)
-    return checks if drift is None else [*checks, Check(HAMILTONIAN, drift, DRIFT)]
+    return [*conditions.first_order(solution, reached, OF_SEGMENTS), moved]
 
 
 def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[Check]:

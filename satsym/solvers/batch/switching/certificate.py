@@ -17,10 +17,11 @@ from satsym.arrays import Array, distinct
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.switching.arrivals import Arrivals, stated
+from satsym.solvers.certificate.conditions import DRIFT, RESIDUAL
 from satsym.solvers.certificate.jacobi import INDEPENDENT
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import NEGLIGIBLE, TOLERANCE
-from satsym.solvers.certificate.switching.conditions import CLOSE_TO_SWITCH, CURVED, DRIFT, RESIDUAL, STRICT, TIMES
+from satsym.solvers.certificate.switching.conditions import CLOSE_TO_SWITCH, CURVED, STRICT, TIMES
 from satsym.solvers.certificate.switching.end_switches import AT_SWITCH
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Status, Verdict

@@ -14,19 +14,18 @@ from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison, summed
 from satsym.solvers.certificate.conclusion import (
-    BOUNDARY,
     HAMILTONIAN,
     OF_FLOW,
     OF_SEGMENTS,
-    STATIONARITY,
     concluded,
     unmeasured,
 )
+from satsym.solvers.certificate.conditions import DEFECT, DRIFT, RESIDUAL
 from satsym.solvers.certificate.constrained.passing import drifting, passing
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.constrained.variants import near
-from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, typical
+from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, Flow, typical
 from satsym.solvers.constrained.active import control, deciding, multipliers
 from satsym.solvers.constrained.arcs import holds_control, sizes, values
 from satsym.solvers.constrained.convexity import convex
@@ -34,9 +33,6 @@ from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
 from satsym.solvers.iteration import MOST, Limits
-
-RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
-"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
 NAMES = {OF_FLOW: OF_SEGMENTS}
 """What is called otherwise where it is measured part by part."""
@@ -109,19 +105,10 @@ def _in_segments(solution: Solution, again: Replay) -> tuple[list[Check], Replay
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
-    flow = again.flow(solution)
-    checks = [
-        Check(
-            BOUNDARY,
-            conditions.boundary_residual(solution, flow, more=more_at_end(solution, again)),
-            RESIDUAL,
-        ),
-        Check(OF_FLOW, _defect(solution, again), DEFECT),
-        Check(STATIONARITY, _stationarity(solution, again), STATIONARY),
-        Check("cost", conditions.off_cost(solution, flow), COST),
-        Check("domain violation", float(not solution.instance.model.in_domain(flow.x)), 0.0),
-        Check("path constraint violated", _violated(solution, again), VIOLATED),
-    ]
+    off_law, more = _stationarity(solution, again), more_at_end(solution, again)
+    checks = conditions.first_order(solution, again.flow(solution), off_law=off_law, constant=False, more=more)
+    checks[1] = Check(OF_FLOW, _defect(solution, again), DEFECT)  # before the jump at the end
+    checks.append(Check("path constraint violated", _violated(solution, again), VIOLATED))
     if again.meets_a_boundary(solution):
         checks += [
             Check("off the boundary on a boundary arc", _off_boundary(solution, again), VIOLATED),
@@ -318,14 +305,11 @@ def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[
 
 def _drift(solution: Solution, again: Replay) -> float | None:
     """Largest change of H along the flow, relative to its terms; ``None`` where time is explicit."""
-    instance, n = solution.instance, len(solution.x)
-    model, p, t = instance.model, instance.parameters, solution.times
-    x, lam = again.z[:n], again.z[n:]
+    instance, n, t = solution.instance, len(solution.x), solution.times
     parts = [control(instance, one.active, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
-    u = np.concatenate(parts, axis=1)
+    u, flow = np.concatenate(parts, axis=1), Flow(t, again.z[:n], again.z[n:], again.cost)
     moving: Any = t + 1e-30j
-    if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any() or drifting(solution, again):
+    explicit = np.imag(values(instance, moving, flow.x, u)).any()
+    if not instance.model.spec.autonomous or explicit or drifting(solution, again):
         return None
-    h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)
-    terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
-    return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))
+    return conditions.hamiltonian_drift(solution, flow, u)

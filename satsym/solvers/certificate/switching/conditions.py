@@ -11,7 +11,8 @@ from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.competitors.comparing import compared
 from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.solvers.certificate.competitors.searched import kinds
-from satsym.solvers.certificate.conclusion import BOUNDARY, HAMILTONIAN, OF_FLOW, STATIONARITY, concluded, unmeasured
+from satsym.solvers.certificate.conclusion import concluded, unmeasured
+from satsym.solvers.certificate.conditions import RESIDUAL, STATIONARY
 from satsym.solvers.certificate.reintegration.flow import Flow, typical
 from satsym.solvers.certificate.switching import boundaries
 from satsym.solvers.certificate.switching.convexity import convex
@@ -28,9 +29,8 @@ from satsym.solvers.switching.structure import SINGULAR
 from satsym.solvers.switching.throttled import shown_by, signs
 from satsym.status import Verdict
 
-RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
-"""Largest boundary residual, defect, violation of the minimum of H, change of H, of switching times and of the cost,
-relative."""
+TIMES = 1e-9
+"""Largest change of switching times, relative to the duration."""
 
 STRICT = 1e-6
 """Least rate of a switching function at a switch, relative to its size over the duration; least distance between
@@ -84,22 +84,16 @@ def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] |
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
-    instance, n = solution.instance, len(solution.instance.initial)
-    flow = Flow(again.times, again.z[:n], again.z[n:], again.cost)
-    checks = [
-        Check(BOUNDARY, conditions.boundary_residual(solution, flow), RESIDUAL),
-        Check(OF_FLOW, conditions.dynamics_defect(solution, flow), DEFECT),
-        Check("switching times", _moved(solution, again), TIMES),
-        Check(STATIONARITY, _excess(solution), STATIONARY),
-        Check("cost", conditions.off_cost(solution, flow), COST),
-        Check("domain violation", float(not instance.model.in_domain(again.z[:n])), 0.0),
-    ]
+    n = len(solution.x)
+    flow, constant = Flow(again.times, again.z[:n], again.z[n:], again.cost), boundaries.still(again)
+    checks = conditions.first_order(solution, flow, off_law=_excess(solution), u=again.u, constant=constant)
+    checks.insert(2, Check("switching times", _moved(solution, again), TIMES))
+    own = list[Check]()
     if any(piece.field.kept is not None for piece in again.pieces):
-        checks.append(Check("switching function on singular arcs", _off_singular(solution, again), STATIONARY))
-    if instance.model.spec.path_constraints:
-        checks += boundaries.necessary(solution, again)
-    if instance.model.spec.autonomous and boundaries.still(again):
-        checks.append(Check(HAMILTONIAN, _drift(solution, again), DRIFT))
+        own.append(Check("switching function on singular arcs", _off_singular(solution, again), STATIONARY))
+    if solution.instance.model.spec.path_constraints:
+        own += boundaries.necessary(solution, again)
+    checks[6:6] = own
     return checks
 
 
@@ -235,15 +229,6 @@ def _off_singular(solution: Solution, again: Replay) -> float:
             sigma = signs(field.instance, times, z[: field.n], z[field.n :])[0][control]
             worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
     return worst
-
-
-def _drift(solution: Solution, again: Replay) -> float:
-    """Largest change of H along the replay, relative to the terms it consists of."""
-    instance, n = solution.instance, len(solution.instance.initial)
-    x, lam = again.z[:n], again.z[n:]
-    h = instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters)
-    terms = _terms(instance, again.times, x, lam, again.u)
-    return float(np.abs(h - h[0]).max() / max(terms, float(np.abs(h).max()), 1e-300))
 
 
 def _legendre(again: Replay) -> float:
