@@ -11,7 +11,6 @@ from satsym.instance import Instance
 from satsym.instance.numbers import Table
 from satsym.kernels.batch.compiling import able
 from satsym.solution import Certificate, Solution
-from satsym.solvers.certificate.bulk import certify_all
 from satsym.solvers.improving import goes_on
 from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
@@ -107,11 +106,13 @@ def _from_neighbours(task: Task, repeated: Repeated, single: Callable[[str, Inst
 
     What leads to no minimum is left to the single solver.
     """
+    from satsym.solvers.certificate import certify
+
     answers = [_again(repeated, instance) for _, instance in cases]
     found = [answer for answer in answers if answer is not None]
     certificates: list[Certificate | None] = [None] * len(found)
     if task.checked is Checked.LOCAL:
-        certificates = certify_all([solution for solution, _ in found])
+        certificates = [certify(solution, compared=False) for solution, _ in found]
     certified = iter(zip(found, certificates, strict=True))
     done: list[Row] = []
     for (key, instance), answer in zip(cases, answers, strict=True):

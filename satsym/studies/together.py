@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from satsym import methods
 from satsym.instance import Instance
 from satsym.instance.numbers import Table
-from satsym.solvers.certificate.corners import positive
+from satsym.solvers.batch.corners import positive
 from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.redundant_ends import redundant
 from satsym.status import Status, Verdict

@@ -14,12 +14,12 @@ from satsym.kernels import load
 from satsym.solvers import linear
 from satsym.solvers.batch import closed_form
 from satsym.solvers.batch.certificate import minima
+from satsym.solvers.batch.corners import positive
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.motion import motion
 from satsym.solvers.batch.newton import Nodes, Outcome, transitions
 from satsym.solvers.batch.solving import solved, solved_together
 from satsym.solvers.by_search import collocation as solve
-from satsym.solvers.certificate.corners import positive
 from tests.certificate.test_certificate import oscillator
 
 BACKENDS = [False, pytest.param(True, marks=pytest.mark.slow)]

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
+from satsym.solvers.batch.corners import CLEAR_PIVOT, inverses, positive
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED, COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
-from satsym.solvers.certificate.corners import CLEAR_PIVOT, inverses, positive
 from satsym.solvers.certificate.jacobi import TURN, followed
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, NEGLIGIBLE, ROUNDED, TOLERANCE

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solvers.batch.condensing import Condensing
-from satsym.solvers.certificate.corners import inverses
+from satsym.solvers.batch.corners import inverses
 
 
 @dataclass(frozen=True, eq=False)

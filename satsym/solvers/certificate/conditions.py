@@ -35,7 +35,7 @@ STRICT = 1e-12
 """Share of its largest slope by a control with which H falls beyond a bound that holds it."""
 
 
-def boundary_residual(solution: Solution, flow: Flow, without: Array | None = None, more: float = 0.0) -> float:
+def boundary_residual(solution: Solution, flow: Flow, more: float = 0.0) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares.
 
     A given state is compared with its own size or, where the control moves the end by less, with that, down to a
@@ -46,8 +46,6 @@ def boundary_residual(solution: Solution, flow: Flow, without: Array | None = No
 
     Parameters
     ----------
-    without
-        Where the motion would end without control, if that is known already.
     more
         By how much H at the end exceeds that under the law.
     """
@@ -62,7 +60,7 @@ def boundary_residual(solution: Solution, flow: Flow, without: Array | None = No
     )
     gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
     smallest = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
-    moved = _moved(flow, state, undriven(solution) if without is None else without)
+    moved = _moved(flow, state, undriven(solution))
     rows = np.where(fixed, np.maximum(state * moved, smallest), np.maximum(costate, gradient[:n]))
     found = np.abs(residual[:n]) / rows
     constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
@@ -149,7 +147,6 @@ def first_order(
     off_law: float | None = None,
     u: Array | None = None,
     constant: bool = True,
-    without: Array | None = None,
     more: float = 0.0,
 ) -> list[Check]:
     """The first-order conditions along a flow; that H is constant comes last.
@@ -164,11 +161,11 @@ def first_order(
         The controls along the flow, if the law alone does not give them.
     constant
         Whether H is constant in a model without explicit time.
-    without, more
-        As :func:`boundary_residual` has them.
+    more
+        As :func:`boundary_residual` has it.
     """
     checks = [
-        Check(BOUNDARY, boundary_residual(solution, flow, without, more), RESIDUAL),
+        Check(BOUNDARY, boundary_residual(solution, flow, more), RESIDUAL),
         Check(defect, dynamics_defect(solution, flow), DEFECT),
         Check(STATIONARITY, stationarity(solution) if off_law is None else off_law, STATIONARY),
         Check("cost", off_cost(solution, flow), COST),

@@ -64,7 +64,8 @@ def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], st
             found[n:] -= push * gradient(instance, k, v[-1], v[:n])
         return found
 
-    here, h, step = np.concatenate([z, t[None]]), [np.zeros(len(t))] * 3, DIFFERENCE * lasting
+    here, step = np.concatenate([z, t[None]]), DIFFERENCE * lasting
+    h: list[Array] = [np.zeros(len(t))] * 3
     if not instance.model.spec.autonomous:
         h = [_by_time(instance, piece, t + k * step, z) for k in (-1, 0, 1)]
     rows = {k: gradient(instance, k, t, z[:n]) for k in kept}
