@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from satsym.arrays import Array
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.constrained.arcs import sizes, values
+from satsym.solvers.constrained.violation import between
 from satsym.solvers.failures import tried
 from satsym.status import Verdict
 
@@ -125,7 +125,7 @@ def _off_bounds(solution: Solution) -> float:
     stated = np.unique([t for row in solution.switching_times for t in row])
     at = np.concatenate([times, stated])
     problem = two_point(replace(instance, t0=float(times[0]), tf=float(times[-1]), tf_guess=None), lasting)
-    scaled, tau = _between(solution, at) / problem.scale.both, (at - times[0]) / lasting
+    scaled, tau = between(solution, at) / problem.scale.both, (at - times[0]) / lasting
     room = within.excess(problem.control(tau, scaled, problem.theta, bounded=False))
     low, high = (np.asarray(one).ravel() for one in within.around(len(solution.u)))
     size = float(np.max(np.where(np.isfinite(high - low), high - low, 0.0), initial=0.0)) or 1.0
@@ -137,17 +137,3 @@ def _off_bounds(solution: Solution) -> float:
             if row[k] != row[after] and not ((stated >= times[k]) & (stated <= times[after])).any():
                 return 1.0
     return float(met.max(initial=0.0)) / size
-
-
-def _between(solution: Solution, at: Array) -> Array:
-    """States and costates at any times, shape (2n, M)."""
-    instance, n, t = solution.instance, len(solution.x), solution.times
-    model, p = instance.model, instance.parameters
-    z = np.concatenate([solution.x, solution.lam])
-    moving = (model.dynamics_batch(t, z[:n], solution.u, p), model.costate_rate_batch(t, z[:n], solution.u, z[n:], p))
-    rates = np.concatenate([np.broadcast_to(one, solution.x.shape) for one in moving])
-    k = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
-    h = t[k + 1] - t[k]
-    s = (at - t[k]) / h
-    found = (1 + 2 * s) * (1 - s) ** 2 * z[:, k] + s * s * (3 - 2 * s) * z[:, k + 1]
-    return np.asarray(found + h * (s * (1 - s) ** 2 * rates[:, k] - s * s * (1 - s) * rates[:, k + 1]))
