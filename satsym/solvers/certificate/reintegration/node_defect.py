@@ -39,9 +39,9 @@ def node_defect(solution: Solution) -> float:
         return found
 
     for corner in sorted(t for own in solution.switching_times for t in own if times[0] < t < times[-1]):
-        k = [int(np.searchsorted(times, corner, side="right")) - 1]
-        start[:, k] = leap(rates, begins[k], start[:, k], corner - begins[k])
-        begins[k] = corner
+        node = [int(np.searchsorted(times, corner, side="right")) - 1]
+        start[:, node] = leap(rates, begins[node], start[:, node], corner - begins[node])
+        begins[node] = corner
     lasting, missed, rough = times[1:] - begins, np.full(len(begins), np.inf), np.arange(len(begins))
     parts, columns = 1, EASY
     while len(rough) and parts <= MOST_PARTS:
