@@ -197,12 +197,14 @@ class Quadratic:
     form: Array
     """Shape (P, P), in units of the cost."""
     lengths: int
+    """How many of the changes are of lengths."""
     ties: Array
     """Rows that vanish where the end and the entries are kept, shape (c, P)."""
     free_time: bool
+    """Whether the final time is free."""
 
     def kept(self) -> tuple[Array, Array]:
-        """Units that make all changes comparable, and directions in these in which the ties vanish, as columns."""
+        """Sizes that make all changes comparable, and directions relative to these that keep the ties, as columns."""
         size, lengths = np.sqrt(np.abs(np.diag(self.form))), self.lengths
         size[:lengths] = max(size[:lengths].max(), 1e-300)
         size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
@@ -210,9 +212,9 @@ class Quadratic:
         return size, kernel(rows / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300))
 
     def reduced(self) -> tuple[Array, Array]:
-        """The form where the ties vanish, relative to its diagonal, and those directions in units of all changes."""
+        """The form where the ties vanish, relative to its diagonal, and the changes that it is about, as columns."""
         size, free = self.kept()
-        return free.T @ (self.form / size / size[:, None]) @ free, size[:, None] * free
+        return free.T @ (self.form / size / size[:, None]) @ free, free / size[:, None]
 
     @property
     def curvature(self) -> float:
@@ -228,7 +230,7 @@ class Quadratic:
         flat
             Up to which an eigenvalue counts as zero.
         """
-        form, free = self.reduced()
+        (form, _), (size, free) = self.reduced(), self.kept()
         if not form.size:
             return False
         later = np.zeros(len(self.form))
@@ -236,7 +238,7 @@ class Quadratic:
         if not self.free_time:  # what begins with a longer arc ends with a shorter one
             later[self.lengths - 1] -= 1.0
         values, axes = np.linalg.eigh(form)
-        direction = free.T @ later
+        direction = free.T @ (size * later)
         along = abs(float(axes[:, 0] @ direction)) / max(float(np.linalg.norm(direction)), 1e-300)
         return bool(abs(values[0]) <= flat and (values[1:] > flat).all() and along > ALONG)
 
