@@ -102,7 +102,7 @@ def _certified(cases: Sequence[Any]) -> Table:
         each: systems.format(_systems(lambda: [compared(one) for one in answers]) / of_all),
     }
     goals = {
-        measured: (Goal("of a solution", found[measured].times(found[solving]), 3.0),),
+        measured: (Goal("of a solution", found[measured].times(found[solving]), 5.0),),
         each: (Goal("of a solution", found[each].times(found[solving]), 1.5),),
     }
     made = [
