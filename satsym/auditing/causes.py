@@ -16,8 +16,6 @@ SILENT = ("confirmed", "illegible", "undecided")
 """Verdicts that find no fault."""
 _FALSE = ("wrong", "artefact", "unit error")
 _MILD = {"imprecise", "notation"}
-_RESULTS = ("number", "table")
-"""Kinds of rows that are results whatever depends on them."""
 
 
 class Weight(str, Enum):
@@ -113,8 +111,9 @@ def _weight(places: Sequence[Judged], spoiled: Sequence[Judged]) -> Weight:
     if any(map(_falls, (*places, *spoiled))):
         return Weight.OVERTURNS
     false = [row for row in (*places, *spoiled) if row.verdict in _FALSE]
-    carried_on = any(row.by_formula and row.verdict == "wrong" for row in places)  # into rows that may not be looked at
-    if spoiled or carried_on or any(row.kind in _RESULTS or row.role == "result" for row in false):
+    # a formula is wrong, and no misprint, where it is used, if only by rows that are not looked at
+    carried_on = any(row.by_formula and row.kind != "number" and row.verdict == "wrong" for row in places)
+    if spoiled or carried_on or any(row.role == "result" for row in false):
         return Weight.RESULT
     if all(row.verdict == "notation" for row in places):
         return Weight.NOTATION

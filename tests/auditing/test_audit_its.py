@@ -54,6 +54,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "section 3.2 eigenvalues decide": claims.driven_oscillator,
         "section 4.1.1 characteristic function": by_hand.matrix_itself,
         **{f"2.19 {part}": sweeps.inconsistent for part in ("k2", "k3", "k4", "order")},
+        "section 4.1 equilibrium, r": by_hand.one_of_many_circles,
         "section 4.1 equilibrium": by_hand.steady_motion,
         "4.19": by_hand.from_zero_differences,
         "4.22 first x": by_hand.written_out_state,

@@ -156,18 +156,16 @@ def test_references_are_one_too_low(found, ledger):
         found("misprint", key)
 
 
-def test_a_quick_differentiator_asks_for_a_large_torque(found):
-    printed = 3 * P_C * I_Y * E**2
-    for filtered in (1.0, 0.1):
-        # from the command to the torque: I_y s^2 G, with the differentiator s/(filtered s + 1)
-        numerator = np.polymul([I_Y, 0, 0], np.polyadd([K1, 0], K2 * np.array([filtered, 1])))
-        denominator = np.polyadd(
-            np.polymul([I_Y, 0, 0], [filtered, 1]), np.polyadd([K1, 0], K2 * np.array([filtered, 1]))
-        )
-        _, torque = step_of(P_C * numerator, denominator, 5.0)
-        assert np.abs(torque).max() == pytest.approx((K1 / filtered + K2) * P_C, rel=1e-6)
-        assert np.abs(torque).max() > 50 * printed
-    found("wrong", "13 largest torque")
+def test_after_the_impulse_the_first_torque_is_the_largest(found):
+    """I_y theta'' of the step response; the impulse is at the step, and "t -> 0" is after it."""
+    torque = iy * (p * (1 + sp.exp(-e * t) * (e * t - 1))).diff(t, 2)
+    (turn,) = sp.solve(torque.diff(t), t)
+    assert sp.simplify(turn - 4 / e) == 0
+    first = sp.limit(torque, t, 0, "+")
+    assert first == -3 * p * iy * e**2
+    assert abs(sp.simplify(torque.subs(t, turn) / first)) < 1
+    assert sp.limit(torque, t, sp.oo) == 0
+    found("confirmed", "13 largest torque")
 
 
 def test_no_continuous_control_takes_the_least_time(found):
@@ -291,14 +289,15 @@ def test_a_hamiltonian_that_is_not_linear_may_be_largest_at_the_limits(found):
     found("wrong", "29 largest H")
 
 
-def test_the_classical_manoeuvre_is_not_over_after_100_s(found):
+def test_the_classical_law_comes_to_the_command_after_100_s_and_stays_later(found):
     times, answer = step_of([2 * E, E**2], [1, 2 * E, E**2], 1500, 15001)
+    assert answer[:1000].max() < 1
     assert np.interp(100, times, answer) == pytest.approx(1, abs=1e-6)
     assert np.gradient(answer, times)[1000] > 0.9 * E / math.e
+    found("confirmed", "figure 7 transition")  # "transition time" is not defined: that of coming there is 1/E
     assert answer.max() == pytest.approx(1 + math.exp(-2), abs=1e-5)
-    settled = times[np.flatnonzero(abs(answer - 1) > 0.02)[-1]]
-    assert 500 < settled < 600
-    found("wrong", "figure 7 transition")
+    settled = times[np.flatnonzero(abs(answer - 1) > 0.05)[-1]]
+    assert 400 < settled < 420
     # least time with the classical law's largest torque without the impulse, 3 P_c I_y E^2
     switching = 2 * math.sqrt(I_Y * P_C / (3 * P_C * I_Y * E**2))
     assert switching == pytest.approx(115.47, abs=0.01)
@@ -357,7 +356,7 @@ def test_a_torque_of_the_motor_reaches_roll_only_past_a_tilted_axis(found):
     """The mass matrix of body, gimbals, wheel and modes from their velocities, by hand."""
     rest, wheel, elastic = np.diag([1356 - 0.05 - 200, 678 - 0.09 - 200, 1356 - 0.05 - 200]), (0.05, 0.09), 200.0
     made = {}
-    for tilt in (0.0, 0.05, 0.1):
+    for tilt in (0.0, 1e-3, 0.05, 0.1):
         across, axis = np.array([math.cos(tilt), math.sin(tilt), 0]), np.array([-math.sin(tilt), math.cos(tilt), 0])
         up = np.array([0.0, 0.0, 1.0])
         # body (3), inner gimbal, outer gimbal, wheel, modes (3)
@@ -367,10 +366,11 @@ def test_a_torque_of_the_motor_reaches_roll_only_past_a_tilted_axis(found):
         mass = of_wheel.T @ inertia @ of_wheel + elastic * of_modes.T @ of_modes
         mass[:3, :3] += rest
         made[tilt] = np.linalg.solve(mass, np.eye(9)[5])
-    assert [abs(made[tilt][0]) > 1e-6 for tilt in made] == [False, True, True]
-    assert made[0.1][0] / made[0.05][0] == pytest.approx(2, rel=1e-2)
+    assert [abs(made[tilt][0]) > 1e-9 for tilt in made] == [False, True, True, True]
+    assert made[0.1][0] / made[0.05][0] == pytest.approx(2, rel=1e-2)  # as the tilt: nothing for straight gimbals alone
+    assert made[0.05][0] / made[1e-3][0] == pytest.approx(50, rel=1e-2)
     assert all(abs(answer[7]) > 1e-4 for answer in made.values())  # the panels in pitch
-    found("wrong", "section 2 coupling, each time")
+    found("confirmed", "section 2 coupling, each time")
 
 
 def test_springs_wheel_and_gravity_hold_roll_and_yaw(found):

@@ -64,6 +64,16 @@ def hamiltonian() -> sp.Expr:
     return effort + l1 * x2 + l2 * radial + l3 * x4 + l4 * angular_acceleration()
 
 
+def one_of_many_circles(document: Rows, key: str) -> str:
+    """r = sigma solves the equation before it, and so does every other radius with a rate of its own."""
+    left, right = (sp.sympify(side) for side in document["section 4.1 equilibrium, cubes"]["printed"].split("="))
+    radius, rate = (sp.Symbol(name) for name in ("r", "theta_dot"))
+    rest = sp.sympify(left - right)
+    assert rest.subs({radius: sigma, rate: omega}) == 0
+    others = [rest.subs({radius: k * sigma, rate: omega * sp.sqrt(sp.Rational(1, k**3))}) for k in (2, 3, 5)]
+    return "unsound" if all(sp.simplify(other) == 0 for other in others) else "confirmed"
+
+
 def angular_rate(document: Rows, key: str) -> str:
     """(4.27) of the thesis, (12) of the paper: u2 with the wrong sign, right before, and the Hamiltonian has it so."""
     printed = formula(document[key])

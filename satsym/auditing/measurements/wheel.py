@@ -17,7 +17,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import motion
-from satsym.auditing.propositions.values import Record
+from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput
 from satsym.wording import refuse_unknown
 
@@ -84,6 +84,16 @@ def settled(motion: Record, aim: float, band: float) -> float:
     """When a motion's angle is within a share of its aim for good."""
     off = np.flatnonzero(np.abs(motion.part("angle") / aim - 1.0) > band)
     return float(motion.part("t")[off[-1]]) if len(off) else 0.0
+
+
+def reached(motion: Record, aim: float) -> float:
+    """When a motion's angle comes to its aim for the first time, straight between the moments around it."""
+    t, gap = motion.part("t"), motion.part("angle") - aim
+    crossed = np.flatnonzero(gap[1:] * gap[:-1] <= 0.0)
+    if not len(crossed):
+        raise Undecided("the angle never comes to its aim")
+    k = int(crossed[0])
+    return float(t[k] + (t[k + 1] - t[k]) * gap[k] / (gap[k] - gap[k + 1]))
 
 
 def swinging(motion: Record) -> float:
