@@ -187,3 +187,11 @@ def test_indonesian_has_the_same(run: Run) -> None:
     code, out, _ = run(r"\ddot z = n^2 z", "--model", "hill", "--lang", "id")
     assert code == 5
     assert "salah: tanda n^2 z terbalik; yang benar" in out
+
+
+def test_capitals_that_are_read_as_a_product_are_told_and_may_be_one_name() -> None:
+    printed = r"\ddot x - 2\omega\dot y - 3\omega^2x = SF"
+    assert satsym.check(printed, "hill").letters["SF"] == "S*F"
+    named = satsym.check(printed, "hill", let="SF=u1")
+    assert named.verdict == "right"
+    assert "SF" not in named.letters

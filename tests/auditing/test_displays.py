@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import random
 import tomllib
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.tokens import Unread, tokens
 from satsym.auditing.latex.writing import in_latex
 from satsym.formula import reading as safe
-from satsym.formula.tree import Equality, Node
+from satsym.formula.tree import Equality, Node, symbols
 from satsym.formula.writing import written
 
 FOLDER = Path(__file__).parent / "displays"
@@ -22,6 +24,16 @@ LISTS = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in 
 def test_a_display_is_read_as_it_is_meant(latex: str, meant: str) -> None:
     found = read(tokens(latex), latex)
     assert "; ".join(map(written, found.statements)) == meant
+
+
+@pytest.mark.parametrize(("latex", "meant"), [tuple(pair) for pair in LISTS["textbooks"]["numbers"]])
+def test_a_display_has_the_value_that_a_reader_works_out(latex: str, meant: str) -> None:
+    (tree,) = read(tokens(latex), latex).statements
+    assert not isinstance(tree, Equality)
+    drawn = random.Random(latex)
+    letters = {name: drawn.uniform(0.2, 0.9) for name in sorted(symbols(tree) - {"pi"})}
+    found, wanted = (float(sp.sympify(text, locals=letters)) for text in (written(tree), meant))
+    assert found == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize(("latex", "reason"), [tuple(pair) for one in LISTS.values() for pair in one["refused"]])

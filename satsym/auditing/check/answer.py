@@ -63,7 +63,7 @@ def check_in(text: str, model: str, folder: Path, let: Sequence[str] = (), free:
 def _read(text: str, latex: bool, macros: Macros | None, meanings: Meanings, given: Mapping[Letter, str]) -> Reading:
     if latex:
         inner = text.strip().strip("$")
-        return read(tokens(inner, macros), inner)
+        return read(tokens(inner, macros), inner, names=meanings.spelled(given))
     found = [part for token in plain_tokens(text) for part in _words(token, meanings, given)]
     return read(found, text, plain=True)
 
@@ -139,6 +139,9 @@ class Subject:
             ours = meaning.get(letter.still)
             if ours and ours != self.meanings.named(letter.still):
                 named[letter.still.latex if self.latex else letter.still.name] = ours
+        for capitals in self.reading.products:
+            if any(self.meanings.tree(Letter(one), self.given) is None for one in capitals):
+                named[capitals] = "*".join(capitals)
         return Answer(
             write(statement),
             self.derived.record.name,

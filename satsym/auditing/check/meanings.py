@@ -13,7 +13,7 @@ from itertools import islice, product
 
 from satsym.auditing.check.derived import Derived
 from satsym.auditing.latex.grammar import read
-from satsym.auditing.latex.letters import Letter, of_word
+from satsym.auditing.latex.letters import GREEK, Letter, of_word
 from satsym.auditing.latex.tokens import Unread, tokens
 from satsym.formula.tree import Node, Sym
 from satsym.status import BadInput
@@ -60,6 +60,11 @@ class Meanings:
     def letters(self) -> Mapping[str, Letter]:
         """Our names -> letters."""
         return {name: letter for letter, name in reversed(list(self.known.items()))}
+
+    def spelled(self, given: Mapping[Letter, str]) -> frozenset[str]:
+        """Names of several Latin letters that are known, and need not be set upright."""
+        words = {letter.base for letter in (*self.known, *given)}
+        return frozenset(word for word in words - GREEK if len(word) > 1 and word.isalpha())
 
     def named(self, letter: Letter) -> str | None:
         """Our name for a letter, dots and all, where the notation or the name itself leaves no doubt."""

@@ -9,7 +9,7 @@ import json
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -92,7 +92,7 @@ def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> 
         derived = Derived(shelf.find(name))
         meanings = Meanings(derived)
         given = {**_scope_letters(old, derived), **given_letters(let, derived)}
-        readings = list(_readings(source))
+        readings = list(_readings(source, meanings.spelled(given)))
         given = {**_voted(readings, derived, meanings, given), **given}
         entries = list(_entries(readings, derived, meanings, given, source))
         _propose_origins(entries, derived)
@@ -106,14 +106,14 @@ def as_object(ledger: Path, found: Draft) -> dict[str, Any]:
     return {"ledger": str(ledger), "rows": found.rows, "kept": found.kept, **told}
 
 
-def _readings(source: Source) -> Iterator[tuple[Display, Reading]]:
+def _readings(source: Source, names: Collection[str]) -> Iterator[tuple[Display, Reading]]:
     for display in displays.displays(source):
         try:
             found = tokens(display.text, source.macros, display.start)
             if display.columns:
                 begin, end = (Token(kind, display.columns, display.start) for kind in ("begin", "end"))
                 found = [begin, *found, end]
-            yield display, read(found, display.text, display.start)
+            yield display, read(found, display.text, display.start, names=names)
         except Unread as error:
             source.unread.append((source.place(min(error.at, len(source.text) - 1)), error.message))
 
@@ -381,10 +381,13 @@ def _block(entry: _Entry) -> str:
     """A row; one that is not understood stands in a remark, to be completed by hand."""
     shown = " ".join(_UNSEEN.sub(" ", entry.display.text).split())[:300]
     lines = [f"{key} = {_toml(value)}" for key, value in entry.table.items() if key != "original"]
+    capitals = [one for one in entry.subject.reading.products if one in entry.answer.letters]
+    doubts = [f"# {one} was read as a product; --let {one}=NAME makes it one name" for one in capitals]
     if entry.table.get("holds"):
-        return "\n".join(["[[row]]", "draft = true", *lines, f"original = {_toml(shown)}"]) + "\n"
+        return "\n".join(["[[row]]", "draft = true", *doubts, *lines, f"original = {_toml(shown)}"]) + "\n"
     why = entry.answer.diagnosis or "it says nothing of the model"
-    return "\n".join([f"# {shown}", f"# not understood: {why}; complete it", *(f"# {line}" for line in lines)]) + "\n"
+    told = [f"# {shown}", f"# not understood: {why}; complete it", *doubts, *(f"# {line}" for line in lines)]
+    return "\n".join(told) + "\n"
 
 
 def _toml(value: Any) -> str:

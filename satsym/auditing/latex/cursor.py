@@ -25,6 +25,10 @@ class Reading:
     """Name -> the letter of which it is printed as a function."""
     constants: bool = False
     """Whether something is said to be constant."""
+    times: dict[str, str] = field(default_factory=dict)
+    """Name without dots -> the time at which it is taken; empty for any."""
+    products: list[str] = field(default_factory=list)
+    """Capitals side by side that are read as products, and could be names."""
 
 
 class Cursor(ABC):
@@ -140,4 +144,6 @@ class Cursor(ABC):
             if groups == 0 and token.kind == "sign":
                 depth += (token.text in "([") - (token.text in ")]")
             self._i += 1
+        if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
+            raise Unread("brackets that do not match, as of an interval, are not read", opening.at)
         return self._i - 1

@@ -6,7 +6,7 @@ letter may be a function of time (``x(t)``); derivatives are printed as dots, qu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -26,7 +26,9 @@ CONSTANT = "constant"
 """What is equated with this does not change in time."""
 
 
-def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False) -> Reading:
+def read(
+    found: Sequence[Token], text: str, start: int = 0, plain: bool = False, names: Collection[str] = ()
+) -> Reading:
     """Read the equations and expressions of a formula.
 
     Parameters
@@ -37,6 +39,8 @@ def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False)
         What they were made of, and the place of its first character: how letters are printed is taken from there.
     plain
         Whether names have several letters.
+    names
+        Names of several letters that are known, and may be printed without being set upright.
 
     Raises
     ------
@@ -44,7 +48,10 @@ def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False)
         At the first thing that is not in the grammar.
     """
     reading = Reading([])
-    for line in lines(without_remarks(found)):
+    kept = _with_names(without_remarks(found), names)
+    reading.products = _capitals(kept)
+    for line in lines(kept):
+        _refuse_spelled_name(line)
         sides = [Parser(part, reading, start, plain).whole() for part in line]
         if len(sides) == 1:
             reading.statements.append(sides[0])
@@ -52,6 +59,49 @@ def read(found: Sequence[Token], text: str, start: int = 0, plain: bool = False)
     if not reading.statements:
         raise Unread("no formula", start)
     return reading
+
+
+def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
+    """Where letters stand side by side, without spaces: places of the first one and behind the last."""
+    begin = 0
+    for k in range(1, len(found) + 1):
+        before, token = found[k - 1], found[k] if k < len(found) else found[0]
+        if not (token.kind == before.kind == "letter" and token.at == before.at + 1):
+            if found[begin].kind == "letter" and k - begin > 1:
+                yield begin, k
+            begin = k
+
+
+def _with_names(found: list[Token], names: Collection[str]) -> list[Token]:
+    """The tokens, letters that spell a known name set upright."""
+    for begin, end in reversed(list(_runs(found))):
+        if "".join(t.text for t in found[begin:end]) in names:
+            at = found[begin].at
+            upright = [Token("macro", "mathrm", at), Token("open", "{", at), *found[begin:end], Token("close", "}", at)]
+            found = [*found[:begin], *upright, *found[end:]]
+    return found
+
+
+def _capitals(found: Sequence[Token]) -> list[str]:
+    """Capitals side by side none of which stands by itself elsewhere: products, unless they are names."""
+    runs: dict[str, None] = {}
+    for begin, end in _runs(found):
+        upright = begin > 1 and found[begin - 1].kind == "open" and found[begin - 2].kind == "macro"
+        letters = [t.text for t in found[begin:end]]
+        if not upright and all(letter.isupper() for letter in letters):
+            others = {t.text for k, t in enumerate(found) if t.kind == "letter" and not begin <= k < end}
+            if not others & set(letters):
+                runs["".join(letters)] = None
+    return list(runs)
+
+
+def _refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
+    """Refuse what is defined where capitals side by side are: a name, or a product."""
+    side = line[0]
+    begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
+    if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
+        name = "".join(t.text for t in side[:end])
+        raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
 
 
 class Parser(OperatorCursor):
@@ -107,15 +157,20 @@ class Parser(OperatorCursor):
             elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
                 if argument and not self._plain:
                     break
+                if not self._plain and self._bare_end == self._i:
+                    raise Unread("what a function is taken of, a slash behind it, needs brackets", token.at)
                 self._i += 1
                 divisor = self._signed_factor()
-                chain = [Div(_times(chain), divisor)]
                 unit = self._peek()
                 if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
                     raise Unread("a unit behind a slash is not read", unit.at)
+                if unit is not None and not self._plain and self._may_be_divided_by(unit, chain, divisor):
+                    raise Unread("what a slash divides by is not clear without brackets", token.at)
+                chain = [Div(_times(chain), divisor)]
             elif argument and not self._continues_argument(token, chain[-1]):
                 break
             elif self._begins_factor(token):
+                self._refuse_behind(chain[-1], token)
                 chain.append(self._factor())
             else:
                 break
@@ -127,14 +182,42 @@ class Parser(OperatorCursor):
             return isinstance(last, Num) and token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS)
         if self._is_function(token) or (token.text == "e" and self._is("^", 1)):
             return False
-        if isinstance(last, Num):
+        if isinstance(last, Num) or last == Sym("pi"):
             return True
-        stem = self._reading.letters[last.name].base if isinstance(last, Sym) and last.name != "pi" else ""
-        return (
-            token.text in words.TIMES_OF_ANGLES
-            or (stem in FREQUENCIES and token.text in words.PLACES)
-            or last == Sym("pi")
-        )
+        stem = self._reading.letters[last.name].base if isinstance(last, Sym) else ""
+        time = token.text in words.TIMES_OF_ANGLES
+        if self._plain:
+            return time or (stem in FREQUENCIES and token.text in words.PLACES)
+        if (time and stem not in words.ANGLES) or (stem in FREQUENCIES and token.text in words.PLACES):
+            return True
+        if time or (len(stem) == 1) or (stem in GREEK and token.text in GREEK):
+            raise Unread("where what a function is taken of ends is not clear without brackets", token.at)
+        return False
+
+    def _may_be_divided_by(self, token: Token, above: Sequence[Node], divisor: Node) -> bool:
+        """Whether what follows could stand below the slash, too: in ``a/bc``, not in ``1/2 mv`` or before vectors."""
+        if not self._begins_factor(token) or token.text in words.STYLES or token.text in MARKS:
+            return False
+        number = constant(divisor) is not None
+        return not (number and (token.text in "([" or constant(_times(above)) is not None))
+
+    def _refuse_behind(self, last: Node, token: Token) -> None:
+        """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
+        if self._plain:
+            return
+        before, after = self._found[self._i - 1], self._peek(1)
+        is_number = constant(last) is not None or token.text.startswith(("text", "mbox"))
+        if is_number and token.text in words.UPRIGHT and "".join(t.text for t in self._peek_group()) in words.UNITS:
+            raise Unread("a unit is not read", token.at)
+        if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
+            power = self._peek(2) if after is not None and after.text in "+-" else after
+            if power is not None and power.kind == "number" and power.at <= token.at + 2:
+                raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
+        letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
+        if letter is not None and token.text in ("[", "{") and token.kind in ("sign", "macro"):
+            alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
+            if letter.style == "cal" or alone:
+                raise Unread("what something is taken of, in such brackets, is not read", token.at)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
@@ -195,7 +278,10 @@ class Parser(OperatorCursor):
         while True:
             if self._is("^"):
                 at = self._take().at
+                letter = self._reading.letters.get(base.name) if isinstance(base, Sym) else None
                 base = self._raised(base, self._script(), at)
+                if letter is not None and self._is("(") and isinstance(base, Pow) and not self._plain:
+                    self._timed_behind_power(letter)
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
             elif self._is("!"):
@@ -203,12 +289,26 @@ class Parser(OperatorCursor):
             else:
                 return base
 
+    def _timed_behind_power(self, letter: Letter) -> None:
+        """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
+        begin = self._i
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        words_there = "".join(t.text for t in inside if t.kind not in ("open", "close"))
+        if words_there in words.AT_A_TIME:
+            self._at_time(letter, "" if words_there in ("t", "tau") else words_there, begin)
+            return
+        if self._letter_in(inside) is not None:
+            raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
+        self._i = begin
+
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
         if not script:
             return base
         if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
             return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
-        if script and script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf"):
+        upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
+        if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
             return Call("transpose", (base,))
         exponent = self._inner(script, at)
         value = constant(exponent)
@@ -260,6 +360,7 @@ class Parser(OperatorCursor):
             if self._spells("const"):
                 self._reading.constants = True
                 return Sym(CONSTANT)
+            self._refuse_spelled_function(token)
             after = self._peek()
             beside = after is not None and after.at == token.at + 1 and not self._plain
             if token.text == "d" and beside and after is not None and (after.kind == "letter" or after.text in GREEK):
@@ -288,6 +389,16 @@ class Parser(OperatorCursor):
         self._i = begin + len(word)
         return True
 
+    def _refuse_spelled_function(self, token: Token) -> None:
+        """Refuse letters that are the name of a function without its backslash."""
+        if self._plain:
+            return
+        begin = self._i
+        for word in words.SPELLED:
+            if self._spells(word):
+                self._i = begin
+                raise Unread(f"{word} without a backslash; write \\{word}, or put spaces between letters", token.at)
+
     def _macro(self, token: Token) -> Node:
         name = token.text
         if name in words.ROOTS:
@@ -298,6 +409,7 @@ class Parser(OperatorCursor):
             return self._integral(token)
         if name in ("frac", "tfrac", "dfrac", "cfrac"):
             above, below = self._group(), self._group()
+            self._refuse_derivative(above, below, token.at)
             return Div(self._inner(above, token.at), self._inner(below, token.at))
         if name in KEPT_GROUPS:
             inner = self._inner(self._group(), token.at)
@@ -317,6 +429,7 @@ class Parser(OperatorCursor):
             self._i -= 1
             group = self._peek_group()
             word = "".join(t.text for t in group)
+            self._refuse_word(name, word.strip(), token.at)
             if word in FUNCTIONS and len(word) > 1:
                 self._i += 1
                 self._group()
@@ -342,6 +455,26 @@ class Parser(OperatorCursor):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
 
+    def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
+        """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
+        if len(above) < 2 or self._plain or above[1].text in ("^", "_"):
+            return
+        if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
+            raise Unread("a derivative of this kind is not read", at)
+        if above[0].text == "d" and (above[1].kind == "letter" or above[1].text in GREEK):
+            raise Unread("a differential is not read", above[0].at)
+
+    def _refuse_word(self, macro: str, word: str, at: int) -> None:
+        """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
+        behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
+        taken = behind is not None and self._begins_factor(behind)
+        if word.lower() in words.SAID:
+            raise Unread("words between formulas are not read", at)
+        if word == "d" and taken:
+            raise Unread("a differential is not read", at)
+        if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
+            raise Unread(f"the function {printable(word)} is not known", at)
+
     def _braces(self, token: Token) -> Node:
         """What stands in printed braces."""
         begin, depth = self._i, 1
@@ -357,6 +490,8 @@ class Parser(OperatorCursor):
         closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
         begin, groups = self._i, 0
         while True:
+            if self._peek() is None:
+                raise Unread("a bar that nothing closes, as behind what is taken at a place, is not read", token.at)
             inside = self._take()
             groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
             if groups == 0 and inside.text == closing and inside.kind == token.kind:
@@ -365,6 +500,8 @@ class Parser(OperatorCursor):
         if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
             return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        if single and isinstance(inner, Grid):
+            return Call("det", (inner,))
         return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))
 
     def _word(self, token: Token) -> Node:

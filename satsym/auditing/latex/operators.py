@@ -34,6 +34,9 @@ class OperatorCursor(QuotientCursor):
     def _inner(self, part: Sequence[Token], at: int) -> Node:
         """Read some tokens by themselves."""
 
+    _bare_end = -1
+    """Where what a function is taken of ended, if it stands without brackets."""
+
     def _peek_number(self) -> Node | None:
         """A number that is set as a vector, such as a bold zero; ``None``, with nothing taken, where none is next."""
         begin, found = self._i, self._found
@@ -111,9 +114,9 @@ class OperatorCursor(QuotientCursor):
             at = self._take().at
             script = self._script()
             power = self._inner(script, at)
-            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh"):
-                if name in ("sinh", "cosh", "tanh"):
-                    raise Unread("an inverse hyperbolic function is not read", at)
+            if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "log", "exp"):
+                if name not in ("sin", "cos", "tan"):
+                    raise Unread("an inverse function of this name is not read", at)
                 name, power = f"a{name}", None
         if self._is("_") and name in ("log", "min", "max"):
             raise Unread(f"an index of {name} is not read", self._take().at)
@@ -125,6 +128,7 @@ class OperatorCursor(QuotientCursor):
             arguments = [self._factor()]
         else:
             arguments = [self._product(argument=True)]
+            self._bare_end = self._i
         if name == "d":
             return self._along(arguments[0])
         if name == "exp" and len(arguments) == 1 and power is None:
@@ -146,7 +150,7 @@ class OperatorCursor(QuotientCursor):
         begin = self._i
         arguments = self._arguments()
         inner = arguments[0] if len(arguments) == 1 else None
-        if square and not self._plain and isinstance(inner, Mul) and self._may_be_a_name(inner):
+        if square and not self._plain and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets, which may be one name, are not read", at)
         if len(arguments) > 1 and begin and not self._plain:
             before = self._found[begin - 1]
@@ -158,7 +162,15 @@ class OperatorCursor(QuotientCursor):
             raise Unread("an empty bracket", at)
         return arguments[0]
 
-    def _may_be_a_name(self, inner: Mul) -> bool:
+    def _stands_behind_a_letter(self, begin: int) -> bool:
+        """Whether a bracket holds one letter, and one stands in front of it, as in an expectation."""
+        letter = self._letter_in(self._found[begin + 1 : self._i - 1])
+        alone = letter is not None and letter == letter.plain and not letter.dots
+        return alone and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
+
+    def _may_be_a_name(self, inner: Node | None) -> bool:
+        if not isinstance(inner, Mul):
+            return False
         letters = all(isinstance(factor, Sym | Call) for factor in inner.factors)
         return letters and isinstance(inner.factors[0], Sym) and not self._is_vector(inner)
 

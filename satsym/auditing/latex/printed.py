@@ -9,7 +9,7 @@ from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
 from satsym.auditing.latex.rows import split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, INDICES, MARKS, STARS, STYLES, TRANSPOSED, UPRIGHT
+from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, INDICES, MARKS, SHIFTED, STARS, STYLES, TRANSPOSED, UPRIGHT
 from satsym.formula.tree import Node, Sym
 
 
@@ -173,7 +173,7 @@ class LetterCursor(Cursor):
     def _symbol(self, letter: Letter, at: int) -> Node:
         name = letter.name
         if self._plain is False:
-            self._timed(name)
+            self._timed(letter)
         if letter.base == "pi" and letter == Letter("pi"):
             return Sym("pi")
         if not is_name(name):
@@ -181,33 +181,60 @@ class LetterCursor(Cursor):
         self._reading.letters.setdefault(name, letter)
         return Sym(name)
 
-    def _timed(self, name: str = "") -> None:
+    def _timed(self, letter: Letter | None = None) -> None:
         """Go past ``(t)`` behind a letter, or the letters that it depends on; they must be the same everywhere."""
         if not self._is("("):
+            self._at_time(letter, "", self._i)
             return
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
         if words in AT_A_TIME:
+            self._at_time(letter, "" if words in ("t", "tau") else words, begin)
             return
         places = split(inside, lambda t: t.text == ",")
-        letters = [self._letter_in(place) for place in places]
-        bare = [letter for letter in letters if letter and not letter.dots and (not letter.index or letter.base == "t")]
+        letters = [self._place(place) for place in places]
+        several = len(places) > 1
+        bare = [at for at in letters if at and (several or (not at.dots and (not at.index or at.base == "t")))]
         if not self._plain and len(bare) == len(letters):
-            if self._reading.taken_at.setdefault(name, words) == words:
+            words = ",".join(at.name for at in bare)
+            if self._reading.taken_at.setdefault(letter.name if letter else "", words) == words:
                 return
             raise Unread("what it is taken at differs from place to place, and is not read", self._found[begin].at)
-        product = len(inside) > 1 and not self._plain and not any(t.text in "+-*/" and t.kind == "sign" for t in inside)
-        if len(places) > 1 or (product and self._is_product(inside)):
+        if several or (not self._plain and (self._is_product(inside) or self._is_shift(letter, inside))):
             raise Unread("what it is taken at is not read", self._found[begin].at)
         self._i = begin
+        self._at_time(letter, "", begin)
+
+    def _at_time(self, letter: Letter | None, time: str, place: int) -> None:
+        """Enter when a letter is taken; one formula may not have it at a fixed time and at another one."""
+        if letter is not None and self._reading.times.setdefault(letter.still.name, time) != time:
+            at = self._found[min(place, len(self._found) - 1)].at
+            raise Unread(f"{letter.still.name} is taken at two times, which is not read", at)
+
+    def _place(self, part: Sequence[Token]) -> Letter | None:
+        """The letter at one place of a function, which may be a function of time itself."""
+        inner = self._of(part)
+        letter = inner._letter()
+        rest = "".join(t.text for t in part[inner._i :])
+        return letter if rest == "" or (rest[0] == "(" and rest[1:-1] in AT_A_TIME) else None
+
+    def _is_shift(self, letter: Letter | None, part: Sequence[Token]) -> bool:
+        """Whether what stands in brackets behind a letter is a place, and no factor: f(x + h), u(t - T)."""
+        if letter is None or letter.dots or letter.base not in SHIFTED:
+            return False
+        letters = [t.text for t in part if t.kind == "letter" or t.text in GREEK]
+        return bool(letters) if letter.base in "fF" else "t" in letters
 
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""
+        if len(part) < 2 or any(t.text in "+-*/" and t.kind == "sign" for t in part):
+            return False
         inner = self._of(part)
         first = inner._letter()
-        return first is not None and inner._i < len(part) and part[inner._i].kind in ("letter", "macro")
+        behind = part[inner._i] if inner._i < len(part) else None
+        return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
 
 
 def _in_tex(part: Sequence[Token]) -> str:

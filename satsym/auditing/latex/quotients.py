@@ -52,7 +52,8 @@ class QuotientCursor(LetterCursor):
             self._i += 1
         else:
             while is_differential(self._peek()):
-                self._i += 1
+                rest = list(self._found[self._i :])
+                self._i += len(rest) - len(after_differential(rest))
                 if self._letter() is None:
                     return None
         if self._is("^"):

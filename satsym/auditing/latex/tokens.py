@@ -50,6 +50,7 @@ class Macro:
 Macros = Mapping[str, Macro]
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
+_POWER_OF_TEN = re.compile(r"\s*\\(?:times|cdot)\s*10\s*\^")
 _BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
 _SUBSTITUTES = {
     "\u2212": "-",
@@ -184,6 +185,8 @@ def _pieces(text: str, start: int) -> list[Token]:
             while (comma := _DECIMAL_COMMA.match(text, position)) and "." not in value:
                 digits = _NUMBER.match(text, comma.end())
                 assert digits is not None
+                if len(digits[0]) == 3 and value != "0" and not _POWER_OF_TEN.match(text, digits.end()):
+                    raise Unread("a comma in a number may part thousands or decimals", start + position)
                 value, position = f"{value}.{digits[0]}", digits.end()
             found.append(Token("number", value, start + number.start()))
             continue

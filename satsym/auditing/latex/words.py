@@ -73,5 +73,16 @@ INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime 
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
 ATOMS = frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack".split())
 ROOTS = frozenset(("sqrt",))
+SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
+"""Functions that are misread as products of letters where their backslash is lost, longer names first."""
+UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf arg sup inf grad div rot curl cov var mod".split())
+"""Functions that are printed upright and are not in the grammar."""
+SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
+"""Words between formulas."""
+UNITS = frozenset("m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s Nm".split())
+SHIFTED = frozenset("f F x y z u w q s h p r X Y U delta theta phi varphi psi xi eta".split())
+"""Letters for which a bracket behind them is no factor where time and something else stand in it."""
+ANGLES = frozenset("theta vartheta phi varphi psi E M".split())
+"""Letters of angles, of which time is no factor."""
 OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))
 """Powers of e that are those of an eccentricity, not of the base of logarithms."""

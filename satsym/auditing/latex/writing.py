@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 
+from satsym.auditing.latex.letters import GREEK
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, substituted
 from satsym.formula.writing import written
 
@@ -12,6 +15,12 @@ _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
 _WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty"}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
+_GREEK = "|".join(sorted(GREEK))
+_RUNS_ON = re.compile(
+    r"\\(?:sinh?|cosh?|tanh?|ln|arc[a-z]+) "
+    rf"(?:[A-Za-z][^ |]*\|(?:[A-Za-z]|\\(?:{_GREEK})\b)|\\[^ |]+\|\\(?:{_GREEK})\b)"
+)
+"""A function of a letter without brackets, in front of another letter."""
 
 
 def in_latex(letters: Mapping[str, str]) -> Writer:
@@ -65,9 +74,12 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
             said += f" {'-' if isinstance(term, Neg) else '+'} {bound(inner, _PRODUCT)}"
         return said, _SUM
     if isinstance(node, Mul):
-        said = bound(node.factors[0], _PRODUCT)
-        for factor in node.factors[1:]:
-            piece = bound(factor, _PRODUCT)
+        pieces = [bound(factor, _PRODUCT) for factor in node.factors]
+        for k, (before, piece) in enumerate(pairwise(pieces)):
+            if _RUNS_ON.search(f"{before}|{piece} "):  # sin x y would be read as sin(xy)
+                pieces[k] = rf"\left({before}\right)"
+        said = pieces[0]
+        for piece in pieces[1:]:
             said += rf" \cdot {piece}" if piece[:1].isdigit() else f" {piece}"
         return said, _PRODUCT
     if isinstance(node, Div):
@@ -83,6 +95,7 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
         "sqrt": rf"\sqrt{{{arguments}}}",
         "exp": f"e^{{{arguments}}}",
         "abs": f"|{arguments}|",
+        "norm": rf"\|{arguments}\|",
         "d": rf"\frac{{d}}{{dt}}\left({arguments}\right)",
         "transpose": rf"{arguments}^{{\mathsf T}}",
     }
