@@ -21,7 +21,7 @@ class Outcome:
     """What is right, in the document's symbols."""
     plan: Plan | None = None
     remedy: Remedy | None = None
-    """Of a formula: how it was compared, and what puts it right."""
+    """How a formula was compared, and what puts it right."""
     sound: bool = True
     vacuous: bool = False
     artefact: bool = False
@@ -32,6 +32,6 @@ class Outcome:
     remark: str = ""
     """A sentence for the diagnosis."""
     lacks: str = ""
-    """Of a unit, the dimension that it has to be multiplied by."""
+    """The dimension that a wrong unit has to be multiplied by."""
     evidence: Mapping[str, object] = field(default_factory=dict)
     """Measured numbers."""

@@ -21,7 +21,7 @@ from satsym.wording import shown, suggestion
 ROUNDED = "~"
 """Before an input that is measured, or was rounded; an input without it is chosen, and exact."""
 _POINTS, _STARTS, _HOW = 64, 4, {"eps": 1e-4}
-"""Of the search for extremes: points that are looked at, how many it begins at, and the step of slopes."""
+"""The search for extremes: points that are looked at, how many it begins at, and the step of slopes."""
 _PRINTED = re.compile(
     r" *(?P<sign>[-+]?) *(?P<whole>[0-9]*)(?:\.(?P<part>[0-9]*))?(?:[eE](?P<power>[-+]?[0-9]{1,3}))? *"
 )

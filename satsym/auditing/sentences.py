@@ -55,7 +55,7 @@ _DIMENSION = re.compile(r"(?<=\[)\w+(?=\])")
 
 
 def in_indonesian(text: str) -> str:
-    """The same in Indonesian, if it is known; of a formula names of dimensions."""
+    """A text in Indonesian, if that is known; of a formula names of dimensions."""
     if isinstance(text, Said):
         return text.indonesian
     known = tables()["dimension_names"]

@@ -23,7 +23,7 @@ HALF_TURNS: Monomial = (("pi", Fraction(1)),)
 PARTS = 12
 """A coefficient may be a multiple of one over this."""
 _ONE: Complex = (Fraction(1), Fraction(0))
-_MOST = 200
+_MOST_TERMS = 200
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def _atom(node: Node, exponent: Fraction) -> dict[Monomial, Complex]:
 
 def _times(one: Mapping[Monomial, Complex], other: Mapping[Monomial, Complex]) -> dict[Monomial, Complex]:
     total: dict[Monomial, Complex] = {}
-    if len(one) * len(other) > _MOST:
+    if len(one) * len(other) > _MOST_TERMS:
         raise TooManyTerms("an angle of too many terms")
     for left, (a, b) in one.items():
         for right, (c, d) in other.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from satsym.formula.field import NoValue, Point
+from satsym.formula.field import Nowhere, Point
 from satsym.formula.tree import Call, Node, Sym, substituted, symbols
 
 _BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
@@ -38,7 +38,7 @@ class BoundPoint(Point):
             return self.base.value(self._meanings[name])
         if name in ("I", "pi"):
             return self.base.value(Sym(name))
-        raise NoValue(f"{name} means a matrix")
+        raise Nowhere(f"{name} means a matrix")
 
 
 def unbound(node: Node, meanings: Mapping[str, Node]) -> set[str]:

@@ -89,8 +89,10 @@ class Account:
 _ACTIVE: ContextVar[Account | None] = ContextVar("account", default=None)
 
 
-def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = lambda _: None) -> T:
+def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = lambda _: None, calls: bool = True) -> T:
     """Do some work, and give up once it takes more than a limit; inside other such work that one's limit holds.
+
+    Without ``calls`` only what is charged counts, which costs no time, for work that is known to be small.
 
     Raises
     ------
@@ -104,7 +106,7 @@ def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = l
     # a function, not a context: the interpreter announces the end of a context, too, and would be refused there
     try:
         try:
-            sys.setprofile(account.profile)
+            sys.setprofile(account.profile if calls else before)
             result = work()
         finally:
             sys.setprofile(before)

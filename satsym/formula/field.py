@@ -40,6 +40,10 @@ class NoValue(Exception):
     """The formula has no value at this point: a division by zero, or a root of what has none."""
 
 
+class Nowhere(NoValue):
+    """It has a value at no point, but for a chance of one in 10^18: it divides by what is zero, or is no formula."""
+
+
 class Undecided(Exception):
     """No point was found at which the formula has a value."""
 
@@ -99,7 +103,7 @@ class Point:
             return self._power(self.value(node.base), constant(node.exponent))
         if isinstance(node, Call):
             return self.value_of_call(node)
-        raise NoValue(f"{type(node).__name__} is not a formula")
+        raise Nowhere(f"{type(node).__name__} is not a formula")
 
     def symbol(self, name: str) -> int:
         """The value of a symbol."""
@@ -109,10 +113,10 @@ class Point:
 
     def _power(self, base: int, exponent: Fraction | None) -> int:
         if exponent is None:
-            raise NoValue("an exponent is not a number")
+            raise Nowhere("an exponent is not a number")
         if base == 0:
             if exponent <= 0:
-                raise NoValue("zero to the power of zero, or less")
+                raise Nowhere("zero to the power of zero, or less")
             return 0
         root, degree = base, exponent.denominator
         while degree % 2 == 0:
@@ -187,12 +191,12 @@ class Point:
         for key, (real, imaginary) in terms.coefficients.items():
             if key == HALF_TURNS:
                 if real or (2 * imaginary).denominator != 1:
-                    raise NoValue("an angle that is not a multiple of a right one")
+                    raise Nowhere("an angle that is not a multiple of a right one")
                 product = product * pow(IMAGINARY, int(2 * imaginary), PRIME) % PRIME
                 continue
             for kind, fraction in (("grows", real * PARTS), ("turns", imaginary * PARTS)):
                 if fraction.denominator != 1:
-                    raise NoValue("an odd part of an angle")
+                    raise Nowhere("an odd part of an angle")
                 if fraction:
                     # what grows is positive, as the exponential of a real number is
                     base = pow(_random(self._seed, f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
@@ -204,7 +208,7 @@ def _terms(node: Node) -> Terms:
     try:
         return terms_of(node)
     except TooManyTerms as error:
-        raise NoValue(str(error)) from None
+        raise Nowhere(str(error)) from None
 
 
 Zero: TypeAlias = bool | None
@@ -252,6 +256,8 @@ def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (),
             try:
                 for tree in wanted:
                     point.value(tree)
+            except Nowhere:
+                break
             except NoValue:
                 continue
             found.append(point)
@@ -277,7 +283,7 @@ _HALF = (PRIME + 1) // 2
 
 def _inverse(value: int) -> int:
     if value % PRIME == 0:
-        raise NoValue("a division by zero")
+        raise Nowhere("a division by zero")
     return pow(value, -1, PRIME)
 
 

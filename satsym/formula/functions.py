@@ -11,7 +11,7 @@ from satsym.formula.tree import Call, Grid, Node, Sym, Text, constant
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Value, plain, square, stacked, transposed, without
 from satsym.status import BadInput
 
-MANY = 20
+MOST_ARGUMENTS = 20
 
 
 def _symbol(engine: Engine[S], tree: Node) -> str:
@@ -80,12 +80,12 @@ def _minor(engine: Engine[S], tree: Call) -> Value:
 
 
 def _zeros(engine: Engine[S], tree: Call) -> Value:
-    sizes = [_index(argument, MANY) + 1 for argument in tree.arguments]
+    sizes = [_index(argument, MOST_ARGUMENTS) + 1 for argument in tree.arguments]
     return Matrix(tuple((engine.number(Fraction(0)),) * sizes[-1] for _ in range(sizes[0])))
 
 
 def _eye(engine: Engine[S], tree: Call) -> Value:
-    return engine.identity(_index(tree.arguments[0], MANY) + 1)
+    return engine.identity(_index(tree.arguments[0], MOST_ARGUMENTS) + 1)
 
 
 def _reached(engine: Engine[S], tree: Call) -> Value:
@@ -135,7 +135,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "at": Operation(_at),  # the right-hand side, or the matrix, at an address
     "lhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).lhs),
     "rhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).rhs),
-    "diff": Operation(_diff, 2, MANY),
+    "diff": Operation(_diff, 2, MOST_ARGUMENTS),
     "d": Operation(lambda engine, tree: engine.along(engine.scalar(tree.arguments[0]))),  # by time, along the motion
     "subs": Operation(_subs),  # subs(e, x=..., y=...), all at once
     "solve": Operation(_solve, 2, 2),  # the only solution of a linear equation for a symbol
@@ -152,8 +152,8 @@ OPERATIONS: Mapping[str, Operation] = {
     "nullspace": Operation(lambda engine, tree: Kernel(engine.matrix(tree.arguments[0]))),  # a basis, as columns
     "eye": Operation(_eye),
     "zeros": Operation(_zeros, 1, 2),
-    "hstack": Operation(lambda engine, tree: _stack(engine, tree, beside=True), 1, MANY),
-    "vstack": Operation(lambda engine, tree: _stack(engine, tree, beside=False), 1, MANY),
+    "hstack": Operation(lambda engine, tree: _stack(engine, tree, beside=True), 1, MOST_ARGUMENTS),
+    "vstack": Operation(lambda engine, tree: _stack(engine, tree, beside=False), 1, MOST_ARGUMENTS),
     "controllability": Operation(_reached, 2, 2),  # [B, AB, A^2 B, ...]
     "observability": Operation(_observed, 2, 2),  # [C; CA; C A^2; ...]
     "jacobian": Operation(_jacobian, 2, 2),  # of a column by a list of symbols

@@ -24,7 +24,7 @@ thousand calls."""
 MAX_TERMS = 20_000
 """Terms once multiplied out, of one printed formula."""
 MAX_COMBINED_TERMS = 100_000
-"""The same of what is made of several formulas, in which the shipped ledgers have up to 2112."""
+"""Terms of what is made of several formulas, in which the shipped ledgers have up to 2112."""
 MAX_DIGITS = 2000
 """Digits of a number once multiplied out; the shipped ledgers have up to 66."""
 MAX_DEGREE = 500
@@ -32,7 +32,7 @@ MAX_DEGREE = 500
 MAX_ARGUMENT = 1e30
 """Size of what an exponential or an angle is taken of, at points of size one: its whole part is computed exactly."""
 MAX_CONSTANT_ARGUMENT = 1e4
-"""The same of a number: its exponential may be written out with all its digits."""
+"""Size of a number of which an exponential is taken: the exponential may be written out with all digits."""
 
 _GROWING = frozenset({"exp", "sinh", "cosh", "tanh"})
 _TURNING = frozenset({"sin", "cos", "tan"})

@@ -10,6 +10,8 @@ import pytest
 
 import satsym
 from satsym.cli import main
+from satsym.formula import field
+from satsym.formula import reading as safe
 from satsym.status import BadInput
 
 Run = Callable[..., tuple[int, str, str]]
@@ -195,3 +197,17 @@ def test_capitals_that_are_read_as_a_product_are_told_and_may_be_one_name() -> N
     named = satsym.check(printed, "hill", let="SF=u1")
     assert named.verdict == "right"
     assert "SF" not in named.letters
+
+
+@pytest.mark.parametrize("factor", ["c_1+c_2", "c_1+r", "-2", "r^2"])
+def test_an_equation_times_what_never_vanishes_is_the_equation(factor: str) -> None:
+    printed = rf"({factor})(\ddot r - r\dot\theta^2 + \frac{{\mu}}{{r^2}}) = ({factor})u_1"
+    assert satsym.check(printed, "polar_orbit").verdict == "right"
+
+
+def test_what_has_a_value_nowhere_is_found_at_the_first_point() -> None:
+    with pytest.raises(field.Nowhere):
+        field.Point("point").value(safe.expression("1/(x - x)"))
+    with pytest.raises(field.Undecided):
+        field.points_for([safe.expression("1/(x - x)")], "any")
+    assert len(field.points_for([safe.expression("sqrt(x + y)")], "any")) == field.POINTS  # another point has a root

@@ -26,9 +26,9 @@ from satsym.status import BadInput
 
 _SIMILAR = 0.75
 """Likeness from which on an equation is meant even where no edit leads to it."""
-_NEAR = 0.34
+_NEAR_LIKENESS = 0.34
 """Likeness below which an equation is not taken for the one that is meant."""
-_SAME = 1.0
+_SAME_LIKENESS = 1.0
 """Likeness from which on an equation that holds somewhere is that equation, not something that follows from it."""
 _SOMEWHERE = 0.25
 """Likeness that an equation is thought less likely by that holds somewhere alone."""
@@ -178,7 +178,8 @@ class Subject:
             if fit is not None and not (guess.oddity and fits and fits[0].likeness > fit.likeness + 0.3):
                 return self.answered(statement, "right", fit=fit)
             if place < _LOOKED_AT:
-                fits += self._near(named, derivatives, guess)
+                best = max((fit.likeness - _ODD * fit.guess.oddity for fit in fits), default=0.0)
+                fits += self._near(named, derivatives, guess, min(_NEAR_LIKENESS, best + _ODD * guess.oddity))
         fits.sort(key=lambda fit: fit.likeness - _ODD * fit.guess.oddity, reverse=True)
         return self._wrong_answer(statement, named, derivatives, fits)
 
@@ -189,7 +190,7 @@ class Subject:
         seen: set[tuple[Equality | None, bool]] = set()
         for fit in fits:
             key = fit.target.equation if fit.target else None
-            if fit.target and fit.likeness >= _NEAR and (key, fit.free) not in seen and len(near) < _TRIED:
+            if fit.target and fit.likeness >= _NEAR_LIKENESS and (key, fit.free) not in seen and len(near) < _TRIED:
                 seen.add((key, fit.free))
                 near.append(fit)
         if not near:
@@ -259,7 +260,7 @@ class Subject:
         """Name in the tree -> what it means."""
         sides = (named.lhs, named.rhs) if isinstance(named, Equality) else (named,)
         found: dict[str, Node] = {}
-        for name in set().union(*map(symbols, sides)):
+        for name in sorted(set().union(*map(symbols, sides))):
             if name in derivatives:
                 inner = derivatives[name]
                 terms = {n: t for n in symbols(inner) if (t := self._meaning(n, guess)) is not None}
@@ -297,7 +298,7 @@ class Subject:
                 same = (t for t in self.derived.targets if t.always and t.equation.lhs == left and not besides)
                 return Fit(guess, self._likest(residual, besides) or next(same, None), free, 1.0)
         for target in self.derived.targets:
-            if not target.always and likeness(residual, target.residual) >= _SAME:
+            if not target.always and likeness(residual, target.residual, _SAME_LIKENESS) >= _SAME_LIKENESS:
                 for extra in solved(target, self.derived):
                     if vanishes(residual, self.derived, extra):
                         return Fit(guess, target, False, 1.0)
@@ -329,25 +330,26 @@ class Subject:
             if not symbols(target.equation.lhs) <= inside | {*besides}:
                 continue
             there = substituted(target.residual, besides) if besides else target.residual
-            alike = likeness(residual, there) if target.always else 0.0
+            alike = likeness(residual, there, best[0]) if target.always else 0.0
             if alike > best[0] + 1e-9:
                 best = alike, target
         return best[1]
 
-    def _near(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> list[Fit]:
-        """Equations that one comes near, understood in one way."""
+    def _near(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess, least: float) -> list[Fit]:
+        """Equations that one comes near, understood in one way, as far as they are alike enough to be of interest."""
         residual = next(self.residuals(named, derivatives, guess))
         found = []
         inside = symbols(residual)
         without = not inside & {*self.derived.controls, *self.derived.costates}
         for target in self.derived.targets:
             there = target.residual if isinstance(named, Equality) else target.equation.rhs
-            if not symbols(there) & inside:
+            cost = {"L", "S"} & symbols(target.equation.lhs)
+            if not symbols(there) & inside or not cost <= inside:  # what is printed must name the cost
                 continue
             controlled = bool(symbols(there) & set(self.derived.controls))
             for free in (False, True) if without and controlled and not self.free else (self.free,):
                 besides = dict.fromkeys(self.derived.controls, ZERO) if free else {}
-                alike = likeness(residual, substituted(there, besides))
+                alike = likeness(residual, substituted(there, besides) if besides else there, least)
                 alike -= 0.0 if target.always or "stationarity" in target.address else _SOMEWHERE
                 if alike > 0.0:
                     found.append(Fit(guess, target, free, alike))

@@ -8,7 +8,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from satsym.formula.calculus import derivative, difference, product, total
-from satsym.formula.field import NoValue, Point, Undecided, points_for
+from satsym.formula.field import NoValue, Nowhere, Point, Undecided, points_for
 from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls, mapped, substituted, symbols
 from satsym.records import record
 from satsym.records.record import Record
@@ -33,7 +33,7 @@ class Target:
     always: bool
     """Whether it holds all along the motion, whatever the controls are."""
 
-    @property
+    @cached_property
     def residual(self) -> Node:
         """The difference of its sides."""
         return difference(self.equation.lhs, self.equation.rhs)
@@ -246,6 +246,8 @@ def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = Mapping
             try:
                 if MotionPoint(f"check {draw}", derived, besides, strict).value(tree):
                     return False
+            except Nowhere:
+                break
             except NoValue:
                 continue
             found += 1

@@ -21,12 +21,12 @@ from satsym.wording import shown, suggestion
 
 MOST_GUESSES = 60
 """Ways to understand the letters of one formula that are looked at."""
-_EACH = 6
+_NAMES_EACH = 6
 _PLACES = ("x", "y", "z")
 _COSTATES = frozenset(("lambda", "p", "psi", "Lambda", "mu"))
 _RATES = ("n", "omega", "Omega", "w", "nu")
 _LENGTHS = ("R", "a", "r", "rho", "sigma", "l", "h", "d", "L")
-_ALIKE = {"varphi": "phi", "varepsilon": "epsilon", "vartheta": "theta", "varrho": "rho", "varsigma": "sigma"}
+_VARIANTS = {"varphi": "phi", "varepsilon": "epsilon", "vartheta": "theta", "varrho": "rho", "varsigma": "sigma"}
 _OPTIMAL = ("star", "opt", "hat", "ast")
 
 
@@ -112,7 +112,7 @@ class Meanings:
         unknown = self.unknown(letters, given)
         used = {name for letter in letters if (name := given.get(letter.still) or self.named(letter.still))}
         used -= self.derived.others
-        each = [self._candidates(letter, letters, used)[:_EACH] or self._new(letter) for letter in unknown]
+        each = [self._candidates(letter, letters, used)[:_NAMES_EACH] or self._new(letter) for letter in unknown]
         if not all(each):
             return
         ways = islice(product(*(list(enumerate(names)) for names in each)), 20 * MOST_GUESSES)
@@ -129,7 +129,7 @@ class Meanings:
         return [] if letter.name in self.derived.record.names else [letter.name]
 
     def alternatives(self, letters: Sequence[Letter], given: Mapping[Letter, str]) -> Iterator[Guess]:
-        """The same for a star or a hat on a control: the law, where no bound acts, or the control itself."""
+        """Ways to understand a star or a hat on a control: the law, where no bound acts, or the control itself."""
         for letter in letters:
             marked = [mark for mark in letter.marks if mark in _OPTIMAL]
             bare = replace(letter.still, marks=tuple(m for m in letter.marks if m not in _OPTIMAL))
@@ -223,7 +223,7 @@ def _letter(latex: str) -> Letter | None:
 
 
 def _alike(letter: Letter) -> Letter:
-    return replace(letter, base=_ALIKE.get(letter.base, letter.base))
+    return replace(letter, base=_VARIANTS.get(letter.base, letter.base))
 
 
 def _place(letter: Letter) -> int | None:

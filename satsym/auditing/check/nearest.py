@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 
 from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
 from satsym.formula.tree import Node
@@ -12,26 +13,39 @@ from satsym.formula.tree import Node
 _MOST_SHIFTS = 24
 
 
-@lru_cache(maxsize=4000)
+@lru_cache(maxsize=20_000)
 def terms(tree: Node) -> Mapping[Monomial, Complex]:
     """A formula as a sum of products; none of what has too many."""
     try:
-        return terms_of(tree).coefficients
+        found = terms_of(tree).coefficients
     except (TooManyTerms, RecursionError):
         return {}
+    return {tuple((name, _whole(power)) for name, power in key): value for key, value in found.items()}
 
 
-def likeness(printed: Node, target: Node) -> float:
-    """How much of two residuals is the same, up to a common factor: one for the same, at most zero for nothing."""
+def _whole(power: Fraction) -> Fraction:
+    """An exponent, as an integer where it is one: these are added and compared many times quicker."""
+    return power if power.denominator != 1 else power.numerator  # type: ignore[return-value]
+
+
+def likeness(printed: Node, target: Node, least: float = 0.0) -> float:
+    """How much of two residuals is the same, up to a common factor: one for the same, at most zero for nothing.
+
+    Zero also where it is less than what is of interest, as their numbers of terms and their letters tell.
+    """
     one, other = terms(printed), terms(target)
     if not one or not other:
         return 0.0
+    mine, theirs = _letters(printed), _letters(target)
+    letters = 0.2 * len(mine & theirs) / max(1, len(mine | theirs))
+    if min(len(one), len(other)) / max(len(one), len(other)) + letters < least:
+        return 0.0
     best = 0.0
     shifts: dict[tuple[Monomial, Fraction], None] = {}
-    for a in one:
-        for b in other:
-            if len(shifts) < _MOST_SHIFTS and one[a][0] and not one[a][1]:
-                shifts[_over(a, b), other[b][0] / one[a][0]] = None
+    for a, b in product((a for a, (real, imaginary) in one.items() if real and not imaginary), other):
+        shifts[_over(a, b), other[b][0] / one[a][0]] = None
+        if len(shifts) == _MOST_SHIFTS:
+            break
     for shift, scale in shifts:
         shared = 0.0
         for a, (real, imaginary) in one.items():
@@ -40,16 +54,17 @@ def likeness(printed: Node, target: Node) -> float:
                 same = there == (real * scale, imaginary * scale)
                 shared += 1.0 if same else 0.6
         best = max(best, shared / max(len(one), len(other)))
-    return best + 0.2 * _letters_shared(one, other)
+    return best + letters
 
 
-def _letters_shared(one: Mapping[Monomial, Complex], other: Mapping[Monomial, Complex]) -> float:
-    mine, theirs = ({name for key in terms_ for name, _ in key} for terms_ in (one, other))
-    return len(mine & theirs) / max(1, len(mine | theirs))
+@lru_cache(maxsize=20_000)
+def _letters(tree: Node) -> frozenset[str]:
+    return frozenset(name for key in terms(tree) for name, _ in key)
 
 
+@lru_cache(maxsize=100_000)
 def _over(one: Monomial, other: Monomial) -> Monomial:
     powers = dict(one)
     for name, power in other:
-        powers[name] = powers.get(name, Fraction(0)) - power
+        powers[name] = powers.get(name, 0) - power
     return tuple(sorted((name, power) for name, power in powers.items() if power))

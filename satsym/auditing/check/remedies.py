@@ -16,7 +16,7 @@ from satsym.auditing.ledger.schema import DocumentTable, RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.sentences import Said, in_indonesian
 from satsym.formula import budget
-from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, substituted, symbols
+from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, size, substituted, symbols
 from satsym.formula.weight import Scales
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -32,6 +32,8 @@ NO_EDIT = 60.0
 
 _LIMIT = budget.Limit(3_000_000)
 """Work for the search of one edit; some seconds."""
+_SHORT_EQUATION = 80
+"""Parts of an equation, and of what it is held against, up to which the search is short by itself."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,8 @@ def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
     assert fit.target is not None
     bench, row = _bench(named, derivatives, fit, subject)
     try:
-        return budget.within(_LIMIT, lambda: _sought(bench, row, derivatives, subject))
+        long = sum(size(side) for tree in (named, fit.target.equation) for side in _sides(tree)) > _SHORT_EQUATION
+        return budget.within(_LIMIT, lambda: _sought(bench, row, derivatives, subject), calls=long)
     except budget.OverBudget:
         return Found(False, "it is too long for a search of the edit", None, NO_EDIT)
 
@@ -83,6 +86,10 @@ def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Su
     said = wrong_formula([""] * len(compared.labels), fix, "", "", write(correct) if correct else "", write)
     diagnosis = Said(*(_clause(text) for text in (str(said), in_indonesian(said))))
     return Found(False, diagnosis, correct, _cost(fix))
+
+
+def _sides(tree: Node | Equality) -> tuple[Node, ...]:
+    return (tree.lhs, tree.rhs) if isinstance(tree, Equality) else (tree,)
 
 
 def _clause(text: str) -> str:
@@ -120,8 +127,7 @@ def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
     known = subject.meant(named, derivatives, fit.guess)
     for name, tree in _others(fit, subject).items():
         known.setdefault(name, tree)
-    sides = (named.lhs, named.rhs) if isinstance(named, Equality) else (named,)
-    lacking = sorted(set().union(*map(symbols, sides)) - {*known, "I", "pi"})
+    lacking = sorted(set().union(*map(symbols, _sides(named))) - {*known, "I", "pi"})
     if lacking:
         raise BadInput(f"{', '.join(lacking)} may mean nothing in {derived.record.name}")
     besides = dict.fromkeys(derived.controls, ZERO) if fit.free else {}

@@ -13,7 +13,7 @@ from satsym.formula import field
 from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product, raised
-from satsym.formula.tree import Equality, Neg, Node, Sym, number
+from satsym.formula.tree import Add, Call, Equality, Neg, Node, Sym, calls, number, substituted, symbols, walk
 from satsym.formula.values import Matrix
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -21,7 +21,10 @@ from satsym.symbolic.lookup import formulas
 
 _MOST_FACTORS = 60
 _SIMPLEST = 6
-_LONGEST = 120
+_BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
+_MOST_DRAWS = 40
+"""Points tried for two at which roots have values."""
+_LONGEST_DIFFERENCE = 120
 """Characters of a difference that is worth printing."""
 
 
@@ -50,7 +53,7 @@ class Equal(Plan):
         except formulas.NotAFormula:
             return ""
         text = written(self.bench.theirs(self.row, formulas.to_tree(lacking)))
-        return text if len(text) <= _LONGEST else ""
+        return text if len(text) <= _LONGEST_DIFFERENCE else ""
 
     def cell_holds(self, index: int, cell: Node) -> bool:
         """Whether one cell would be right."""
@@ -117,16 +120,53 @@ class Multiple(Plan):
                     difference(found.trees, product([factor, self._trees])), found.exact - exact * self._exact
                 ):
                     return True
-        quotient = formulas.nonvanishing_quotient(found.exact, self._exact)
+        quotient = formulas.nonvanishing_quotient(found.exact, self._exact) if self._may_be_multiple(cells) else None
         if quotient is None:
             return False
         tree = product([formulas.to_tree(quotient), self._trees])
         return self.vanish(difference(found.trees, tree), found.exact - quotient * self._exact)
 
+    def _may_be_multiple(self, cells: Cells) -> bool:
+        """Whether the quotient of the differences may be made of positive symbols alone: then only these change it."""
+        positive = self.bench.names.positive
+        parts = [substituted(cell, self.meanings) for cell in cells]
+        for call in (call for part in (*parts, self._aim) for call in calls(part) if call.function in _BY_TERMS):
+            inside = symbols(call)
+            if inside & positive and inside - positive and any(isinstance(part, Add) for _, part in walk(call)):
+                return True  # a factor of it may be made of positive symbols, and has other values at each point
+        quotients = set()
+        for draw in range(_MOST_DRAWS):
+            point = _SamePositive(f"multiple {draw}", positive)
+            try:
+                gap, aim = point.value(parts[0]) - point.value(parts[1]), point.value(self._aim)
+            except field.NoValue:
+                continue
+            if gap % field.PRIME and aim:
+                quotients.add(gap * pow(aim, -1, field.PRIME) % field.PRIME)
+            if len(quotients) > 1:
+                return False
+        return True
+
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         gap, aim = point.value(cells[0]) - point.value(cells[1]), point.base.value(self._aim)
         for factor in self.factors:
             yield [(gap - point.base.value(factor) * aim) % field.PRIME]
+
+
+class _SamePositive(field.Point):
+    """A point at which positive symbols, and functions of them alone, have the same values whatever its seed is."""
+
+    def __init__(self, seed: str, positive: frozenset[str]) -> None:
+        super().__init__(seed, positive)
+        self._shared = field.Point("same", positive)
+
+    def symbol(self, name: str) -> int:
+        """The value of a symbol."""
+        return self._shared.symbol(name) if name in self._positive else super().symbol(name)
+
+    def value_of_call(self, node: Call) -> int:
+        """The value of a function."""
+        return self._shared.value(node) if symbols(node) <= {*self._positive} else super().value_of_call(node)
 
 
 def _quotient(one: tuple[Monomial, Complex], other: tuple[Monomial, Complex], positive: frozenset[str]) -> Node | None:

@@ -73,6 +73,8 @@ class Plan(ABC):
                 point = BoundPoint(field.Point(f"edits {draw}", self.bench.names.positive, strict), self.meanings)
                 try:
                     next(self.residuals(point, cells), None)
+                except field.Nowhere:
+                    break
                 except field.NoValue:
                     continue
                 found.append(point)

@@ -74,7 +74,7 @@ _EXACT = tuple(
     Fraction(n, d) for n, d in ((2, 1), (1, 2), (3, 1), (1, 3), (4, 1), (1, 4), (3, 2), (2, 3), (6, 1), (1, 6))
 )
 """Factors that are forgotten or written too often."""
-_FEW = 6
+_FEW_PLACES = 6
 """Places of which all choices are tried."""
 _STEPS = (1, -1, 2, -2)
 _FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",), "sinh": ("cosh",), "cosh": ("sinh",)}
@@ -91,7 +91,7 @@ def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = 
 
 
 def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
-    """The same slip at several places: one symbol for another, or a factor too many, wherever it stands.
+    """One slip at several places: one symbol for another, or a factor too many, wherever it stands.
 
     Every choice of two places or more is tried if there are few, else all of them and all but one.
     """
@@ -140,7 +140,7 @@ def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node
 
 
 def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
-    sizes = range(len(places), 1, -1) if len(places) <= _FEW else (len(places), len(places) - 1)
+    sizes = range(len(places), 1, -1) if len(places) <= _FEW_PLACES else (len(places), len(places) - 1)
     for size in sizes:
         yield from combinations(places, size)
 

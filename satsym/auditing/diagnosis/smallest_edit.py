@@ -101,7 +101,7 @@ def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
 
 
 def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """The same slip at several places of one cell."""
+    """One slip at several places of one cell."""
     letters, usable = plan.bench.scope(plan.row), plan.useful.__contains__
     return _first(plan, ((i, edit) for i in indices for edit in repeated_edits(plan.printed[i], letters, usable)))
 

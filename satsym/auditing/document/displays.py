@@ -13,7 +13,7 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 MAX_BYTES = 5_000_000
-"""Of a document with all that it includes."""
+"""Bytes of a document with all that it includes."""
 MOST_DISPLAYS = 3000
 _MOST_FILES = 200
 _MARKDOWN = (".md", ".markdown", ".qmd", ".rmd", ".txt")
@@ -42,7 +42,7 @@ _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100}
 _OPTION = re.compile(r":(?:label|name):[ \t]*(\S{1,100})")
 _UNNUMBERED = re.compile(r"\\(?:nonumber|notag)\b")
 _CONTINUES = re.compile(r"[\s&{}]*(?:[-+=]|\\(?:quad|qquad|times|cdot|equiv)\b)")
-_NEAR = 400
+_NEAR_CHARACTERS = 400
 """Characters before a display in which what it refers to is looked for."""
 
 
@@ -113,7 +113,7 @@ def displays(source: Source) -> Iterator[Display]:
         if head != heading:
             counted, heading = 0, head
         numbered = match["env"] is not None and not match["env"].endswith("*") and "math" not in match["env"][1:]
-        refers = tuple(_REFERENCE.findall(text, max(0, match.start() - _NEAR), match.start()))
+        refers = tuple(_REFERENCE.findall(text, max(0, match.start() - _NEAR_CHARACTERS), match.start()))
         for row_start, row in _equations(body, match["env"] or ""):
             label = _LABEL.search(row) or _OPTION.search(match["options"] or "")
             tag = _TAG.search(row)

@@ -51,7 +51,7 @@ class Cursor(ABC):
         self._i = 0
 
     def _of(self, part: Sequence[Token]) -> Self:
-        """The same for a part."""
+        """A cursor of its own for a part."""
         return type(self)(part, self._reading, self._start, self._plain, self._depth + 1)
 
     @abstractmethod

@@ -72,7 +72,7 @@ class Letter:
 
     @property
     def still(self) -> Letter:
-        """The same without dots."""
+        """The letter without its dots."""
         return replace(self, dots=0)
 
     def dotted(self, times: int = 1) -> Letter | None:

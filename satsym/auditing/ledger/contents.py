@@ -41,7 +41,7 @@ class Row:
     why: tuple[str | Proposition, ...] = ()
     """A sentence that explains why it is not so: texts, and terms to be measured between them."""
     why_id: tuple[str | Proposition, ...] = ()
-    """The same in Indonesian, where the ledger has it."""
+    """The explaining sentence in Indonesian, where the ledger has it."""
     says_id: str = ""
     """What it is about in Indonesian, where the ledger has it."""
 

@@ -32,7 +32,7 @@ _TELLING = 12
 """Signs that a quotation needs to tell which sentence it is from."""
 _REPEATED = 40
 """Signs that it needs to tell each sentence that says the same; a shorter one is taken where it is found first."""
-_NEAR = 1000
+_NEAR_CHARACTERS = 1000
 """Signs between the longest piece of a quotation and its other pieces, at most."""
 _NUMBER = r"[A-Z]?\d{1,2}(?:\.\d{1,3})*[a-e]?"
 _FORMULA = re.compile(rf"(?:\\tag\{{\(?|(?<![\w)])\()({_NUMBER})[)}}]+[\s$.,;]*$")
@@ -232,7 +232,7 @@ def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[st
         anchors = _places(longest, whole)[: None if len(longest) >= _REPEATED else 1]
         for sought, piece in pieces:
             for at in _places(sought, whole):
-                if any(abs(at - anchor) <= _NEAR for anchor in anchors):
+                if any(abs(at - anchor) <= _NEAR_CHARACTERS for anchor in anchors):
                     for i, end in enumerate(ends):
                         if end > at and end - len(squashed[i]) < at + len(sought):
                             quoted[i] = max(quoted[i], (len(sought), row.key), key=lambda each: each[0])

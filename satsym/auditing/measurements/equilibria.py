@@ -17,9 +17,9 @@ from satsym.formula import reading
 _SEED = 53
 _NEAR_BY = 0.02
 """How far from an equilibrium motions begin."""
-_FAR = 10.0
+_FAR_AWAY = 10.0
 """What comes so far stays there: it is not followed any further."""
-_FAST = 100.0
+_FAST_RATE = 100.0
 """What would move faster goes its way at this speed, so that what explodes takes a while."""
 _UNTIL, _NODES = 400.0, 2001
 _WHILE = 60.0
@@ -112,7 +112,7 @@ def _nonlinear(of: Record, begin: Array, rest: Array) -> tuple[Array, Array]:
 
     def moved(x: Array, _: float) -> list[float]:
         f = field(*x)
-        slow = min(1.0, _FAST / max(math.hypot(*f), _FAST), max(0.0, _FAR - math.hypot(*(x - rest))))
+        slow = min(1.0, _FAST_RATE / max(math.hypot(*f), _FAST_RATE), max(0.0, _FAR_AWAY - math.hypot(*(x - rest))))
         return [slow * entry for entry in f]
 
     t = np.linspace(0.0, _UNTIL, _NODES)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _SEED = 20
 _SWEEPS = 60
-_SETTLED = 1e-10
+_SETTLED_CONTROL = 1e-10
 
 loaded = cache(instances.load)
 """A shipped instance, read once."""
@@ -145,7 +145,7 @@ def swept(instance: str, guess: float = 0.0) -> Record:
         lam, _ = model.backward(times, end, x, x_mid, u, middle, p)
         law = _law(case, times, x, lam)
         change, u = float(np.abs(law - u).max()), law
-        if change <= _SETTLED:
+        if change <= _SETTLED_CONTROL:
             cost = float(integral + model.terminal_cost(case.tf, tuple(x[:, -1]), p))
             controls = dict(zip((v.symbol for v in model.spec.controls), u, strict=True))
             return Record(f"the sweeps of {instance}", {"J": cost, "t": times, **controls})

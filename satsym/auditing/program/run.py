@@ -25,7 +25,7 @@ from satsym.wording import shown
 MAX_STEPS = 3_000_000
 MAX_CALLS = 30
 _NUMBERS = (int, float, complex, np.number)
-_LARGEST = 2**53
+_LARGEST_INTEGER = 2**53
 _PARTS = ("real", "imag")
 
 
@@ -166,7 +166,7 @@ class _Walker:
 
     def _constant(self, found: ast.Constant, _: Mapping[str, Any]) -> Any:
         if not isinstance(found.value, int | float | str) or (
-            isinstance(found.value, int) and abs(found.value) > _LARGEST
+            isinstance(found.value, int) and abs(found.value) > _LARGEST_INTEGER
         ):
             raise self._refused(found)
         return found.value
@@ -205,7 +205,7 @@ class _Walker:
             one = float(one)
         broadcast(one, other)
         value = rule(one, other)
-        return float(value) if isinstance(value, int) and abs(value) > _LARGEST else value
+        return float(value) if isinstance(value, int) and abs(value) > _LARGEST_INTEGER else value
 
     def _numeric(self, value: Any, found: ast.expr) -> Any:
         if not isinstance(value, (*_NUMBERS, np.ndarray)):

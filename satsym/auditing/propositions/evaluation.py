@@ -57,7 +57,7 @@ class Answer:
     evidence: Mapping[str, str] = field(default_factory=dict)
     """Measured values by their terms."""
     members: int = 0
-    """Of the largest family that it was tried on."""
+    """How many the largest family has that it was tried on."""
     idle: frozenset[str] = frozenset()
     """Conditions in it that nothing meets, so that what they imply says nothing."""
     miss: Fit | None = None

@@ -62,7 +62,7 @@ class Proposition:
     text: str
     """As the ledger has it."""
     tree: ast.expr
-    """The same, checked."""
+    """The tree of the text, checked."""
     rows: tuple[str, ...] = ()
     """Keys of the rows that it looks up."""
     symbols: tuple[str, ...] = ()
