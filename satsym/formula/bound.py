@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from satsym.formula.field import Nowhere, Point
+from satsym.formula.field import BY_TERMS, Nowhere, Point
 from satsym.formula.tree import Call, Node, Sym, substituted, symbols
-
-_BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
 
 
 class BoundPoint(Point):
@@ -28,7 +26,7 @@ class BoundPoint(Point):
 
     def value_of_call(self, node: Call) -> int:
         """Angles and exponents are taken apart in our names."""
-        if node.function in _BY_TERMS:
+        if node.function in BY_TERMS:
             return self.base.value(substituted(node, self._meanings))
         return super().value_of_call(node)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar, overload
 
 from satsym.formula.tree import Call, Equality, Node, calls, symbols
 
@@ -25,6 +25,10 @@ def shaped(entries: Sequence[T], columns: int) -> tuple[tuple[T, ...], ...]:
     return tuple(tuple(entries[i : i + columns]) for i in range(0, len(entries), columns))
 
 
+@overload
+def each(formula: Node | Equality, function: Callable[[Node], Node]) -> Node | Equality: ...
+@overload
+def each(formula: Formula, function: Callable[[Node], Node]) -> Formula: ...
 def each(formula: Formula, function: Callable[[Node], Node]) -> Formula:
     """The formula with another expression in the place of each part."""
     if isinstance(formula, tuple):

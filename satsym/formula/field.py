@@ -36,6 +36,10 @@ IMAGINARY = pow(29, (PRIME - 1) // 4, PRIME)
 """A root of -1: 29 is no square."""
 
 
+BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
+"""Functions whose arguments are taken apart into terms."""
+
+
 class NoValue(Exception):
     """The formula has no value at this point: a division by zero, or a root of what has none."""
 

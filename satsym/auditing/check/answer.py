@@ -20,6 +20,7 @@ from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
 from satsym.auditing.latex.words import FUNCTIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
+from satsym.formula.cells import cells, names_in
 from satsym.formula.tree import ZERO, Equality, Grid, Node, Sym, substituted, symbols, walk
 from satsym.records import shelf
 from satsym.status import BadInput
@@ -111,7 +112,7 @@ class Subject:
     def answer(self, statement: Node | Equality) -> Answer:
         """Judge one statement."""
         try:
-            if isinstance(statement, Grid) or (isinstance(statement, Equality) and _has_grid(statement)):
+            if any(isinstance(part, Grid) for side in cells(statement) for _, part in walk(side)):
                 return self._of_matrix(statement)
             return self._of_equation(statement)
         except (BadInput, RecursionError) as error:
@@ -228,8 +229,7 @@ class Subject:
         return self.answered(statement, "undecided", why)
 
     def _inside(self, statement: Node | Equality) -> list[str]:
-        sides = (statement.lhs, statement.rhs) if isinstance(statement, Equality) else (statement,)
-        names = set().union(*map(symbols, sides))
+        names = names_in(statement)
         return [name for name in self.reading.letters if name in names]
 
     def _guesses(self, inside: Sequence[str]) -> Iterator[Guess]:
@@ -258,9 +258,8 @@ class Subject:
 
     def meant(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> dict[str, Node]:
         """Name in the tree -> what it means."""
-        sides = (named.lhs, named.rhs) if isinstance(named, Equality) else (named,)
         found: dict[str, Node] = {}
-        for name in sorted(set().union(*map(symbols, sides))):
+        for name in sorted(names_in(named)):
             if name in derivatives:
                 inner = derivatives[name]
                 terms = {n: t for n in symbols(inner) if (t := self._meaning(n, guess)) is not None}
@@ -354,7 +353,3 @@ class Subject:
                 if alike > 0.0:
                     found.append(Fit(guess, target, free, alike))
         return found
-
-
-def _has_grid(statement: Equality) -> bool:
-    return any(isinstance(part, Grid) for side in (statement.lhs, statement.rhs) for _, part in walk(side))

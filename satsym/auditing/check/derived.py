@@ -8,7 +8,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from satsym.formula.calculus import derivative, difference, product, total
-from satsym.formula.field import NoValue, Nowhere, Point, Undecided, points_for
+from satsym.formula.field import BY_TERMS, NoValue, Nowhere, Point, Undecided, points_for
 from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls, mapped, substituted, symbols
 from satsym.records import record
 from satsym.records.record import Record
@@ -18,7 +18,6 @@ _GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations",
 """Steps that state what holds somewhere, not everywhere."""
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps that are named first where several state the same."""
-_ANGLED = frozenset(("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"))
 _NOT_PLAIN = ("transpose", "det", "norm", "sat", "diff", "d", "cross", "dot", "sum", "integral")
 _COST = ("L", "S")
 _DEEPEST = 12
@@ -227,7 +226,7 @@ class MotionPoint(Point):
 
     def value_of_call(self, node: Call) -> int:
         """Angles and exponents are taken apart in names that stand for themselves."""
-        if node.function in _ANGLED:
+        if node.function in BY_TERMS:
             tree: Node = node
             for _ in range(_DEEPEST):
                 inside = {n: self._known[n] for n in symbols(tree) if n in self._known}

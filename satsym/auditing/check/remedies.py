@@ -16,7 +16,8 @@ from satsym.auditing.ledger.schema import DocumentTable, RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.sentences import Said, in_indonesian
 from satsym.formula import budget
-from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, size, substituted, symbols
+from satsym.formula.cells import cells, each, names_in
+from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, size, substituted
 from satsym.formula.weight import Scales
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -59,9 +60,7 @@ def with_names(statement: Node | Equality, subject: Subject) -> tuple[Node | Equ
         found[name] = part
         return Sym(name)
 
-    if isinstance(statement, Equality):
-        return Equality(mapped(statement.lhs, named), mapped(statement.rhs, named)), found
-    return mapped(statement, named), found
+    return each(statement, lambda side: mapped(side, named)), found
 
 
 def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> Found:
@@ -69,7 +68,7 @@ def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
     assert fit.target is not None
     bench, row = _bench(named, derivatives, fit, subject)
     try:
-        long = sum(size(side) for tree in (named, fit.target.equation) for side in _sides(tree)) > _SHORT_EQUATION
+        long = sum(size(side) for tree in (named, fit.target.equation) for side in cells(tree)) > _SHORT_EQUATION
         return budget.within(_LIMIT, lambda: _sought(bench, row, derivatives, subject), calls=long)
     except budget.OverBudget:
         return Found(False, "it is too long for a search of the edit", None, NO_EDIT)
@@ -86,10 +85,6 @@ def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Su
     said = wrong_formula([""] * len(compared.labels), fix, "", "", write(correct) if correct else "", write)
     diagnosis = Said(*(_clause(text) for text in (str(said), in_indonesian(said))))
     return Found(False, diagnosis, correct, _cost(fix))
-
-
-def _sides(tree: Node | Equality) -> tuple[Node, ...]:
-    return (tree.lhs, tree.rhs) if isinstance(tree, Equality) else (tree,)
 
 
 def _clause(text: str) -> str:
@@ -127,14 +122,13 @@ def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
     known = subject.meant(named, derivatives, fit.guess)
     for name, tree in _others(fit, subject).items():
         known.setdefault(name, tree)
-    lacking = sorted(set().union(*map(symbols, _sides(named))) - {*known, "I", "pi"})
+    lacking = sorted(names_in(named) - {*known, "I", "pi"})
     if lacking:
         raise BadInput(f"{', '.join(lacking)} may mean nothing in {derived.record.name}")
     besides = dict.fromkeys(derived.controls, ZERO) if fit.free else {}
     equation = fit.target.equation
-    holds: Node | Equality = Equality(substituted(equation.lhs, besides), substituted(equation.rhs, besides))
-    if not isinstance(named, Equality):
-        holds = substituted(equation.rhs, besides)
+    held = equation if isinstance(named, Equality) else equation.rhs
+    holds = each(held, lambda side: substituted(side, besides))
     scales = Scales()
     table = RowTable(item="1", kind="equation", printed=written(named), holds="1")
     row = Row(table, "1", "formula", printed=scales.checked(named), holds=scales.checked(holds))

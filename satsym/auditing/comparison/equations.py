@@ -21,7 +21,6 @@ from satsym.symbolic.lookup import formulas
 
 _MOST_FACTORS = 60
 _SIMPLEST = 6
-_BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
 _MOST_DRAWS = 40
 """Points tried for two at which roots have values."""
 _LONGEST_DIFFERENCE = 120
@@ -130,7 +129,7 @@ class Multiple(Plan):
         """Whether the quotient of the differences may be made of positive symbols alone: then only these change it."""
         positive = self.bench.names.positive
         parts = [substituted(cell, self.meanings) for cell in cells]
-        for call in (call for part in (*parts, self._aim) for call in calls(part) if call.function in _BY_TERMS):
+        for call in (call for part in (*parts, self._aim) for call in calls(part) if call.function in field.BY_TERMS):
             inside = symbols(call)
             if inside & positive and inside - positive and any(isinstance(part, Add) for _, part in walk(call)):
                 return True  # a factor of it may be made of positive symbols, and has other values at each point

@@ -28,6 +28,7 @@ from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.tokens import Token, Unread, tokens
 from satsym.formula import reading as safe
 from satsym.formula.calculus import derivative, difference
+from satsym.formula.cells import each
 from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Sym, Text, substituted, symbols
 from satsym.formula.writing import written
 from satsym.records import record, shelf
@@ -183,11 +184,7 @@ def _fill(entry: _Entry) -> None:
             text = _of_output(letter, fit.guess, subject) or written(tree)
         entry.letters[names.get(name, name)] = text
     renamed: dict[str, Node] = {name: Sym(new) for name, new in names.items()}
-    shown = (
-        Equality(substituted(named.lhs, renamed), substituted(named.rhs, renamed))
-        if isinstance(named, Equality)
-        else substituted(named, renamed)
-    )
+    shown = each(named, lambda side: substituted(side, renamed))
     entry.table["printed"] = written(shown)
     safe.statement(entry.table["printed"])  # what the ledger could not read is told now
     controls = ", ".join(f"{name}=0" for name in subject.derived.controls)
@@ -290,9 +287,7 @@ def _ours(entry: _Entry) -> Node | Equality | None:
         values = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
     except BadInput:
         return None
-    if isinstance(tree, Equality):
-        return Equality(substituted(tree.lhs, values), substituted(tree.rhs, values))
-    return substituted(tree, values)
+    return each(tree, lambda side: substituted(side, values))
 
 
 def _parsed(before: str) -> dict[str, Any]:

@@ -292,11 +292,8 @@ class Parser(OperatorCursor):
     def _timed_behind_power(self, letter: Letter) -> None:
         """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
         begin = self._i
-        end = self._bracket_end()
-        inside = self._found[begin + 1 : end]
-        words_there = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        if words_there in words.AT_A_TIME:
-            self._at_time(letter, "" if words_there in ("t", "tau") else words_there, begin)
+        inside = self._untimed(letter)
+        if inside is None:
             return
         if self._letter_in(inside) is not None:
             raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)

@@ -187,11 +187,8 @@ class LetterCursor(Cursor):
             self._at_time(letter, "", self._i)
             return
         begin = self._i
-        end = self._bracket_end()
-        inside = self._found[begin + 1 : end]
-        words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        if words in AT_A_TIME:
-            self._at_time(letter, "" if words in ("t", "tau") else words, begin)
+        inside = self._untimed(letter)
+        if inside is None:
             return
         places = split(inside, lambda t: t.text == ",")
         letters = [self._place(place) for place in places]
@@ -206,6 +203,17 @@ class LetterCursor(Cursor):
             raise Unread("what it is taken at is not read", self._found[begin].at)
         self._i = begin
         self._at_time(letter, "", begin)
+
+    def _untimed(self, letter: Letter | None) -> list[Token] | None:
+        """Go past the bracket that is next; what stands in it, or nothing where that is a time, which is entered."""
+        begin = self._i
+        end = self._bracket_end()
+        inside = list(self._found[begin + 1 : end])
+        words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
+        if words not in AT_A_TIME:
+            return inside
+        self._at_time(letter, "" if words in ("t", "tau") else words, begin)
+        return None
 
     def _at_time(self, letter: Letter | None, time: str, place: int) -> None:
         """Enter when a letter is taken; one formula may not have it at a fixed time and at another one."""

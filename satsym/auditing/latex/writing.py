@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
+from satsym.formula.cells import each
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, substituted
 from satsym.formula.writing import written
 
@@ -45,9 +46,7 @@ def in_plain(letters: Mapping[str, str]) -> Writer:
 
 def _renamed(tree: Node | Equality, letters: Mapping[str, str]) -> Node | Equality:
     names: dict[str, Node] = {name: Sym(text) for name, text in letters.items()}
-    if isinstance(tree, Equality):
-        return Equality(substituted(tree.lhs, names), substituted(tree.rhs, names))
-    return substituted(tree, names)
+    return each(tree, lambda side: substituted(side, names))
 
 
 def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
