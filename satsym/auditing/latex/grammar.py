@@ -19,7 +19,7 @@ from satsym.auditing.latex.rows import lines, without_remarks
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FREQUENCIES, FUNCTIONS, KEPT_GROUPS, MARKS
 from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -52,6 +52,7 @@ def read(
     reading.products = _capitals(kept)
     for line in lines(kept):
         _refuse_spelled_name(line)
+        reading.times.clear()
         sides = [Parser(part, reading, start, plain).whole() for part in line]
         if len(sides) == 1:
             reading.statements.append(sides[0])
@@ -206,9 +207,12 @@ class Parser(OperatorCursor):
         if self._plain:
             return
         before, after = self._found[self._i - 1], self._peek(1)
-        is_number = constant(last) is not None or token.text.startswith(("text", "mbox"))
-        if is_number and token.text in words.UPRIGHT and "".join(t.text for t in self._peek_group()) in words.UNITS:
-            raise Unread("a unit is not read", token.at)
+        if token.text in words.UPRIGHT:
+            said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
+            if said in words.UNITS and (plain or constant(last) is not None):
+                raise Unread("a unit is not read", token.at)
+            if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
+                raise Unread("words between formulas are not read", token.at)
         if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
             power = self._peek(2) if after is not None and after.text in "+-" else after
             if power is not None and power.kind == "number" and power.at <= token.at + 2:
@@ -465,7 +469,9 @@ class Parser(OperatorCursor):
         """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
         behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
         taken = behind is not None and self._begins_factor(behind)
-        if word.lower() in words.SAID:
+        places = [t.at for t in self._peek_group() if t.kind == "letter"]
+        parted = macro.startswith(("text", "mbox")) and any(b > a + 1 for a, b in pairwise(places))
+        if word.lower() in words.SAID or parted:
             raise Unread("words between formulas are not read", at)
         if word == "d" and taken:
             raise Unread("a differential is not read", at)
@@ -497,6 +503,10 @@ class Parser(OperatorCursor):
         if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
             return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
+            return Call("det", (inner,))
+        if single and isinstance(inner, Add) and "I" in symbols(inner):
+            raise Unread("bars around a matrix are a determinant, or a size; write \\det", token.at)
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
         return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))

@@ -142,7 +142,10 @@ class OperatorCursor(QuotientCursor):
     def _arguments(self) -> list[Node]:
         begin = self._i + 1
         end = self._bracket_end()
-        parts = split(self._found[begin:end], lambda token: token.kind == "sign" and token.text == ",")
+        inside = self._found[begin:end]
+        parts = split(inside, lambda token: token.text == "," or (token.kind == "macro" and token.text == "quad"))
+        if any(token.text == "quad" for token in inside):
+            parts = [part for part in parts if part]
         return [self._inner(part, self._found[begin - 1].at) for part in parts]
 
     def _bracket(self) -> Node:
@@ -157,7 +160,8 @@ class OperatorCursor(QuotientCursor):
             if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
                 raise Unread("what something is taken at, in brackets behind it, is not read", at)
         if len(arguments) > 1:
-            return Grid(tuple(arguments))
+            parted = any(token.text == "quad" for token in self._found[begin : self._i])
+            return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
             raise Unread("an empty bracket", at)
         return arguments[0]

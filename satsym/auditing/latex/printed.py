@@ -164,8 +164,8 @@ class LetterCursor(Cursor):
                 said.append(f" {token.text} ")
             elif token.kind in ("letter", "number", "word"):
                 said.append(token.text)
-            elif token.kind == "sign" and token.text == ",":
-                said.append(" ")
+            elif token.text in ("times", ","):
+                said.append(" by " if token.text == "times" else " ")
             elif token.kind == "sign" and token.text in "+-*":
                 said.append({"+": " plus ", "-": " minus ", "*": " star "}[token.text])
         return "".join(said)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from satsym.auditing.latex.letters import Letter, is_name, of_word
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.formula.tree import Call, Node, Sym
+from satsym.formula.tree import Call, Mul, Node, Sym, constant
 
 
 class QuotientCursor(LetterCursor):
@@ -88,7 +88,11 @@ class QuotientCursor(LetterCursor):
         """What a derivative sign in front is about: a bracket, or the rest of the term."""
         if self._is("(") or self._is("["):
             return self._bracket()
-        return self._product()
+        at = self._found[min(self._i, len(self._found) - 1)].at
+        found = self._product()
+        if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1 and not self._plain:
+            raise Unread("what is differentiated is not clear without brackets", at)
+        return found
 
     def _along(self, what: Node) -> Node:
         """The derivative by time: one more dot on a letter."""

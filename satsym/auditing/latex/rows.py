@@ -29,7 +29,7 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
             if found[i].text == ".":  # no bracket on this side
                 i += 1
-        elif (token.kind == "macro" and token.text in SPACES - {"quad", "qquad"}) or token.text in ("~", "$"):
+        elif (token.kind == "macro" and token.text in SPACES - {"quad", "qquad", " "}) or token.text in ("~", "$"):
             continue
         else:
             kept.append(token)
@@ -64,7 +64,7 @@ def lines(found: Sequence[Token]) -> list[list[list[Token]]]:
 def _rows(found: Sequence[Token]) -> list[list[Token]]:
     """Lines outside of brackets and matrices, and those of a system of equations."""
     rows: list[list[Token]] = [[]]
-    depth, i = 0, 0
+    depth, bracket, i = 0, 0, 0
     systems: list[bool] = []
     while i < len(found):
         token = found[i]
@@ -91,11 +91,14 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
             if not systems:
                 raise Unread('a "&" outside of lines that are aligned', token.at)
             rows[-1].append(token)
-        elif token.kind == "macro" and token.text in ("quad", "qquad"):
-            if not inside and depth == 0:
+        elif token.kind == "macro" and token.text in ("quad", "qquad", " "):
+            if not inside and bracket:
+                rows[-1].append(replace(token, text="quad"))  # parts the entries of a row
+            elif not inside and depth == 0 and token.text != " ":
                 rows.append([])
         else:
             depth += (token.kind == "open" or token.text in "([") - (token.kind == "close" or token.text in ")]")
+            bracket = max(0, bracket + (token.text in "([") - (token.text in ")]")) if token.kind == "sign" else bracket
             rows[-1].append(token)
     return [row for row in rows if row]
 
