@@ -7,12 +7,14 @@ import time
 from collections.abc import Callable
 
 import pytest
+import sympy as sp
 
 import satsym
 from satsym.cli import main
 from satsym.formula import field
 from satsym.formula import reading as safe
 from satsym.status import BadInput
+from satsym.symbolic.lookup import formulas
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -211,3 +213,17 @@ def test_what_has_a_value_nowhere_is_found_at_the_first_point() -> None:
     with pytest.raises(field.Undecided):
         field.points_for([safe.expression("1/(x - x)")], "any")
     assert len(field.points_for([safe.expression("sqrt(x + y)")], "any")) == field.POINTS  # another point has a root
+
+
+def test_numbers_rule_out_a_common_factor_before_sympy_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    original = formulas.nonvanishing_quotient
+
+    def counted(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
+        if other != 0:
+            asked.append(one)
+        return original(one, other)
+
+    monkeypatch.setattr(formulas, "nonvanishing_quotient", counted)
+    assert satsym.check(r"w = g\sin n + c^3", "hill").verdict == "undecided"
+    assert not asked
