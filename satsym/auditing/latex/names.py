@@ -1,0 +1,50 @@
+"""Letters side by side: names that are known, products, and what may be either."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+from satsym.auditing.latex.tokens import Token, Unread
+
+
+def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
+    """Where letters stand side by side, without spaces: places of the first one and behind the last."""
+    begin = 0
+    for k in range(1, len(found) + 1):
+        before, token = found[k - 1], found[k] if k < len(found) else found[0]
+        if not (token.kind == before.kind == "letter" and token.at == before.at + 1):
+            if found[begin].kind == "letter" and k - begin > 1:
+                yield begin, k
+            begin = k
+
+
+def with_names(found: list[Token], names: Collection[str]) -> list[Token]:
+    """The tokens, letters that spell a known name set upright."""
+    for begin, end in reversed(list(_runs(found))):
+        if "".join(t.text for t in found[begin:end]) in names:
+            at = found[begin].at
+            upright = [Token("macro", "mathrm", at), Token("open", "{", at), *found[begin:end], Token("close", "}", at)]
+            found = [*found[:begin], *upright, *found[end:]]
+    return found
+
+
+def capitals(found: Sequence[Token]) -> list[str]:
+    """Capitals side by side none of which stands by itself elsewhere: products, unless they are names."""
+    runs: dict[str, None] = {}
+    for begin, end in _runs(found):
+        upright = begin > 1 and found[begin - 1].kind == "open" and found[begin - 2].kind == "macro"
+        letters = [t.text for t in found[begin:end]]
+        if not upright and all(letter.isupper() for letter in letters):
+            others = {t.text for k, t in enumerate(found) if t.kind == "letter" and not begin <= k < end}
+            if not others & set(letters):
+                runs["".join(letters)] = None
+    return list(runs)
+
+
+def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
+    """Refuse what is defined where capitals side by side are: a name, or a product."""
+    side = line[0]
+    begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
+    if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
+        name = "".join(t.text for t in side[:end])
+        raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
