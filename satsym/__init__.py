@@ -38,8 +38,7 @@ __all__ = [
 TYPE_CHECKING = False  # as of typing, which would be loaded for it
 if TYPE_CHECKING:
     from satsym.front.analysing import analyse, lqr
-    from satsym.front.auditing import audit
-    from satsym.front.checking import check
+    from satsym.front.auditing import audit, check
     from satsym.front.derivation import derive
     from satsym.front.exporting import export
     from satsym.front.instance import Instance, load

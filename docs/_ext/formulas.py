@@ -3,7 +3,7 @@
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from satsym.report.html.mathml import math
+from satsym.report.html.markup import math
 
 
 def _inline(translator, node: nodes.math) -> None:

@@ -104,11 +104,11 @@ def themed(svg: str) -> str:
     """A picture that is dark where its reader's pages are."""
     from importlib.resources import files
 
-    from satsym.report.page import pictures
+    from satsym.report.page import run
 
     sheets = [files("satsym.report").joinpath(name).read_text("utf-8") for name in ("html/page.css", "page/report.css")]
     colours = "".join("".join(re.match(COLOURS, sheet, re.DOTALL).groups()) for sheet in sheets)
-    element, inside = pictures.themed(svg).split(">", 1)
+    element, inside = run.themed(svg).split(">", 1)
     return f"{element}><style>{colours}svg {{ fill: var(--ink); }}</style>{inside}"
 
 
@@ -180,7 +180,7 @@ def card(known: dict[str, str]) -> str:
 
 def overview(every: dict[str, dict[str, str]]) -> Iterator[str]:
     """The page of all, piece by piece."""
-    from satsym.report.subjects import INSTANCES, by_subject
+    from satsym.report.terminal.listing import INSTANCES, by_subject
 
     yield HEAD
     for subject, names in by_subject(every, INSTANCES).items():

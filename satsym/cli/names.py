@@ -1,4 +1,4 @@
-"""Names that a shell completes: what comes with satsym, and files; loads nothing but lists of files."""
+"""Names that a shell completes, from lists of files alone; and the folder of the checkout."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 from click.shell_completion import CompletionItem
+
+import satsym
 
 FILES = (".py", ".toml")
 
@@ -55,3 +57,9 @@ def documents() -> Iterable[str]:
     from satsym import source_files
 
     return (path.name for path in source_files.documents())
+
+
+def checkout() -> Path | None:
+    """The folder that holds derivations/ and generated/ as people edit them; ``None`` where satsym is installed."""
+    home = Path(satsym.__file__).resolve().parent.parent
+    return home if (home / "pyproject.toml").is_file() and (home / "derivations").is_dir() else None

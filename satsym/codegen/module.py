@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from satsym.codegen import derived_units, polynomials, rk4, roots, symplectic
-from satsym.codegen.block import Assignment, build
-from satsym.codegen.emitter import Emitter
+from satsym.codegen.block import Assignment, Emitter, build
 from satsym.codegen.functions import Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.codegen.naming import NEEDED, Code, code_of

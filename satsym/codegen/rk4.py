@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.codegen.block import Block
-from satsym.codegen.emitter import Emitter, free_symbols, live
+from satsym.codegen.block import Block, Emitter, free_symbols, live
 from satsym.codegen.printers import ScalarPrinter
 
 HALF, SIXTH, EIGHTH = sp.Rational(1, 2), sp.Rational(1, 6), sp.Rational(1, 8)

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.codegen.block import Assignment, build
-from satsym.codegen.emitter import Emitter, live
+from satsym.codegen.block import Assignment, Emitter, build, live
 from satsym.codegen.naming import Code
 from satsym.codegen.printers import ScalarPrinter
 from satsym.codegen.rk4 import unpacking

@@ -1,6 +1,6 @@
 """What a formula over derived and printed things means, in terms of a few operations that an engine provides.
 
-There are two engines: sympy's (:mod:`satsym.symbolic.lookup.operations`) and our own trees
+There are two engines: sympy's (:mod:`satsym.symbolic.lookup.library`) and our own trees
 (:mod:`satsym.formula.calculus`). What is written here, products of matrices and the like, they share.
 """
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
     from satsym.arrays import Array
     from satsym.front.derivation import Derivation
-    from satsym.symbolic.equilibria.survey import Attitudes
+    from satsym.symbolic.equilibria.momenta import Attitudes
 
 Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation | str | Path"
 
@@ -94,8 +94,7 @@ class Analysis(_Said):
         return attitudes(self.given, self.derivation.derived if self.derivation else None)
 
     def __repr__(self) -> str:
-        from satsym.report.terminal.equilibria import attitudes_text
-        from satsym.report.terminal.linear import analysis_text
+        from satsym.report.terminal.linear import analysis_text, attitudes_text
         from satsym.report.terminal.orbit import orbit_text
 
         parts = [analysis_text(self.linear, False)] if self.linear else []

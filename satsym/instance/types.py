@@ -212,7 +212,7 @@ class Instance:
         BadInput
             If a limit in time alone is met at no final time that is left.
         """
-        from satsym.instance.end_time import end_time, in_time_alone  # here, for these load numpy, as below
+        from satsym.instance.end_time import end_time, in_time_alone
         from satsym.kernels.active import with_active
 
         final = {name: value for name, value in self.final.items() if name not in self.met}

@@ -2,7 +2,7 @@
 
 A digest shows that a file is as it was written; it can be recomputed. What was edited in one function no longer fits
 the others: the two forms of a function must agree, loops must do what the functions of one point say, and derivatives
-must be derivatives (:mod:`satsym.kernels.relations`).
+must be derivatives (:mod:`satsym.kernels.evaluation`).
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ from satsym.control_set import ControlSet
 from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Function, Kernels
-from satsym.kernels.evaluation import COPIES, Evaluation, size, with_copies
+from satsym.kernels.evaluation import COPIES, Evaluation, Relation, deviations, size, with_copies
 from satsym.kernels.motion import of_motion
 from satsym.kernels.optimality import of_the_cost
-from satsym.kernels.relations import Relation, deviations
 from satsym.spec import Variable
 
 LIMIT = 1e-9

@@ -13,8 +13,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
-from satsym.kernels.evaluation import Evaluation, size
-from satsym.kernels.relations import Relation
+from satsym.kernels.evaluation import Evaluation, Relation, size
 
 
 def of_sets(of: Evaluation) -> Iterator[Relation]:

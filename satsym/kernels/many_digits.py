@@ -22,8 +22,7 @@ from satsym.arrays import Array
 from satsym.kernels import plain
 from satsym.kernels.contract import BATCH
 from satsym.kernels.core import Function
-from satsym.kernels.evaluation import Evaluation
-from satsym.kernels.relations import Relation
+from satsym.kernels.evaluation import Evaluation, Relation
 from satsym.spec import ProblemSpec
 
 DIGITS = 60

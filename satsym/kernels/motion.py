@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, size
-from satsym.kernels.relations import Relation, along, derivative
+from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, Relation, along, derivative, size
 
 PROBES = (-1.7, -0.4, 0.9, 2.3)
 """Where polynomials are compared with determinants, in units of the matrix."""

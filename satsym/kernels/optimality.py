@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
-from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, size
-from satsym.kernels.relations import Relation, along, derivative
+from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, Relation, along, derivative, size
 
 
 def of_the_cost(of: Evaluation) -> Iterator[Relation]:

@@ -27,3 +27,14 @@ def library(name: str, distribution: str, extra: str) -> ModuleType:
         return import_module(name)
     except ImportError:
         raise BadInput(f"{distribution} is not installed; pip install 'satsym[{extra}]'") from None
+
+
+def written_by(name: str, distribution: str) -> ModuleType:
+    """A module of a library of the extra ``exchange``, loaded now.
+
+    Raises
+    ------
+    BadInput
+        If it is not installed.
+    """
+    return library(name, distribution, "exchange")

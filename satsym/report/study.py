@@ -15,7 +15,7 @@ from typing import Any
 
 from satsym.choices import Command, TableFormat
 from satsym.report.look import SCREEN, Look
-from satsym.report.results import parquet, sets, studies
+from satsym.report.results import sets, studies, study_table
 from satsym.report.results.files import Content, check_writable, opened, to_json, write_text
 from satsym.report.results.set_list import ASKED, LIST, STUDY
 from satsym.report.results.studies import TRAJECTORIES, Merged
@@ -105,7 +105,7 @@ def written_as(study: Study, form: str | None) -> Study:
     if form not in TableFormat.names():
         raise BadInput(f"table: {shown(form)} is unknown; {suggestion(form, TableFormat.names())}")
     if form == TableFormat.PARQUET.value:
-        parquet.require()
+        study_table.require()
     return replace(study, table=TableFormat(form))
 
 

@@ -15,7 +15,7 @@ from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
-from satsym.symbolic.principle import notation as principle_notation
+from satsym.symbolic.principle import effort as principle_notation
 from satsym.symbolic.principle.parts import limits_of, parts_of
 from satsym.symbolic.principle.path import interior
 from satsym.symbolic.principle.path import notation as path_notation

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic.functions import minimisers, pieces, roots, signed
+from satsym.symbolic.functions import minimisers, pieces, roots
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
@@ -73,10 +73,10 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return power_of(dimension_of(e.base, known), e.exp)
     if isinstance(e, sp.Abs):
         return dimension_of(e.args[0], known)
-    if isinstance(e, signed.SignedClip):
+    if isinstance(e, minimisers.SignedClip):
         slope, weight, smoothing, *limits = e.args
         return _common((slope / smoothing, weight / smoothing, *limits), known)
-    if isinstance(e, minimisers.Switch | signed.SignedSwitch):
+    if isinstance(e, minimisers.Switch | minimisers.SignedSwitch):
         slope, weight, *limits = e.args
         _common((slope, weight), known)
         return _common(limits, known)

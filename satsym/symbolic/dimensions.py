@@ -28,7 +28,7 @@ from satsym.symbolic.dimension_algebra import (
 )
 from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
-from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle import effort as pn
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.principle.path import interior
 from satsym.symbolic.principle.path import notation as path_notation

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from satsym.symbolic.derivation import Derivation, Step
     from satsym.symbolic.dimension_algebra import Dimension
     from satsym.symbolic.equilibria.rest import Rest
-    from satsym.symbolic.motion.picture import Picture
+    from satsym.symbolic.motion.geometry import Picture
 
 MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
 """A pure function from what has been derived to the next step; ``None`` where it does not apply to the model."""

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from satsym.analysis.linear import rational
-from satsym.analysis.linear.spectrum import Eigenvalue, spectra
-from satsym.analysis.linear.stability import MARGINAL, UNDECIDED, stability
+from satsym.analysis.linear.spectrum import MARGINAL, UNDECIDED, Eigenvalue, spectra, stability
 from satsym.analysis.linear.system import LinearSystem, system
 from tests.support.known_jordan_forms import Known, known
 

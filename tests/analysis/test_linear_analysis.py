@@ -16,8 +16,7 @@ from satsym.analysis.linear.equilibrium import equilibrium, linearise
 from satsym.analysis.linear.polynomials import characteristic, companion_form, companion_matrix, place
 from satsym.analysis.linear.ranks import TOLERANCE, controllability, kalman, observability, staircase
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.spectrum import spectrum
-from satsym.analysis.linear.stability import stability
+from satsym.analysis.linear.spectrum import spectrum, stability
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.linear.system import system
 from satsym.status import BadInput

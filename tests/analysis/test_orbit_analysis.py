@@ -14,8 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
 from satsym import instance
-from satsym.analysis.orbits.conic import TOLERANCE, Conic
-from satsym.analysis.orbits.elements import Elements, elements
+from satsym.analysis.orbits.elements import TOLERANCE, Conic, Elements, elements
 from satsym.analysis.orbits.kepler import propagate
 from satsym.analysis.orbits.point import at_start, rule, rule_of_the_conclusion
 from satsym.analysis.orbits.survey import survey

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from satsym import instance
 from satsym.analysis.classical import law
-from satsym.analysis.classical.performance import _crossing
+from satsym.analysis.classical.signals import _crossing
 from satsym.analysis.regulator.feedback import simulate
 from satsym.cli import main
 from satsym.status import BadInput

@@ -13,7 +13,7 @@ from satsym import instance
 from satsym.analysis.orbits.survey import survey
 from satsym.cli import main
 from satsym.report.plots import style
-from satsym.report.plots.orbits import conics, plane, unit_circle
+from satsym.report.plots.orbits import conics, plane
 from satsym.report.results.linear import ANALYSIS
 from satsym.report.terminal.orbit import orbit_text
 from tests.house.test_floors import run_satsym
@@ -238,7 +238,7 @@ def test_eigenvalues_and_multipliers_are_drawn_where_they_are() -> None:
         computed, closed_form = axes.get_lines()[-2:]
         assert np.allclose(computed.get_xdata(), found.point.eigenvalues.real * 86400.0)
         assert np.allclose(closed_form.get_ydata(), found.point.closed_form.imag * 86400.0)
-        page = unit_circle.page(found)
+        page = plane.of_multipliers(found)
         assert page is not None
         whole, near = page.axes
         circle = max(whole.get_lines(), key=lambda line: len(line.get_xdata()))
@@ -247,7 +247,7 @@ def test_eigenvalues_and_multipliers_are_drawn_where_they_are() -> None:
         assert np.allclose(whole.get_lines()[-2].get_xdata(), found.floquet.multipliers.real)
         assert np.allclose(near.get_lines()[-2].get_xdata(), (found.floquet.multipliers - 1.0).real, rtol=1e-12, atol=0)
         assert near.get_xlabel() == r"$\mathrm{Re}\,\mu - 1$"
-        assert unit_circle.page(survey(instance.load("itb-earth-escape"))) is None
+        assert plane.of_multipliers(survey(instance.load("itb-earth-escape"))) is None
 
 
 @pytest.mark.slow

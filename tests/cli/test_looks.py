@@ -126,13 +126,13 @@ def test_nothing_is_cut_off_in_a_column() -> None:
     from satsym.analysis.orbits.survey import survey
     from satsym.analysis.regulator.feedback import designed
     from satsym.report.plots import comparison, responses
-    from satsym.report.plots.orbits import conics, plane, unit_circle
+    from satsym.report.plots.orbits import conics, plane
     from satsym.report.said import spoken
 
     orbit, design = survey(instance.load("molniya")), designed(instance.load("geo-lqr"))
     cases = compare([instance.load("lapan-classical"), instance.load("lapan-minimum-time")], lambda _: None)
     with spoken("id"), style.applied(Look(size="column")):
-        pages = [each(orbit) for each in (conics.page, plane.of_point, unit_circle.page)]
+        pages = [each(orbit) for each in (conics.page, plane.of_point, plane.of_multipliers)]
         pages += [responses.reach(design, instance.load("geo-lqr")), comparison.page(cases)]
         for page in pages:
             style.finished(page).draw_without_rendering()

@@ -22,8 +22,7 @@ from satsym.auditing.sentences import sentence
 from satsym.report.findings.objects import audit_object
 from satsym.report.findings.review import Review
 from satsym.report.html import audit as page
-from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.html.mathml import math
+from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.latex import audit as typeset
 from satsym.report.terminal.audit import audit_text
 from satsym.report.texts import languages, load

@@ -16,10 +16,9 @@ from satsym.analysis.regulator.feedback import simulate
 from satsym.report.page import explored as shown_as
 from satsym.report.page import switching_functions
 from satsym.report.page.answers import explored
-from satsym.report.page.attitudes import Attitude, about, turned_by
-from satsym.report.page.explored import Answer, data
+from satsym.report.page.explored import Answer, data, shown
+from satsym.report.page.motion import Attitude, about, turned_by
 from satsym.report.page.run import Given, render
-from satsym.report.page.symbols import shown
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
 from satsym.solvers import solve

@@ -10,8 +10,7 @@ from sympy import symbols
 from satsym.report.latex.figure import figure
 from satsym.report.texts import load
 from satsym.symbolic import Model, Problem
-from satsym.symbolic.motion.geometry import ROUND
-from satsym.symbolic.motion.picture import Arrow
+from satsym.symbolic.motion.geometry import ROUND, Arrow
 from tests.support.derived import stated
 
 

@@ -19,8 +19,8 @@ from sympy import Matrix, Symbol, cos, sin, sqrt, tan
 import satsym.symbolic
 from satsym.report.latex import tex
 from satsym.report.latex.document import render
+from satsym.report.latex.equations import width
 from satsym.report.latex.preamble import SIZES
-from satsym.report.latex.width import width
 from satsym.report.texts import MissingText, languages, load
 from satsym.spec import ControlSetKind
 from satsym.status import BadInput

@@ -13,15 +13,12 @@ import pytest
 import satsym
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
-from satsym.report.html.markup import Markup
+from satsym.report.html.markup import Markup, prose
 from satsym.report.page import answer
-from satsym.report.page.attitudes import Attitude
 from satsym.report.page.derived import Derived
-from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
-from satsym.report.page.pictures import pictures
+from satsym.report.page.motion import SECONDS, SIDE, TURNS, Attitude, motion
 from satsym.report.page.problem import problem
-from satsym.report.page.prose import prose
-from satsym.report.page.run import Given, render
+from satsym.report.page.run import Given, pictures, render
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import from_aside
 from satsym.report.texts import load

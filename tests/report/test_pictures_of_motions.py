@@ -13,14 +13,14 @@ from satsym import instance as instances
 from satsym import kernels
 from satsym.analysis.linear.structure import analyse
 from satsym.instance import Instance
-from satsym.report.columns import on_axis
 from satsym.report.look import Look
-from satsym.report.plots import convergence, coordinates, figures, pages, phase_planes, series, style
+from satsym.report.plots import convergence, curves, figures, pages, phase_planes, series, style
 from satsym.report.plots.orbits import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
 from satsym.report.plots.studies import figures as of_study
+from satsym.report.plots.studies import on_axis
 from satsym.report.results.studies import Numbers, distinguishing
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import Variable
@@ -120,15 +120,15 @@ def test_an_own_motion_is_drawn_in_its_phase_plane_or_as_a_path(
 def test_states_that_agree_on_the_trajectory_alone_are_no_rates() -> None:
     case = instances.load("rayleigh")  # x1' = x2; x2' = -x1 + (1.4 - 0.14 x2**2) x2 + 4 u
     x = np.vstack([np.zeros_like(T), np.zeros_like(T)])
-    found = coordinates.pairs(case.model, T, x, np.zeros((1, len(T))), case.parameters)
+    found = curves.pairs(case.model, T, x, np.zeros((1, len(T))), case.parameters)
     assert found == [(0, 1)]
 
 
 def test_angles_and_states_of_two_units_are_no_place() -> None:
     metres, turns = Variable("x", "x", "m"), Variable("y", "y", "rad")
-    assert coordinates.places((metres, Variable("y", "y", "m")), []) == (0, 1)
-    assert coordinates.places((metres, turns), [(0, 2), (1, 3)]) == ()
-    assert coordinates.places((turns, dataclasses.replace(turns, symbol="z")), []) == ()
+    assert curves.places((metres, Variable("y", "y", "m")), []) == (0, 1)
+    assert curves.places((metres, turns), [(0, 2), (1, 3)]) == ()
+    assert curves.places((turns, dataclasses.replace(turns, symbol="z")), []) == ()
 
 
 def converging(costs: list[float], residuals: list[float], **changes: float) -> Solution:

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym import instance, kernels
-from satsym.analysis.orbits.conic import Conic
+from satsym.analysis.orbits.elements import Conic
 from satsym.cli.app import program
 from satsym.cli.help import texts
 from satsym.report import plots, said

@@ -13,7 +13,7 @@ from satsym.report.texts import languages
 from satsym.symbolic import Problem
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import positive
-from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle import effort as pn
 from tests.support.derived import shipped, stated
 
 

@@ -11,7 +11,7 @@ from sympy import Symbol
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.report import plots
-from satsym.report.plots import coordinates, phase_planes, series
+from satsym.report.plots import curves, phase_planes, series
 from satsym.report.plots.orbits import surroundings
 from satsym.report.plots.orbits.scenes import Orbit
 from satsym.report.plots.reading import read
@@ -123,8 +123,8 @@ def test_along_the_track_is_across_the_picture_and_up_is_up() -> None:
         x = np.array(case.initial)[:, None] + np.random.default_rng(1).uniform(0.1, 0.9, (len(case.initial), 20))
         u = np.random.default_rng(2).uniform(-1.0, 1.0, (len(model.spec.controls), 20))
         given = model, np.linspace(0.0, 1.0, 20), x, u, case.parameters
-        found = coordinates.places(model.spec.states, coordinates.pairs(*given))
-        assert coordinates.level(*given, found) == wanted, name
+        found = curves.places(model.spec.states, curves.pairs(*given))
+        assert curves.level(*given, found) == wanted, name
 
 
 def test_the_orbit_that_is_to_be_joined_is_drawn_with_where_its_satellite_is_at_the_start() -> None:

@@ -13,10 +13,10 @@ from satsym import instance as instances
 from satsym import kernels
 from satsym.report.said import message as in_words
 from satsym.report.said import spoken
-from satsym.report.subjects import INSTANCES, MODELS, OTHER, by_subject
 from satsym.report.terminal.arcs import in_words as arcs_in_words
 from satsym.report.terminal.certificate import _HOLDS, statement, verdict_text
 from satsym.report.terminal.comparison import _without_rounding
+from satsym.report.terminal.listing import INSTANCES, MODELS, OTHER, by_subject
 from satsym.report.terminal.solution import _metrics, control_rows, solution_text, state_rows
 from satsym.solution import Certificate, Check, Competitors, Kind, Solution
 from satsym.solvers.collocation.attempt import Reason

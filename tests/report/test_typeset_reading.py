@@ -7,17 +7,16 @@ import re
 import pytest
 import sympy as sp
 
-from satsym.report.latex.context import Context
 from satsym.report.latex.document import render
-from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Row, array, display
-from satsym.report.latex.references import cited
+from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Context, Row, array, display
+from satsym.report.latex.preamble import cited
 from satsym.report.latex.steps import shown
 from satsym.report.texts import languages, load
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Equation, Step
+from satsym.symbolic.latex.products import plain
 from satsym.symbolic.latex.rewriting import readable
-from satsym.symbolic.latex.terms import plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle.path import notation as path_notation

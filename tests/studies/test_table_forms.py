@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import satsym
-from satsym.report.results import parquet
+from satsym.report.results import study_table
 from satsym.report.results.study_table import columns, labels
 from satsym.status import BadInput
 
@@ -17,7 +17,7 @@ VARY = {"initial.q": (0.2, 0.9, 20)}
 
 def test_both_forms_hold_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pyarrow")
-    monkeypatch.setattr(parquet, "GROUP", 7)  # more than one group of rows
+    monkeypatch.setattr(study_table, "GROUP", 7)  # more than one group of rows
     folders = {form: tmp_path / form for form in ("csv", "parquet")}
     for form, folder in folders.items():
         satsym.study("double-integrator-energy", folder, vary=VARY, table=form, workers=1)
@@ -36,7 +36,7 @@ def test_both_forms_hold_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_without_pyarrow_it_is_refused_in_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parquet, "find_spec", lambda _: None)
+    monkeypatch.setattr(study_table, "find_spec", lambda _: None)
     for form, said in (("parquet", r"pip install 'satsym\[table\]'"), ("xls", "unknown; known here: csv, parquet")):
         with pytest.raises(BadInput, match=said):
             satsym.study("double-integrator-energy", tmp_path / "none", vary=VARY, table=form)

@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 from flint import fmpq, fmpq_mat
 
-from satsym.analysis.linear.stability import ASYMPTOTIC, MARGINAL, UNSTABLE
+from satsym.analysis.linear.spectrum import ASYMPTOTIC, MARGINAL, UNSTABLE
 
 Value = tuple[Fraction, Fraction]
 """Real and imaginary part, the latter not negative."""

@@ -8,8 +8,7 @@ import pytest
 
 from satsym.analysis.linear.polynomials import characteristic, companion_matrix
 from satsym.analysis.linear.routh import routh
-from satsym.analysis.linear.spectrum import spectrum
-from satsym.analysis.linear.stability import ASYMPTOTIC, MARGINAL, UNSTABLE, stability
+from satsym.analysis.linear.spectrum import ASYMPTOTIC, MARGINAL, UNSTABLE, spectrum, stability
 from satsym.analysis.linear.system import system
 from satsym.analysis.regulator import many
 from satsym.analysis.regulator.lqr import lqr

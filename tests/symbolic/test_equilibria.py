@@ -8,8 +8,7 @@ import sympy as sp
 from scipy.spatial.transform import Rotation
 
 from satsym import kernels
-from satsym.symbolic.equilibria.attitude import Kind, all_of
-from satsym.symbolic.equilibria.continuum import continuum
+from satsym.symbolic.equilibria.attitude import Kind, all_of, continuum
 from satsym.symbolic.equilibria.momenta import follow
 from satsym.symbolic.equilibria.real_roots import solve
 from satsym.symbolic.lookup import library

@@ -26,6 +26,7 @@ from satsym.symbolic.analysis import (
     companion_form,
     companion_matrix,
     controllability,
+    exact_object,
     jordan_form,
     linear_system,
     matrix_exponential,
@@ -35,7 +36,6 @@ from satsym.symbolic.analysis import (
     stability,
 )
 from satsym.symbolic.analysis.field import certain_rank, never_zero, sign_of
-from satsym.symbolic.analysis.listing import exact_object
 from satsym.symbolic.analysis.stability import Cause
 from satsym.symbolic.linear import regulator as lqr
 from satsym.symbolic.linear import stability as stability_steps

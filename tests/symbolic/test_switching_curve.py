@@ -13,7 +13,7 @@ from derivations.double_integrator import double_integrator_fuel
 from derivations.pitch_wheel import pitch_minimum_time
 from satsym.symbolic import Problem, Variable, derive, symbols_of
 from satsym.symbolic.switching import curve as step
-from satsym.symbolic.switching import curve_checks
+from satsym.symbolic.switching.curve import arrives, between_rests, extremal
 from satsym.symbolic.switching.notation import ON_CURVE, SIDE
 from tests.support.body_on_a_line import BOUNDS, SPEED, case, generated, least
 from tests.support.switching_models import CHAIN, MINIMUM_TIME, derived, switching, u1, x1, x2
@@ -83,13 +83,13 @@ def test_the_checks_catch_a_wrong_curve_law_and_duration() -> None:
     q_f, curve = chain.target[0], stated["curve"] - chain.target[0]
     law = stated["u1"].xreplace({SIDE: stated["side"]})
     reversed_law, beyond = stated["u1"].xreplace({SIDE: -stated["side"]}), x1 - q_f - curve
-    assert curve_checks.arrives(found, chain, curve, law).passed
-    assert not curve_checks.arrives(found, chain, 2 * curve, law).passed
-    assert not curve_checks.arrives(found, chain, curve, reversed_law).passed
-    assert not curve_checks.extremal(found, chain, beyond - curve, law).passed
+    assert arrives(found, chain, curve, law).passed
+    assert not arrives(found, chain, 2 * curve, law).passed
+    assert not arrives(found, chain, curve, reversed_law).passed
+    assert not extremal(found, chain, beyond - curve, law).passed
     duration, first = stated["duration"], stated["first"]
-    assert not curve_checks.between_rests(found, chain, law, 2 * duration, first).passed
-    assert not curve_checks.between_rests(found, chain, reversed_law, duration, first).passed
+    assert not between_rests(found, chain, law, 2 * duration, first).passed
+    assert not between_rests(found, chain, reversed_law, duration, first).passed
 
 
 # what is generated

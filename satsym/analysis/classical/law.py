@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from satsym.analysis.classical.performance import performance
-from satsym.analysis.classical.signals import Span, excesses, totals
+from satsym.analysis.classical.signals import Span, excesses, performance, totals
 from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance

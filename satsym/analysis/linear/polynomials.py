@@ -9,8 +9,7 @@ import numpy as np
 
 from satsym.analysis.linear.ranks import controllability
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.spectrum import spectrum
-from satsym.analysis.linear.stability import shown
+from satsym.analysis.linear.spectrum import shown, spectrum
 from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 from satsym.status import BadInput

@@ -13,8 +13,7 @@ from satsym.analysis.linear.modes import Mode, modes
 from satsym.analysis.linear.polynomials import characteristic
 from satsym.analysis.linear.ranks import Reach, controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
-from satsym.analysis.linear.spectrum import Eigenvalue, spectra
-from satsym.analysis.linear.stability import Stability, stability
+from satsym.analysis.linear.spectrum import Eigenvalue, Stability, spectra, stability
 from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 from satsym.instance import Instance

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from satsym.arrays import Array
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     import control
 
     from satsym.analysis.linear.rational import Rational
-
-from satsym.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

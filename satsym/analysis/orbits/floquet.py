@@ -15,8 +15,7 @@ from satsym import kernels
 from satsym.analysis.linear.equilibrium import jacobians
 from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
 from satsym.analysis.linear.system import LinearSystem, system
-from satsym.analysis.orbits.conic import Conic
-from satsym.analysis.orbits.elements import Elements
+from satsym.analysis.orbits.elements import Conic, Elements
 from satsym.analysis.orbits.monodromy import Monodromy, monodromy
 from satsym.analysis.orbits.point import Complex
 from satsym.solvers.simulation.extrapolation import NotFinite

@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym import kernels
-from satsym.analysis.orbits.conic import Conic
-from satsym.analysis.orbits.elements import Elements
+from satsym.analysis.orbits.elements import Conic, Elements
 from satsym.analysis.orbits.point import CARTESIAN
 from satsym.arrays import Array
 from satsym.kernels import Kernels

@@ -4,7 +4,7 @@ Units that balance the first one's Hamiltonian matrix are taken for all. Two rou
 structured doubling, with the residual of the Riccati equation, and eigenvalues of the closed loop by those of the
 Hamiltonian matrix.
 
-Structured doubling (:mod:`satsym.analysis.regulator.doubling`) is done here on arrays whose last axis counts the
+Structured doubling (:mod:`satsym.analysis.regulator.lqr`) is done here on arrays whose last axis counts the
 problems. It starts not from a short step but from the Cayley transform with a shift g, which turns an eigenvalue s of
 the closed loop into (s + g)/(s - g), small where g is near |s|. The geometric mean of the |s| is known beforehand, from
 the determinant of the Hamiltonian matrix. Every answer is judged by its residual; the few that elimination without

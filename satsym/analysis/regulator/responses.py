@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from satsym.analysis.linear.equilibrium import Linearisation
+from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.system import LinearSystem
 from satsym.analysis.regulator.feedback import Design, gain, law, running_cost
 from satsym.analysis.regulator.lqr import Regulator
@@ -13,6 +17,7 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solvers.simulation import closed_loop
+from satsym.status import BadInput
 
 STEPS = 1000
 """Intervals of the time grid on which responses are given."""
@@ -98,3 +103,114 @@ def _exact(design: Design, case: Instance, times: Array, steered: bool) -> Respo
     run = closed_loop.simulate(case, driven, times, TOLERANCE, design.about.rates)
     places = [design.about.system.inputs.index(name) for name in design.regulator.system.inputs]
     return Response(run.x - np.array([design.about.at(t) for t in times]).T, run.u[places])
+
+
+DIRECTIONS = 64
+"""Beside those of single states."""
+SIZES = np.geomspace(1e-4, 1e2, 25)
+"""Deviations that are tried first, relative to the size of the motion itself."""
+REFINED = 10
+"""Deviations between the last one that returns and the first one that does not, twice."""
+RETURNED = 1e-6
+"""Largest share of the cost to go x'Px at the start that may be left where a motion counts as returned."""
+PATIENCE = 25.0
+"""Time to return, relative to that in which the closed loop's slowest motion decays to 1/e."""
+STEP = 0.1
+"""Step of RK4, relative to the time constant of the fastest motion."""
+MOST_STEPS = 20000
+
+
+@dataclass(frozen=True)
+class RegionOfAttraction:
+    """Deviations from which the motion returns."""
+
+    extents: Mapping[str, tuple[float, float]]
+    """By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to which
+    every one that was tried returns; infinite where all did."""
+    level: float
+    """The largest x'Px up to which every deviation returns that was tried in any direction."""
+    time: float
+    """How long each had to do so."""
+
+
+def region_of_attraction(about: Linearisation, found: Regulator, case: Instance | None = None) -> RegionOfAttraction:
+    """Estimate the basin of attraction of a linear law.
+
+    Parameters
+    ----------
+    about, found
+        The linearisation, and a regulator of it with an infinite horizon.
+    case
+        Whose bounds on the control hold; none by default.
+
+    Raises
+    ------
+    BadInput
+        If the horizon is finite: nothing steers after its end; or if the cost to go is not positive.
+    """
+    if found.horizon is not None:
+        raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
+    if not found.positive:
+        raise BadInput(
+            "a region of attraction is measured by the cost to go x'Px, which is not positive with these weights; "
+            "write a positive definite [lqr] Q"
+        )
+    n, names = len(about.point), about.system.states
+    time = PATIENCE / float(-found.eigenvalues.real.max())
+    if not about.nonlinear and (case is None or not case.control_set.bounded):
+        return RegionOfAttraction(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
+    directions = _directions(found.P, n)
+    size = np.sqrt(found.cost(np.abs(about.point) + scaled(about.system).states))
+    safe, unsafe = np.zeros(directions.shape[1]), np.full(directions.shape[1], np.inf)
+    tried = np.repeat(size * SIZES[:, None], directions.shape[1], axis=1)
+    for _ in range(3):
+        back = _returns(about, found, case, directions, tried, time)
+        first = np.where(back.all(axis=0), len(tried), (~back).argmax(axis=0))
+        column = np.arange(len(first))
+        safe = np.where(first > 0, tried[first - 1, column], safe)
+        unsafe = np.where(first < len(tried), tried[np.minimum(first, len(tried) - 1), column], unsafe)
+        fraction = np.arange(1, REFINED + 1)[:, None] / (REFINED + 1)
+        tried = safe + fraction * np.where(np.isfinite(unsafe), unsafe - safe, 0.0)
+    reach = np.where(np.isfinite(unsafe), safe, np.inf)
+    alone = reach[: 2 * n] / np.sqrt(np.repeat(np.diag(found.P), 2))
+    extents = {name: (-float(alone[2 * i + 1]), float(alone[2 * i])) for i, name in enumerate(names)}
+    return RegionOfAttraction(extents, float(reach.min() ** 2), time)
+
+
+def _directions(P: Array, n: int) -> Array:
+    """Deviations with x'Px = 1: of each state alone, up and down, then some in all; shape (n, count)."""
+    alone = np.repeat(np.eye(n), 2, axis=1) * np.tile([1.0, -1.0], n)
+    unit = 1.0 / np.sqrt(np.diag(P))
+    drawn = np.random.default_rng(0).normal(size=(n, DIRECTIONS))  # the same ones every time
+    evenly = np.linalg.solve(np.linalg.cholesky(P * np.outer(unit, unit)).T, drawn) * unit[:, None]
+    found = np.hstack([alone, evenly])
+    return np.asarray(found / np.sqrt(np.einsum("im,ij,jm->m", found, P, found)))
+
+
+def _returns(
+    about: Linearisation, found: Regulator, case: Instance | None, directions: Array, sizes: Array, time: float
+) -> NDArray[np.bool_]:
+    """Which of the deviations, sizes (k, count) times directions (n, count), return in time; shape (k, count)."""
+    model, p = about.model, about.parameters
+    K = np.zeros((len(about.system.inputs), len(about.point)))
+    K[[about.system.inputs.index(name) for name in found.system.inputs]] = found.K
+    positive = [i for i, state in enumerate(model.spec.states) if state.positive]
+    steps = int(min(MOST_STEPS, np.ceil(time * np.abs(found.eigenvalues).max() / STEP)))
+    h, t = time / steps, about.t0
+
+    def rates(t: float, x: Array) -> Array:
+        u = -K @ (x - about.at(t)[:, None])
+        return np.asarray(about.rates_batch(t, x, u if case is None else case.control_set.project(u), p))
+
+    x = about.point[:, None] + (directions[:, None] * sizes).reshape(len(directions), -1)
+    inside = np.ones(x.shape[1], bool)
+    with np.errstate(all="ignore"):
+        for _ in range(steps):
+            k1 = rates(t, x)
+            k2 = rates(t + 0.5 * h, x + 0.5 * h * k1)
+            k3 = rates(t + 0.5 * h, x + 0.5 * h * k2)
+            x, t = x + h / 6.0 * (k1 + 2.0 * (k2 + k3) + rates(t + h, x + h * k3)), t + h
+            inside &= (x[positive] > 0.0).all(axis=0)
+        left = x - about.at(t)[:, None]
+        cost = np.einsum("im,ij,jm->m", left, found.P, left)
+    return (inside & (cost <= RETURNED * sizes.ravel() ** 2)).reshape(sizes.shape)

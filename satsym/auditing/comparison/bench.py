@@ -20,8 +20,7 @@ from satsym.formula.writing import written
 from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.symbolic.lookup import library
-from satsym.symbolic.lookup.library import Names
-from satsym.symbolic.lookup.operations import Sympy
+from satsym.symbolic.lookup.library import Names, Sympy
 from satsym.wording import printable, shown, suggestion
 
 T = TypeVar("T")

@@ -111,7 +111,7 @@ def eigenvectors(of: Any) -> list[Record]:
 
 def jordan(of: Any) -> Record:
     """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
-    from satsym.symbolic.analysis.jordan import jordan_form
+    from satsym.symbolic.analysis.components import jordan_form
 
     found = jordan_form(_spectrum(system(of).part("A")))
     if found is None:

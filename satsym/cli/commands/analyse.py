@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.survey import Survey
     from satsym.report.look import Look
     from satsym.report.results.files import Content
-    from satsym.symbolic.equilibria.survey import Attitudes
+    from satsym.symbolic.equilibria.momenta import Attitudes
 
 EXAMPLES = """\b
 Examples:
@@ -70,8 +70,7 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
 
 
 def _text(found: Analysis | None, orbit: Survey | None, resting: Attitudes | None) -> str:
-    from satsym.report.terminal.equilibria import attitudes_text
-    from satsym.report.terminal.linear import analysis_text
+    from satsym.report.terminal.linear import analysis_text, attitudes_text
     from satsym.report.terminal.orbit import orbit_text
 
     parts = [analysis_text(found, in_colour())] if found else []

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
-from satsym.cli.derivations import checkout
 from satsym.cli.help import command
+from satsym.cli.names import checkout
 from satsym.cli.options import place_option
 from satsym.cli.output import Live, complain, emit, live, tell
 from satsym.cli.requirements import refuse_other_versions

@@ -35,9 +35,8 @@ def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
     from satsym.analysis.speed import solved, speeds
     from satsym.analysis.subject import find
     from satsym.kernels import Kernels
-    from satsym.report.results.speed import speed_object
     from satsym.report.said import say
-    from satsym.report.terminal.speed import backend_name, speed_text
+    from satsym.report.terminal.speed import backend_name, speed_object, speed_text
 
     given, found = find(subject), []
     model = given if isinstance(given, Kernels) else given.model

@@ -12,7 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 import satsym
-from satsym.cli.derivations import checkout
+from satsym.cli.names import checkout
 from satsym.cli.requirements import Requirement, requirements
 
 EXTRAS = {

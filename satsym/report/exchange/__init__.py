@@ -5,11 +5,18 @@ Each format is a module with one function from an :class:`~satsym.report.exchang
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any
 
-from satsym.report.exchange.ephemeris import Ephemeris
+import numpy as np
+
+from satsym.report.exchange.ephemeris import Arc, Ephemeris
+from satsym.report.extra import written_by
 from satsym.solution import Simulation, Solution
 from satsym.status import BadInput
+from satsym.version import __version__
 from satsym.wording import shown, suggestion
 
 FORMATS = {"oem": ".oem", "czml": ".czml", "stk": ".e", "csv": ".csv"}
@@ -38,17 +45,182 @@ def exported(result: Solution | Simulation, kind: str) -> str:
 def _writer(kind: str) -> Callable[[Ephemeris], str]:
     """The function that writes a format; its module is loaded now."""
     if kind == "oem":
-        from satsym.report.exchange.oem import oem
-
         return oem
     if kind == "czml":
         from satsym.report.exchange.czml import czml
 
         return czml
     if kind == "stk":
-        from satsym.report.exchange.stk import stk
-
         return stk
-    from satsym.report.exchange.table import table
-
     return table
+
+
+COLUMNS = (
+    ("utc", "time_s"),
+    ("x_km", "y_km", "z_km"),
+    ("vx_km_s", "vy_km_s", "vz_km_s"),
+    ("thrust_x_km_s2", "thrust_y_km_s2", "thrust_z_km_s2"),
+)
+
+
+def table(motion: Ephemeris) -> str:
+    """Time, position, velocity and thrust per unit mass, a line each; where the thrust jumps there are two lines.
+
+    Parameters
+    ----------
+    motion
+        Of any centre.
+
+    Returns
+    -------
+    str
+        A line of names, then numbers with all their digits, in kilometres and seconds, in the frame of the motion.
+    """
+    lines = [",".join(name for group in COLUMNS for name in group)]
+    for arc in motion.arcs:
+        rows = np.vstack([arc.times, arc.position, arc.velocity, arc.thrust]).T
+        lines += [",".join([f"{motion.utc(row[0])}Z", *(repr(float(value)) for value in row)]) for row in rows]
+    return "\n".join([*lines, ""])
+
+
+ORIGINATOR = "SATSYM"
+UNKNOWN = "UNKNOWN"
+"""The international designator of an object that has none, as the standard wants it."""
+DEGREE = 7
+"""Degree of Hermite's interpolation."""
+
+
+def oem(motion: Ephemeris) -> str:
+    """A motion as an orbit ephemeris message in keyword-value notation, version 2.0.
+
+    The motion is cut into segments where the thrust jumps, so that no reader interpolates across. The burns of each
+    segment are said in comments.
+
+    Parameters
+    ----------
+    motion
+        Of any centre.
+
+    Returns
+    -------
+    str
+        Positions in km and velocities in km/s. Its date of creation is now, or that of ``SOURCE_DATE_EPOCH``.
+
+    Raises
+    ------
+    BadInput
+        If ccsds-ndm is not installed.
+    """
+    models = written_by("ccsds_ndm.models.ndmxml2", "ccsds-ndm")
+    writing = written_by("ccsds_ndm.ndm_io", "ccsds-ndm")
+    header = models.NdmHeader(
+        comment=[_plain(f"{motion.name}: {motion.title}")], creation_date=_now(), originator=ORIGINATOR
+    )
+    body = models.OemBody(segment=[_segment(motion, arc, models) for arc in motion.arcs])
+    message = models.Oem(header=header, body=body)
+    return str(writing.NdmIo().to_string(message, writing.NDMFileFormats.KVN))
+
+
+def _segment(motion: Ephemeris, arc: Arc, models: Any) -> Any:
+    first, last = motion.utc(arc.times[0]), motion.utc(arc.times[-1])
+    metadata = models.OemMetadata(
+        object_name=_plain(motion.name).upper(),
+        object_id=UNKNOWN,
+        center_name=motion.orbit.centre.upper(),
+        ref_frame=motion.orbit.frame,
+        time_system="UTC",
+        start_time=first,
+        stop_time=last,
+        interpolation="HERMITE",
+        interpolation_degree=min(DEGREE, 2 * len(arc.times) - 1),
+    )
+    said = [
+        text
+        for text, burn in zip(burns(motion), motion.burns, strict=True)
+        if burn.start < arc.times[-1] and burn.end > arc.times[0]
+    ]
+    rows = [
+        models.StateVectorAccType(
+            epoch=motion.utc(time),
+            **{name: models.PositionType(value=value) for name, value in zip("xyz", map(_digits, place), strict=True)},
+            **{
+                f"{name}_dot": models.VelocityType(value=value)
+                for name, value in zip("xyz", map(_digits, pace), strict=True)
+            },
+        )
+        for time, place, pace in zip(arc.times, arc.position.T, arc.velocity.T, strict=True)
+    ]
+    return models.OemSegment(metadata=metadata, data=models.OemData(comment=said, state_vector=rows))
+
+
+def _digits(value: float) -> str:
+    """A number to 12 decimal places, without an exponent."""
+    return f"{value:.12f}"
+
+
+def _now() -> str:
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    moment = datetime.fromtimestamp(int(given), UTC) if given.isdecimal() else datetime.now(UTC)
+    return moment.strftime("%Y-%m-%dT%H:%M:%S")
+
+
+def _plain(text: str) -> str:
+    """Text in the characters of ASCII that can be printed, which is all that the standard allows."""
+    return "".join(c if " " <= c <= "~" else "?" for c in text)
+
+
+SYSTEMS = {"EME2000": "J2000", "ICRF": "ICRF", "GCRF": "ICRF"}
+"""What frames are called there."""
+MONTHS = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()
+"""Whatever language the system speaks."""
+
+
+def stk(motion: Ephemeris) -> str:
+    """A motion as an ephemeris of positions and velocities in metres, which is not interpolated across jumps of thrust.
+
+    Parameters
+    ----------
+    motion
+        Of any centre.
+
+    Returns
+    -------
+    str
+        Lines with times in seconds from the epoch.
+    """
+    epoch = motion.orbit.epoch
+    date = f"{epoch.day} {MONTHS[epoch.month - 1]} {epoch.year} {epoch:%H:%M:%S}.{epoch.microsecond * 1000:09d}"
+    lines = [
+        "stk.v.11.0",
+        "",
+        f"# WrittenBy satsym {__version__}",
+        f"# {motion.name}: {motion.title}".encode("ascii", "replace").decode("ascii"),
+        *(f"# {text}" for text in burns(motion)),
+        "",
+        "BEGIN Ephemeris",
+        "",
+        f"NumberOfEphemerisPoints {len(motion.times)}",
+        f"ScenarioEpoch {date}",
+        "InterpolationMethod Hermite",
+        f"InterpolationSamplesM1 {DEGREE}",
+        f"CentralBody {motion.orbit.centre}",
+        f"CoordinateSystem {SYSTEMS[motion.orbit.frame]}",
+        "DistanceUnit Meters",
+        "",
+    ]
+    if len(motion.arcs) > 1:
+        lines += ["BEGIN SegmentBoundaryTimes", *(f"{arc.times[0]:.16e}" for arc in motion.arcs[1:])]
+        lines += ["END SegmentBoundaryTimes", ""]
+    lines += ["EphemerisTimePosVel", ""]
+    for time, place, pace in zip(motion.times, motion.position.T * 1e3, motion.velocity.T * 1e3, strict=True):
+        lines.append(" ".join(f"{value:.16e}" for value in (time, *place, *pace)))
+    return "\n".join([*lines, "", "END Ephemeris", ""])
+
+
+def burns(motion: Ephemeris) -> list[str]:
+    """A line on each burn."""
+    return [
+        f"MANOEUVRE {k}: {motion.utc(burn.start)} to {motion.utc(burn.end)} UTC, delta-v {1e3 * burn.delta_v:.6g} m/s, "
+        f"thrust per unit mass at most {1e3 * burn.largest:.6g} m/s**2"
+        for k, burn in enumerate(motion.burns, 1)
+    ]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.report.exchange import burns
 from satsym.report.exchange.ephemeris import Ephemeris
-from satsym.report.exchange.stk import burns
-from satsym.report.exchange.writers import written_by
+from satsym.report.extra import written_by
 from satsym.report.plots import style
 from satsym.status import BadInput
 

@@ -10,8 +10,7 @@ from satsym.auditing.causes import Weight
 from satsym.records import shelf
 from satsym.report.findings.review import Review, title
 from satsym.report.html import derived
-from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.html.mathml import math
+from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.html.section import Section, breakable, scrolled, slug
 from satsym.report.texts import Texts, load
 

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from html import escape
+import re
+from collections.abc import Mapping
+from functools import cache
+from html import escape, unescape
+from itertools import pairwise
+from xml.etree import ElementTree as Xml
 
 _VOID = frozenset({"meta", "input"})
 
@@ -29,3 +34,72 @@ def joined(*pieces: str, by: str = "") -> Markup:
 def _attribute(key: str, value: str | bool) -> str:
     name = key.rstrip("_").replace("_", "-")
     return f" {name}" if value is True else f' {name}="{escape(str(value))}"'
+
+
+_UPRIGHT = re.compile(r"\\mathrm\{([^{}\\]*)\}")
+_BRACKET = re.compile(r"\\[bB]igg?([lr])(?![A-Za-z])")
+_BEFORE_A_SIGN = frozenset("=,([{<>≤≥|")
+_FUNCTIONS = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh exp log ln sgn det rank".split())
+_OPERATOR = re.compile(r"\\operatorname\{([^{}\\]*)\}")
+
+
+@cache
+def math(tex: str, *, block: bool = False) -> Markup:
+    """A formula; names of several letters are words, so that they are read as such."""
+    from latex2mathml.converter import convert_to_element
+
+    plain = _OPERATOR.sub(r"\\text{\1}\\,", _UPRIGHT.sub(r"\\text{\1}", tex))
+    plain = _BRACKET.sub(lambda side: r"\left" if side[1] == "l" else r"\right", plain)
+    element = convert_to_element(plain, display="block" if block else "inline")
+    element.attrib.pop("xmlns", None)
+    for part in element.iter():
+        # characters come as references; serialising escapes whatever they stand for
+        part.text, part.tail = (unescape(text) if text else text for text in (part.text, part.tail))
+    for word in element.iter("mi"):
+        if word.text in _FUNCTIONS:  # as an identifier it would touch what stands beside it
+            word.tag, word.attrib = "mo", {"form": "prefix", "lspace": "0.17em", "rspace": "0.17em"}
+    for parent in element.iter():
+        for before, sign in pairwise(parent):
+            if (
+                sign.tag == "mo"
+                and sign.text in ("-", "−", "+")
+                and before.tag == "mo"
+                and before.text in _BEFORE_A_SIGN
+            ):
+                sign.set("form", "prefix")  # else it is set as between two terms
+    return Markup(Xml.tostring(element, encoding="unicode"))
+
+
+_PIECES = re.compile(r"\$([^$]+)\$|\\\[(.+?)\\\]|\\(?:eq)?ref\{([^{}]*)\}", re.DOTALL)
+
+
+def prose(text: str, numbers: Mapping[str, str]) -> Markup:
+    """A sentence.
+
+    Parameters
+    ----------
+    text
+        Of :mod:`satsym.report.texts`, filled in.
+    numbers
+        Label of an equation or step -> what it is called where it is referred to.
+    """
+    found, end = [], 0
+    for match in _PIECES.finditer(text):
+        found.append(joined(_plain(text[end : match.start()])))
+        inline, display, label = match.groups()
+        if label is not None:
+            found.append(tag("a", numbers[label], href=f"#{label}") if label in numbers else Markup(""))
+        else:
+            found.append(scrolled(math(display, block=True)) if display else math(inline))
+        end = match.end()
+    return joined(*found, _plain(text[end:]))
+
+
+def scrolled(*inside: Markup) -> Markup:
+    """What may be wider than the page, and can then be scrolled with the keyboard, too."""
+    return tag("div", *inside, class_="wide", tabindex="0")
+
+
+def _plain(text: str) -> str:
+    text = text.replace(r"\mbox{--}", "--")  # which keeps both ends on one line there
+    return text.replace("~", "\N{NO-BREAK SPACE}").replace("--", "\N{EN DASH}").replace(r"\,", "\N{THIN SPACE}")

@@ -18,8 +18,7 @@ from satsym.report.findings.review import (
     where,
 )
 from satsym.report.html import derived
-from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.html.mathml import math
+from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.latex import formula_tex
 
 _CODE = re.compile(r"`([^`]*)`")

@@ -21,9 +21,9 @@ from satsym.report.findings.review import (
     where,
 )
 from satsym.report.latex import formula_tex
+from satsym.report.latex.equations import width
 from satsym.report.latex.preamble import preamble
 from satsym.report.latex.tex import bookmark, escape, name
-from satsym.report.latex.width import width
 from satsym.report.texts import Texts, load
 
 _CODE = re.compile(r"`([^`]*)`")

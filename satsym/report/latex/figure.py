@@ -9,7 +9,7 @@ from math import cos, degrees, hypot, sin
 from satsym.report.latex.tex import escape
 from satsym.report.texts import Texts
 from satsym.symbolic.model import Model
-from satsym.symbolic.motion.picture import Arrow, Picture, Place
+from satsym.symbolic.motion.geometry import Arrow, Picture, Place
 from satsym.symbolic.switching.phase_plane import PhasePlane
 
 SIZE = 2.6

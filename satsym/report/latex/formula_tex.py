@@ -10,8 +10,8 @@ from typing import TypeAlias
 from satsym.formula import reading
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.formula.writing import GREEK, written
+from satsym.report.latex.equations import width
 from satsym.report.latex.tex import GREEK_CAPITALS, escape
-from satsym.report.latex.width import width
 from satsym.status import BadInput
 
 Printed: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]

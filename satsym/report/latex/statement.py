@@ -6,19 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from satsym.report.latex import tex
-from satsym.report.latex.equations import LINE, Row, array, display
+from satsym.report.latex.equations import LINE, Row, array, display, width
 from satsym.report.latex.figure import figure
-from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.spec import PRODUCT, Variable
 from satsym.symbolic import Derivation
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import divisors_in_time
 from satsym.symbolic.convention import worded
-from satsym.symbolic.latex.terms import Term, joined, plain
+from satsym.symbolic.latex.products import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line, Problem, variables_of, with_origins
-from satsym.symbolic.principle.notation import cost_letter
+from satsym.symbolic.principle.effort import cost_letter
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path.interior import condition, named

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from satsym.report.latex import bodies, tex
-from satsym.report.latex.context import Context, Shown, numbers_of, row_of
-from satsym.report.latex.equations import LINE, Row, also, display
+from satsym.report.latex import matrices, tex
+from satsym.report.latex.equations import LINE, Context, Row, Shown, also, display, numbers_of, row_of, width
 from satsym.report.latex.figure import phase_figure
 from satsym.report.latex.matrices import entries_are, is_mirrored, matrix_rows, with_matrices
-from satsym.report.latex.width import width
 from satsym.symbolic import Conclusion, Equation, Step
 from satsym.symbolic.convention import worded
-from satsym.symbolic.latex.terms import joined, plain
+from satsym.symbolic.latex.products import joined, plain
 from satsym.symbolic.model import variables_of
 from satsym.symbolic.principle.path.notation import mixed, of_states, rate
 from satsym.symbolic.principle.transversality import on_a_reference
@@ -324,9 +322,9 @@ LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     "poles_and_zeros": _poles,
     "smoothed_law": _smoothed,
     "switching_feedback": _with_phase_plane,
-    "kinematics": bodies.kinematics,
-    "kane": bodies.kane,
-    "first_order": bodies.first_order,
+    "kinematics": matrices.kinematics,
+    "kane": matrices.kane,
+    "first_order": matrices.first_order,
     "reference": _zeros_together,
     "invariant_motions": _zeros_together,
     "lqr_costates": _costate_equations,

@@ -8,25 +8,20 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from satsym.report.display import unit_text
-from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.html.mathml import math
+from satsym.report.html.markup import Markup, joined, math, prose, scrolled, tag
 from satsym.report.latex import tex
-from satsym.report.latex.checks import checked
-from satsym.report.latex.context import Context
 from satsym.report.latex.document import SECTION_FROM, in_language
-from satsym.report.latex.equations import broken
-from satsym.report.latex.rules import listed_sources, rule
+from satsym.report.latex.equations import Context, broken, width
+from satsym.report.latex.rules import checked, listed_sources, rule
 from satsym.report.latex.statement import admissible, conditions
 from satsym.report.latex.steps import conclusion, groups_of, next_group
-from satsym.report.latex.width import width
-from satsym.report.page.prose import prose, scrolled
 from satsym.report.said import decimal
 from satsym.report.terminal.table import figure
 from satsym.report.texts import PHRASES, Texts
 from satsym.spec import Variable
-from satsym.symbolic.latex.terms import Term
+from satsym.symbolic.latex.products import Term
 from satsym.symbolic.latex.typeset import Typesetter, matrices
-from satsym.symbolic.principle.notation import cost_letter
+from satsym.symbolic.principle.effort import cost_letter
 
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step

@@ -179,7 +179,7 @@ def _until(case: Case) -> float:
 
 def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
     """Bars, with their sizes beside them; ``room`` is how many inches an axis is long."""
-    from satsym.analysis.classical.performance import SETTLING_BAND
+    from satsym.analysis.classical.signals import SETTLING_BAND
 
     controls = cases[0].instance.model.spec.controls
     used = (c for c in controls if any(case.metrics.get(f"{c.symbol}_total") for case in cases))

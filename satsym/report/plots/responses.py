@@ -219,7 +219,7 @@ def _draw(axes: Axes, times: Array, curve: Curve, measure: display.Scale, apart:
 
 def reach(design: Design, case: Instance) -> Figure | None:
     """How far each state alone may be off for the exact motion to return; nothing where only a linear one is known."""
-    from satsym.analysis.regulator.region_of_attraction import region_of_attraction
+    from satsym.analysis.regulator.responses import region_of_attraction
 
     regulator = design.regulator
     if not design.about.nonlinear or regulator.horizon is not None or not regulator.positive:

@@ -10,7 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
-from satsym.report.plots import coordinates, curves
+from satsym.report.plots import curves
 from satsym.report.results import restrictions
 from satsym.report.said import message, say
 from satsym.solution import Iteration, Simulation, Solution
@@ -96,7 +96,7 @@ class Scene:
     @cached_property
     def rated(self) -> list[tuple[int, int]]:
         """Places of states, and of those that are their rates."""
-        return coordinates.pairs(self.instance.model, self.nodes, self.x, self.u, self.instance.parameters)
+        return curves.pairs(self.instance.model, self.nodes, self.x, self.u, self.instance.parameters)
 
     @cached_property
     def restrictions(self) -> list[restrictions.Restriction]:

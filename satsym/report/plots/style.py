@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from satsym.arrays import Array
-from satsym.report.look import SCREEN, Look
-from satsym.report.plots.sheets import HIGHEST, SHEETS, WIDTH, Sheet
+from satsym.report.look import HIGHEST, SCREEN, SHEETS, WIDTH, Look, Sheet
 from satsym.report.results import files
 from satsym.report.said import say
 

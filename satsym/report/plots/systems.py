@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from satsym.report import display
 from satsym.report.look import SCREEN, Look
-from satsym.report.plots import style
+from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.said import message, say
 
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
     from satsym.instance import Instance
     from satsym.kernels import Kernels
-    from satsym.symbolic.equilibria.survey import Attitudes
+    from satsym.symbolic.equilibria.momenta import Attitudes
+
 
 Pictures: TypeAlias = dict[str, files.Content]
 """Name -> content of each file."""
@@ -63,21 +65,19 @@ def of_analysis(found: Analysis, look: Look = SCREEN) -> Pictures:
 
 def of_orbit(found: Survey, look: Look = SCREEN) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
-    from satsym.report.plots.orbits import conics, plane, unit_circle
+    from satsym.report.plots.orbits import conics, plane
 
     pictures: dict[str, Callable[[], Figure | None]] = {
         "orbit": lambda: conics.page(found),
         "point": lambda: plane.of_point(found),
-        "multipliers": lambda: unit_circle.page(found),
+        "multipliers": lambda: plane.of_multipliers(found),
     }
     return _drawn(pictures, look)
 
 
 def of_attitudes(found: Attitudes, title: str, unit: str = "", look: Look = SCREEN) -> Pictures:
     """Draw the equilibria of an attitude in orbit over a parameter with a unit: ``equilibria``."""
-    from satsym.report.plots import equilibria
-
-    return _drawn({"equilibria": lambda: equilibria.page(found, title, unit)}, look)
+    return _drawn({"equilibria": lambda: page(found, title, unit)}, look)
 
 
 def of_design(design: Design, look: Look = SCREEN) -> Pictures:
@@ -140,3 +140,54 @@ def portrait(found: Analysis) -> Figure | None:
     axes.set_xlabel(first)
     axes.set_ylabel(second)
     return page
+
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "stable": {"color": style.GREEN, "marker": "o", "markersize": 4.5},
+    "gyroscopically stabilised": {"color": style.BLUE, "marker": "s", "markersize": 3.8},
+    "unstable": {"color": style.VERMILION, "marker": ".", "markersize": 3.0},
+    "degenerate": {"color": style.INK, "marker": "x", "markersize": 5.0},
+}
+
+
+def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
+    """Number above, angle between the y of body and orbit below; nothing where they are not finite.
+
+    Parameters
+    ----------
+    unit
+        Of the parameter over which they are followed.
+    """
+    if found.followed is None:
+        return None
+    values, sets = found.followed.values, found.followed.equilibria
+    sheet = style.titled(title, style.WIDTH, 0.9 * style.WIDTH)
+    above, below = sheet.subplots(2, 1, sharex=True, height_ratios=(1, 2))
+    edges = [float(values[0]), *((c.below + c.above) / 2 for c in found.followed.changes), float(values[-1])]
+    counts = [len(sets[0]), *(c.counts[1] for c in found.followed.changes)]
+    above.stairs(counts, edges, baseline=None, color=style.INK, linewidth=1.4)
+    above.set_ylabel(textwrap.fill(say("number of equilibria"), 20))
+    above.set_ylim(0, 1.08 * max(counts))
+    above.set_yticks(sorted({0, *counts}))
+    seen = []
+    for kind, look in LOOKS.items():
+        points = [
+            (value, np.degrees(np.arccos(np.clip(each.cosines[1, 1], -1.0, 1.0))))
+            for value, group in zip(values, sets, strict=True)
+            for each in group
+            if each.kind.value == kind
+        ]
+        if points:
+            below.plot(*np.array(points).T, linestyle="none", **look)
+            seen.append((legend.line(linestyle="none", **look), message(kind)))
+    dotted: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0, (2, 3))}
+    for axes in (above, below):
+        for change in found.followed.changes:
+            axes.axvline((change.below + change.above) / 2, **dotted)
+    if found.followed.changes:
+        seen.append((legend.line(**dotted), say("number or kinds change")))
+    below.set_ylabel(say("from the orbit's y to the body's [deg]"))
+    below.set_xlabel(display.labelled(found.parameter, unit))
+    below.set_yticks(range(0, 181, 30))
+    legend.below(sheet, seen)
+    return sheet

@@ -10,9 +10,8 @@ if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.kernels import Kernels
     from satsym.symbolic import Derivation
-    from satsym.symbolic.equilibria.continuum import Continuum
-    from satsym.symbolic.equilibria.momenta import Change
-    from satsym.symbolic.equilibria.survey import Attitudes
+    from satsym.symbolic.equilibria.attitude import Continuum
+    from satsym.symbolic.equilibria.momenta import Attitudes, Change
 
 
 def attitudes(given: Instance | Kernels, derivation: Derivation | None = None) -> Attitudes | None:
@@ -23,7 +22,7 @@ def attitudes(given: Instance | Kernels, derivation: Derivation | None = None) -
     shipped = model.origin is not None and model.origin[1] is None
     if not model.spec.equilibria or not (shipped or derivation):
         return None
-    from satsym.symbolic.equilibria.survey import survey
+    from satsym.symbolic.equilibria.momenta import survey
     from satsym.symbolic.lookup import library
 
     values = [v.default for v in model.spec.parameters] if isinstance(given, Kernels) else given.parameters

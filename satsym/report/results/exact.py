@@ -39,8 +39,7 @@ def exact(about: Linearisation, derivation: Derivation | None = None) -> tuple[d
         return None, ""
     from satsym.status import BadInput
     from satsym.symbolic import DerivationError
-    from satsym.symbolic.analysis import NotExact, analyse
-    from satsym.symbolic.analysis.listing import exact_object
+    from satsym.symbolic.analysis import NotExact, analyse, exact_object
     from satsym.symbolic.linear.matrices import system_of
     from satsym.symbolic.lookup import library
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from satsym.analysis.orbits.conic import TOLERANCE
+from satsym.analysis.orbits.elements import TOLERANCE
 from satsym.report.display import length_unit, time_unit
 from satsym.report.results.certificate import plain
 from satsym.report.results.equilibria import attitudes_object
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from satsym.kernels import Kernels
     from satsym.spec import ProblemSpec
     from satsym.symbolic import Derivation
-    from satsym.symbolic.equilibria.survey import Attitudes
+    from satsym.symbolic.equilibria.momenta import Attitudes
 
 
 def examination_object(

@@ -8,6 +8,9 @@ import math
 import sys
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib import import_module
+from importlib.util import find_spec
+from itertools import islice
 from pathlib import Path
 from typing import IO, Any, TypeAlias
 
@@ -16,10 +19,10 @@ from numpy.typing import NDArray
 
 from satsym.choices import TableFormat
 from satsym.instance.numbers import SIDES, Table
-from satsym.report.results import parquet
 from satsym.report.results.files import Content
 from satsym.report.results.unit_names import COST, per, units, with_units
 from satsym.spec import ProblemSpec
+from satsym.status import BadInput
 from satsym.studies.rows import TEXTS, Column, Row, Scalar
 
 BEFORE, AFTER = (Column.ROW, Column.KEY), (Column.STATUS, Column.MESSAGE)
@@ -61,7 +64,7 @@ def _as_parquet(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content
             [number, row.key, *values, row.status, row.message, *(row.numbers.get(name) for name in found)]
             for number, values, row in rows()
         )
-        parquet.write(stream, header(spec, names), kinds, lines)
+        write(stream, header(spec, names), kinds, lines)
 
     return written
 
@@ -132,9 +135,9 @@ def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda na
         Of all names those that are wanted.
     """
     if path.name == TableFormat.PARQUET.file:
-        known = {label.partition(" [")[0]: label for label in parquet.names_of(path)}
+        known = {label.partition(" [")[0]: label for label in names_of(path)}
         taken = list(chosen(list(known)))
-        return dict(zip(taken, parquet.read(path, [known[name] for name in taken]), strict=True))
+        return dict(zip(taken, read(path, [known[name] for name in taken]), strict=True))
     with path.open(encoding="utf-8", newline="") as stream:
         rows = csv.reader(stream)
         names = list(labels_of(next(rows)))
@@ -150,7 +153,7 @@ def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda na
 def labels(path: Path) -> dict[str, str]:
     """Names of columns -> these with their units."""
     if path.name == TableFormat.PARQUET.file:
-        return labels_of(parquet.names_of(path))
+        return labels_of(names_of(path))
     with path.open(encoding="utf-8", newline="") as stream:
         return labels_of(next(csv.reader(stream)))
 
@@ -169,3 +172,65 @@ def _cell(value: Scalar) -> str:
     if value is None:
         return ""
     return value if isinstance(value, str) else repr(float(value))
+
+
+GROUP = 16384
+"""Rows that are written at a time, and are in memory."""
+
+
+def require() -> None:
+    """Refuse where pyarrow is missing, before anything is computed.
+
+    Raises
+    ------
+    BadInput
+        With what to do.
+    """
+    if find_spec("pyarrow") is None:
+        raise BadInput("table: parquet needs pyarrow, which is not installed; pip install 'satsym[table]', or take csv")
+
+
+def write(stream: IO[bytes], names: Sequence[str], kinds: Sequence[type], rows: Iterable[Sequence[Any]]) -> None:
+    """Write a table.
+
+    Parameters
+    ----------
+    names, kinds
+        Of the columns: ``int``, ``float`` or ``str``.
+    rows
+        Values, ``None`` where there is none.
+    """
+    arrow, parquet = _arrow(), import_module("pyarrow.parquet")
+    known = {int: arrow.int64(), float: arrow.float64(), str: arrow.string()}
+    schema = arrow.schema([(name, known[kind]) for name, kind in zip(names, kinds, strict=True)])
+    left = iter(rows)
+    with parquet.ParquetWriter(stream, schema) as writer:
+        while group := list(islice(left, GROUP)):
+            turned = zip(*group, strict=True)
+            columns = [arrow.array(column, known[kind]) for column, kind in zip(turned, kinds, strict=True)]
+            writer.write_table(arrow.table(columns, schema=schema))
+
+
+def names_of(path: Path) -> list[str]:
+    """Return the names of the columns, with their units."""
+    require()
+    names: list[str] = import_module("pyarrow.parquet").read_schema(path).names
+    return names
+
+
+def read(path: Path, names: Sequence[str]) -> list[NDArray[Any]]:
+    """Columns: numbers, NaN where there is none, or texts, empty where there is none."""
+    require()
+    table = import_module("pyarrow.parquet").read_table(path, columns=list(names))
+    arrow, found = _arrow(), []
+    for name in names:
+        column = table.column(name)
+        if arrow.types.is_string(column.type):
+            found.append(np.array([text or "" for text in column.to_pylist()]))
+        else:
+            found.append(np.asarray(column.cast(arrow.float64()).to_numpy()))
+    return found
+
+
+def _arrow() -> Any:
+    return import_module("pyarrow")

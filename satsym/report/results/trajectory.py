@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.instance.ends import Side
 from satsym.instance.numbers import changed
 from satsym.instance.unknowns import Place
-from satsym.report.results import arrays, sets
+from satsym.report.results import files, sets
 from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
@@ -153,7 +153,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
     if not _LAW.match(result.method if result.command == "solve" else result.feedback):
         raise again(listing, "names no method and no feedback")
     try:
-        stored = arrays.unpacked(found.contents[ARRAYS])
+        stored = files.unpacked(found.contents[ARRAYS])
     except ValueError as error:
         raise again(place, f"cannot be read ({printable(str(error), 120)})") from None
     if not _fits(stored, spec, result.command == "solve"):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.results.objects import file_of, head, plain
 from satsym.report.results.unit_names import times, units
 from satsym.report.said import each, message, say
-from satsym.report.terminal.solution import ROUNDING, joined
-from satsym.report.terminal.table import figure, table, wrapped
+from satsym.report.terminal.solution import ROUNDING
+from satsym.report.terminal.table import figure, joined, table, wrapped
 from satsym.status import Status
 
 if TYPE_CHECKING:

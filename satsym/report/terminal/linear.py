@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from satsym.analysis.linear.stability import UNSTABLE, shown
+from satsym.analysis.linear.spectrum import UNSTABLE, shown
+from satsym.report.results.equilibria import axis
 from satsym.report.results.exact import omitted_because
 from satsym.report.results.unit_names import COST, of_regulator, time_unit
 from satsym.report.said import counted, each, message, say
-from satsym.report.terminal.solution import joined
-from satsym.report.terminal.table import figure, table, wrapped
+from satsym.report.terminal.table import figure, joined, table, wrapped
 
 if TYPE_CHECKING:
     from satsym.analysis.linear.equilibrium import Linearisation
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.regulator.feedback import Design
     from satsym.arrays import Array
+    from satsym.symbolic.equilibria.momenta import Attitudes
 
 
 def analysis_text(found: Analysis, colour: bool = False) -> str:
@@ -179,3 +181,51 @@ def complex_number(value: complex) -> str:
         return f"{figure(value.imag, 10)}i"
     sign = "-" if value.imag < 0.0 else "+"
     return f"{figure(value.real, 10)} {sign} {figure(abs(value.imag), 10)}i"
+
+
+def attitudes_text(found: Attitudes) -> str:
+    """Summary of the equilibria."""
+    kinds = Counter(one.kind.value for one in found.equilibria)
+    listed = ", ".join(f"{count} {message(kind)}" for kind, count in sorted(kinds.items()))
+    header = (*each("nadir in the body", "normal of the orbit, reversed"), "")
+    attitudes = [
+        (_vector(one.cosines[2]), _vector(one.cosines[1]), message(one.kind.value)) for one in found.equilibria
+    ]
+    parts = [
+        [say("equilibria: <number>; <kinds>", number=_number(found), kinds=listed)],
+        table([header, *sorted(attitudes)]),
+    ]
+    if found.followed is not None:
+        changes = [
+            (
+                say("<low> to <high>", low=f"{c.below:.7g}", high=f"{c.above:.7g}"),
+                say("<low> to <high>", low=c.counts[0], high=c.counts[1]),
+                *map(_kinds, c.kinds),
+            )
+            for c in found.followed.changes
+        ]
+        last = figure(float(found.followed.values[-1]))
+        bracket = say("change as <name> grows to <value>", name=found.parameter, value=last)
+        parts.append(table([(bracket, *each("number", "kinds below", "kinds above")), *changes]))
+    return joined(parts)
+
+
+def _number(found: Attitudes) -> str:
+    """How many there are, or what the infinitely many are."""
+    whole = found.continuum
+    if whole is None:
+        return say("<count> attitudes (<number> with complex ones)", count=found.count, number=found.complex)
+    if whole.circles is None:
+        text = "a continuum of dimension <n> (counting complex ones), which is not resolved"
+        return say(text, n=whole.dimension)
+    text = "a continuum: <n> circles, by turns about the body's <axis>, one attitude of each below"
+    return say(text, n=len(whole.circles), axis=axis(whole))
+
+
+def _kinds(found: object) -> str:
+    assert isinstance(found, dict)
+    return ", ".join(f"{count} {message(kind.value)}" for kind, count in found.items())
+
+
+def _vector(values: object) -> str:
+    return "(" + ", ".join(f"{round(value, 4) + 0.0:7.4f}" for value in values) + ")"  # type: ignore[attr-defined]

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from satsym.analysis.orbits.conic import TOLERANCE, Conic
+from satsym.analysis.orbits.elements import TOLERANCE, Conic
 from satsym.analysis.orbits.floquet import FASTER
 from satsym.report.display import time_scale
 from satsym.report.results.orbit import units
 from satsym.report.said import each, message, say
 from satsym.report.terminal.linear import complex_number
-from satsym.report.terminal.solution import joined
-from satsym.report.terminal.table import figure, table, wrapped
+from satsym.report.terminal.table import figure, joined, table, wrapped
 
 if TYPE_CHECKING:
     from satsym.analysis.orbits.floquet import Floquet

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from satsym.proof.record import Enclosure, Outcome, Proof
 from satsym.report.said import each, message, say
-from satsym.report.terminal.solution import joined
-from satsym.report.terminal.table import table, wrapped
+from satsym.report.terminal.table import joined, table, wrapped
 
 _COLOURS = {Outcome.PROVED: 32, Outcome.NOT_PROVED: 31, Outcome.BEYOND: 33}
 

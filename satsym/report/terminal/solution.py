@@ -15,7 +15,7 @@ from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
 from satsym.report.terminal.certificate import certificate_lines
-from satsym.report.terminal.table import WIDEST, figure, fitting, room, table, wrapped
+from satsym.report.terminal.table import WIDEST, figure, joined, room, table, wrapped
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.status import Status
 
@@ -158,11 +158,6 @@ def progress_line(iteration: Iteration, instance: Instance) -> str:
     return say(
         "iteration <number>   J <value>   residual <residual>", number=iteration.number, value=value, residual=residual
     )
-
-
-def joined(blocks: Sequence[Sequence[str]]) -> str:
-    """Blocks of lines, an empty line between those that have any; headings, which are not moved in, fit."""
-    return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
 
 
 def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list[str]:

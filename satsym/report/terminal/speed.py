@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+import platform
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from satsym.report.results.objects import head_about
 from satsym.report.said import say
 from satsym.report.terminal.table import figure, table, wrapped
+from satsym.status import Status
+
+if TYPE_CHECKING:
+    from satsym.analysis.speed import Solved, Speed
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
+
 
 BACKENDS = {"numpy": "NumPy", "numba": "numba"}
 
@@ -40,3 +51,27 @@ def speed_text(found: Mapping[str, Any]) -> str:
     if all(one["backend"] == "numpy" for one in steps):
         lines += ["", *wrapped(say("numba is not installed: pip install 'satsym[fast]'"))]
     return "\n".join(lines)
+
+
+def speed_object(given: Instance | Kernels, speeds: Sequence[Speed], solved: Solved | None) -> dict[str, Any]:
+    """The machine, steps a second by each means, and the times of one solution; ``solve`` is ``None`` without one."""
+    from satsym.analysis.speed import cores
+
+    solution = None
+    if solved is not None:
+        solution = {
+            "method": solved.method,
+            "solve_s": solved.seconds,
+            "certificate_s": solved.certificate_seconds,
+        }
+    return head_about("bench", given, Status.CONVERGED if solved is None else solved.status) | {
+        "machine": {
+            "system": platform.system(),
+            "processor": platform.machine(),
+            "cores": cores(),
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+        },
+        "steps": [{"backend": one.backend, "cores": one.cores, "per_second": one.steps} for one in speeds],
+        "solve": solution,
+    }

@@ -125,3 +125,8 @@ def figure(value: float, digits: int = 6) -> str:
     if value != value:
         return "-"
     return f"{value + 0.0:.{digits}g}"
+
+
+def joined(blocks: Sequence[Sequence[str]]) -> str:
+    """Blocks of lines, an empty line between those that have any; headings, which are not moved in, fit."""
+    return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from satsym.symbolic.analysis.field import Field, never_zero
+from satsym.symbolic.analysis.field import Field, exact, never_zero
 from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum
 
 
@@ -101,3 +101,102 @@ def _newton(f: sp.Poly, power: sp.Poly) -> sp.Poly:
         slope = f.diff(LAMBDA).compose(root).rem(power)
         root = (root - value * slope.invert(power)).rem(power)
     return root
+
+
+@dataclass(frozen=True)
+class JordanBlock:
+    """An eigenvalue and the size of one of its blocks."""
+
+    eigenvalue: sp.Expr
+    size: int
+
+
+@dataclass(frozen=True)
+class JordanForm:
+    """A T = T J."""
+
+    blocks: tuple[JordanBlock, ...]
+    """Jordan blocks in the order in which they stand in J."""
+    form: sp.ImmutableMatrix
+    """J, with ones above the diagonal."""
+    basis: sp.ImmutableMatrix
+    """T: eigenvectors and generalised eigenvectors as columns, those of a block from the eigenvector up."""
+
+
+def jordan_form(of: Spectrum) -> JordanForm | None:
+    """The Jordan form; ``None`` where an eigenvalue has no closed form."""
+    if not of.closed_form:
+        return None
+    blocks: list[JordanBlock] = []
+    columns: list[sp.ImmutableMatrix] = []
+    for component in components(of):
+        chains = _chains(of.field, component)
+        for root in component.factor.roots:
+            for chain in chains:
+                blocks.append(JordanBlock(root, len(chain)))
+                vectors = [eigenvector(of.field, component.factor, root, component.semisimple, w) for w in chain]
+                columns += without_common_factor(vectors)
+    form = sp.diag(*(sp.Matrix.jordan_block(b.size, b.eigenvalue) for b in blocks))
+    return JordanForm(tuple(blocks), sp.ImmutableMatrix(form), sp.ImmutableMatrix(sp.Matrix.hstack(*columns)))
+
+
+def _chains(field: Field, component: Component) -> list[list[DomainMatrix]]:
+    """N^(k-1) w, ..., N w, w for each block of size k, the same for all roots of the factor.
+
+    Chains are independent if their first vectors are, together with what S makes of these.
+    """
+    size = component.projector.shape[0]
+    outside = DomainMatrix.eye(size, field.domain).to_dense() - component.projector
+    firsts: list[DomainMatrix] = []
+    found: list[list[DomainMatrix]] = []
+    for length in component.factor.blocks:
+        beyond = component.nilpotent**length
+        kernel = DomainMatrix.vstack(outside, beyond).nullspace()
+        for k in range(kernel.shape[0]):
+            chain = [whole(field, kernel[k, :].transpose())]
+            for _ in range(length - 1):
+                chain.insert(0, component.nilpotent * chain[0])
+            first = images(component.semisimple, chain[0], component.factor.degree)
+            if DomainMatrix.hstack(*firsts, *first).rank() == len(firsts) + len(first):
+                firsts += first
+                found.append(chain)
+                break
+    return found
+
+
+@dataclass(frozen=True)
+class CompanionForm:
+    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector."""
+
+    matrix: sp.ImmutableMatrix
+    """The companion matrix of the characteristic polynomial."""
+    basis: sp.ImmutableMatrix
+    """T."""
+
+
+def companion_matrix(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+    """The companion matrix of a monic polynomial, given highest power first: ones above the diagonal, then -a_k."""
+    size = len(coefficients) - 1
+    last = [-c for c in reversed(list(coefficients)[1:])]
+    return sp.ImmutableMatrix(size, size, lambda i, j: last[j] if i == size - 1 else sp.Integer(int(j == i + 1)))
+
+
+def companion_form(of: Spectrum, b: sp.MatrixBase) -> CompanionForm | None:
+    """The companion form for one input; ``None`` if the input does not reach everything.
+
+    Parameters
+    ----------
+    of
+        A, with its spectrum.
+    b
+        The input's column, shape (n, 1).
+    """
+    a = of.field.matrix(of.matrix)
+    field, (matrix, column, row) = exact(a, b, sp.Matrix([of.coefficients]))
+    columns = [column]  # from the last one to the first: b, A b + a_1 b, A (A b + a_1 b) + a_2 b, ...
+    for coefficient in row.to_list()[0][1:-1]:
+        columns.append(matrix * columns[-1] + column * coefficient)
+    basis = DomainMatrix.hstack(*reversed(columns))
+    if basis.rank() < a.rows:
+        return None
+    return CompanionForm(companion_matrix(of.coefficients), field.matrix(basis))

@@ -15,19 +15,22 @@ import sympy as sp
 from satsym.symbolic.functions.pieces import Until
 from satsym.symbolic.latex.laws import LawPrinter
 from satsym.symbolic.latex.products import (
+    Piece,
     Product,
+    Term,
     base,
     decimal,
     exponent,
     is_negative,
     is_power_of_sum,
+    joined,
     spread,
     take_apart,
     turned_round,
+    whole_term,
     with_plus_first,
 )
 from satsym.symbolic.latex.rewriting import rewritten
-from satsym.symbolic.latex.terms import Piece, Term, joined, whole_term
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""

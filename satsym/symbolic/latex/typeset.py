@@ -12,8 +12,8 @@ from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.factoring import as_factors
 from satsym.symbolic.latex.printer import Kind, Printer
+from satsym.symbolic.latex.products import Term
 from satsym.symbolic.latex.rewriting import readable
-from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.switching import notation as switching_notation

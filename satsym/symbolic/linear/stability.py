@@ -10,8 +10,8 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.agreement import DIGITS
+from satsym.symbolic.analysis.components import jordan_form as jordan_of
 from satsym.symbolic.analysis.exponential import matrix_exponential as exponential_of
-from satsym.symbolic.analysis.jordan import jordan_form as jordan_of
 from satsym.symbolic.analysis.routh import RouthArray
 from satsym.symbolic.analysis.routh import routh as routh_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum

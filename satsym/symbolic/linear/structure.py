@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import sympy as sp
 
-from satsym.symbolic.analysis.companion_form import companion_form as companion_of
+from satsym.symbolic.analysis.components import companion_form as companion_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.analysis.structure import KalmanForm, Reach
 from satsym.symbolic.analysis.structure import controllability as controllability_of

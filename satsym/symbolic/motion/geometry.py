@@ -8,6 +8,7 @@ has its axes, turned from those of the orbit, and the sense of each angle.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from math import atan2, cos, hypot, isclose, pi, sin
 from typing import Any
 
@@ -15,7 +16,6 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
-from satsym.symbolic.motion.picture import Arrow, Picture, Place
 
 TIME, ANGLE, FACTOR_OFF_REFERENCE = 0.6, 0.75, 1.3
 """When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
@@ -185,3 +185,49 @@ def _at(vector: Any, values: Mapping[sp.Symbol, Any]) -> Place:
 def _from_aside(parts: Iterable[float]) -> Place:
     x, y = (sum(part * towards[i] for part, towards in zip(parts, AXES_ON_PAGE, strict=True)) for i in range(2))
     return x, y
+
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """From where and where to, with the names of what points there, as LaTeX."""
+
+    start: Place
+    end: Place
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is drawn, in a unit of length that suits it.
+
+    Attributes
+    ----------
+    kind
+        Key of what it shows: a motion, deviations, bodies, an attitude.
+    path
+        Points of the reference.
+    arrows
+        From the centre, and where the body is.
+    angle
+        That of the body as seen from the centre, and its name; none if no coordinate is that angle.
+    bodies
+        Names of concentric bodies.
+    turns
+        Arrows about axes, each with the name of the angle.
+    axes
+        Where the inertial axes point.
+    guides
+        Lines that show depth, from where to where.
+    """
+
+    kind: str
+    path: tuple[Place, ...] = ()
+    arrows: tuple[Arrow, ...] = ()
+    angle: tuple[float, str] | None = None
+    bodies: tuple[str, ...] = ()
+    turns: tuple[tuple[tuple[Place, ...], str], ...] = ()
+    axes: tuple[Place, ...] = ((1.0, 0.0), (0.0, 1.0))
+    guides: tuple[tuple[Place, Place], ...] = ()

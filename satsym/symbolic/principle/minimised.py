@@ -16,7 +16,7 @@ from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import symbols_of
-from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle import effort as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.principle.pontryagin import costates

@@ -24,7 +24,7 @@ from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.functions.roots import Argmin, Choice, Vertex
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle import effort as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
 from satsym.symbolic.principle.parts import boxes_apart, limits_of, parts_of, weighed
 from satsym.symbolic.principle.path.stationary_controls import refuse_jumping

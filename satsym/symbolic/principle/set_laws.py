@@ -15,7 +15,7 @@ from satsym.symbolic.functions.minimisers import Clip, Stretch, Switch, Within
 from satsym.symbolic.functions.roots import Choice
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle import effort as pn
 from satsym.symbolic.principle.branches import Minimum, minima, norm_of, with_norms
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, minimum_norm_of, parts_of

@@ -23,8 +23,7 @@ from satsym.symbolic.algebra import tidy, vanishes
 from satsym.symbolic.checks import Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.functions.minimisers import Clip, Shrink, Switch
-from satsym.symbolic.functions.signed import SignedClip, SignedSwitch, compared
+from satsym.symbolic.functions.minimisers import Clip, Shrink, SignedClip, SignedSwitch, Switch, compared
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.parts import weighed

@@ -9,7 +9,7 @@ import sympy as sp
 
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.motion.picture import Place
+from satsym.symbolic.motion.geometry import Place
 from satsym.symbolic.switching import curve as switching_curve
 
 FASTEST = 1.5

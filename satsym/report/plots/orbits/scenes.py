@@ -11,7 +11,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, formula, labelled, length_scale, length_unit, number, plain, unit_text
-from satsym.report.plots import coordinates, curves, legend, series, style
+from satsym.report.plots import curves, legend, series, style
 from satsym.report.plots.orbits import surroundings
 from satsym.report.plots.orbits.surroundings import NOTHING, Surroundings
 from satsym.report.plots.reading import BURIED, FURTHEST, ROUNDING, within_reach
@@ -73,13 +73,13 @@ class Orbit:
     def _of_states(cls, scene: Scene) -> Orbit | None:
         """A path whose coordinates are states."""
         states = scene.spec.states
-        if (about := coordinates.polar(states)) is not None:
+        if (about := curves.polar(states)) is not None:
             return cls._of_polar(scene, *about)
-        found = coordinates.places(states, scene.rated)
+        found = curves.places(states, scene.rated)
         if not found:
             return None
         model, p = scene.instance.model, scene.instance.parameters
-        places = list(coordinates.level(model, scene.nodes, scene.x, scene.u, p, found))
+        places = list(curves.level(model, scene.nodes, scene.x, scene.u, p, found))
         ends = [series.target(scene, i) for i in places]
         unit, thrust = states[places[0]].unit, _added(scene, lambda x: x[places])
         return cls(
@@ -284,7 +284,7 @@ def _thrusts(scene: Scene) -> bool:
 
 def _polar(scene: Scene, path: Array) -> tuple[int, int] | None:
     """The states that are a distance and an angle of the position vector, if some are."""
-    found = coordinates.polar(scene.spec.states)
+    found = curves.polar(scene.spec.states)
     if found is None or len(path) != 2:
         return None
     r, theta = (scene.x[i] for i in found)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import cast
 
 import sympy as sp
 
 from satsym.spec import Variable
+from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kinds.derived import Derived
 from satsym.symbolic.model import symbols_of
+from satsym.symbolic.notation import answer_of, initial, named
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,3 +62,68 @@ class Statement(Derived):
             yield "what follows the command must be a state"
         if not {self.command, self.damping} <= set(self.parameters):
             yield "command and damping must be parameters"
+
+
+s = sp.Symbol("s")
+"""Differentiation with respect to time, or the variable of Laplace transforms."""
+COMMAND = sp.Symbol("command", real=True)
+"""What a closed loop is to follow."""
+SECONDS = sp.Symbol("t", positive=True)
+"""Time after the step."""
+POLYNOMIAL = sp.Symbol("closed_loop_polynomial", real=True)
+FIRST_REACHED, HIGHEST_AT = sp.Symbol("first_reached", real=True), sp.Symbol("highest_at", real=True)
+OVERSHOOT, TOTAL_IMPULSE = sp.Symbol("overshoot", real=True), sp.Symbol("total_impulse", real=True)
+SMOOTH_SQUARE = sp.Symbol("smooth_square", real=True)
+_FIXED = {
+    COMMAND: "c",
+    s: "s",
+    POLYNOMIAL: r"\Delta(s)",
+    FIRST_REACHED: "t_1",
+    HIGHEST_AT: "t_2",
+    OVERSHOOT: "o",
+    TOTAL_IMPULSE: r"\mathcal{I}",
+    SMOOTH_SQUARE: r"\mathcal{Q}",
+}
+
+
+transfer_to = named("transfer_{}")
+"""The symbol for the transfer function from the command to a state or the control."""
+impulse_of = named("{}_impulse")
+"""The symbol for the time integral of a control at the very moment of the step."""
+final_of = named("{}_final")
+"""The symbol for what a state tends to."""
+
+
+def pole(k: int) -> sp.Symbol:
+    """The symbol for a pole."""
+    return sp.Symbol(f"pole_{k}", real=True)
+
+
+def zero(k: int) -> sp.Symbol:
+    """The symbol for a zero."""
+    return sp.Symbol(f"zero_{k}", real=True)
+
+
+def names(model: Statement) -> dict[str, str]:
+    """Name -> LaTeX of all of them."""
+    found = {symbol.name: latex for symbol, latex in _FIXED.items()}
+    found |= {pole(k).name: f"s_{k}" for k in (1, 2)} | {zero(k).name: f"z_{k}" for k in (1, 2)}
+    variables = (*model.states, *model.of.controls)
+    for v, symbol in zip(variables, symbols_of(variables), strict=True):
+        found[transfer_to(symbol).name] = rf"G_{{{v.latex}}}(s)"
+        found[answer_of(symbol).name] = rf"{v.latex}(t)"
+        found[final_of(symbol).name] = rf"{v.latex}(\infty)"
+        found[initial(symbol).name] = rf"{v.latex}(0^+)"
+        found[impulse_of(symbol).name] = rf"\int_{{0^-}}^{{0^+}} {v.latex} \,dt"
+    return found
+
+
+def control_of(model: Statement) -> sp.Symbol:
+    """The control that the law takes the place of."""
+    (control,) = symbols_of(model.of.controls)
+    return control
+
+
+def loop_of(so_far: Derivation) -> Statement:
+    """What the model states; its class lists the steps."""
+    return cast(Statement, so_far.model)

@@ -19,9 +19,8 @@ from satsym.symbolic.derivation import Derivation, DerivationError, Equation, St
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, power_of, product
 from satsym.symbolic.factoring import as_factors
 from satsym.symbolic.kinds.closed_loop import answers
-from satsym.symbolic.kinds.closed_loop import names as cn
-from satsym.symbolic.kinds.closed_loop.declared import Statement
-from satsym.symbolic.kinds.closed_loop.names import COMMAND, SECONDS, control_of, loop_of, s
+from satsym.symbolic.kinds.closed_loop import declared as cn
+from satsym.symbolic.kinds.closed_loop.declared import COMMAND, SECONDS, Statement, control_of, loop_of, s
 from satsym.symbolic.kinds.derived import original_equations
 from satsym.symbolic.model import MaybeStep, Problem, Requirement, symbols_of
 from satsym.symbolic.motion import steps as motion
