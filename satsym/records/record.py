@@ -26,7 +26,7 @@ from satsym.wording import printable, shown, suggestion
 FORMAT = 1
 SUFFIX = ".derivation.json"
 DECLARED = "declared"
-_LARGEST = 20_000_000
+_MOST_BYTES = 20_000_000
 """Bytes of a record, at most; those that come with satsym have up to 60 thousand."""
 VARIABLES = ("state", "control", "output")
 """Kinds of names that rows and columns of matrices are called by."""
@@ -124,8 +124,8 @@ def load(path: Path) -> Record:
         status = path.stat()
     except (OSError, ValueError):
         raise BadInput(f"{printable(str(path), 200)}: no such file; satsym derive writes it") from None
-    if status.st_size > _LARGEST:
-        raise BadInput(f"{printable(str(path), 200)}: larger than {_LARGEST:,} bytes; no record of a derivation is")
+    if status.st_size > _MOST_BYTES:
+        raise BadInput(f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; no record of a derivation is")
     found = _decoded(path, status.st_mtime_ns, status.st_size)
     for place, digest in found.sources.items():
         if digest_of(path.parent / place) not in ("", digest):

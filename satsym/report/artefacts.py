@@ -30,7 +30,7 @@ MAX_SECONDS = 900.0
 Job: TypeAlias = "tuple[Path, str, Path, float]"
 """A derivation file, the name of a problem in it, where that is to be written, and the time that deriving may take."""
 
-FEW = 6
+FEWEST_IN_PARALLEL = 6
 """Problems up to which less one process derives them all."""
 
 
@@ -156,7 +156,7 @@ def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, 
 @contextmanager
 def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
     """A map over processes, one for each processor; few jobs are not worth the time that processes take to begin."""
-    if jobs < FEW or (os.cpu_count() or 1) < 2:
+    if jobs < FEWEST_IN_PARALLEL or (os.cpu_count() or 1) < 2:
         yield map
         return
     with ProcessPoolExecutor(min(jobs, os.cpu_count() or 1), get_context("spawn")) as pool:

@@ -24,7 +24,7 @@ _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-12: "p", -9: "n", -6: "\N{MICRO SIGN}", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "ms": ("s", -3)}
 """Units with a prefix: without it, and the power of ten that it stands for."""
-_LARGEST = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
+_LARGEST_POWERS = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
 """Units that take prefixes, and up to which power of ten people use them."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
@@ -88,11 +88,13 @@ def engineering(unit: str, size: float) -> Scale:
     except BadInput:
         return stays
     plain_names = {name: _PREFIXED.get(name, (name, 0)) for name in factors}
-    first = next((name for name, (base, _) in plain_names.items() if base in _LARGEST and factors[name] > 0), None)
+    first = next(
+        (name for name, (base, _) in plain_names.items() if base in _LARGEST_POWERS and factors[name] > 0), None
+    )
     if first is None:
         return stays
     base, power = plain_names[first]
-    allowed = {(p - power) * factors[first]: p for p in _PREFIXES if p <= max(_LARGEST[base], power)}
+    allowed = {(p - power) * factors[first]: p for p in _PREFIXES if p <= max(_LARGEST_POWERS[base], power)}
     exponent = min(allowed, key=lambda e: abs(math.log10(size) - e - 1.0))
     name = _PREFIXES[allowed[exponent]] + base
     return Scale(exponent, units.expression({name if one == first else one: n for one, n in factors.items()}))

@@ -31,7 +31,7 @@ from satsym.wording import printable, shown, suggestion
 LOG = "times.log"
 """When chunks were done and how long they took: not of the results, for it is never twice the same."""
 
-LARGEST, NUMBER = 2**24, 8
+MOST_BYTES_READ, NUMBER = 2**24, 8
 """Bytes of a study.json that are read, and of a number."""
 
 
@@ -231,7 +231,7 @@ def asked(folder: Path) -> dict[str, str] | None:
         return None
     try:
         with opened(path) as (stream, size):
-            said = json.loads(stream.read(min(size, LARGEST)))["asked"]
+            said = json.loads(stream.read(min(size, MOST_BYTES_READ)))["asked"]
         return {str(name): str(value) for name, value in said.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         raise BadInput(f"{printable(str(path))}: cannot be read; give another folder") from None

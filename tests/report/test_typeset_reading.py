@@ -8,7 +8,16 @@ import pytest
 import sympy as sp
 
 from satsym.report.latex.document import render
-from satsym.report.latex.equations import APART, CLOSE, FAR, NEAR, Context, Row, array, display
+from satsym.report.latex.equations import (
+    ROW_FRACTIONS,
+    ROW_ONE_FRACTION,
+    ROW_PLAIN,
+    ROW_SMALL_FRACTIONS,
+    Context,
+    Row,
+    array,
+    display,
+)
 from satsym.report.latex.preamble import cited
 from satsym.report.latex.steps import shown
 from satsym.report.texts import languages, load
@@ -170,12 +179,17 @@ def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas(
 
 
 @pytest.mark.parametrize(
-    ("entry", "one", "both"), [("1", CLOSE, CLOSE), (r"\tfrac{1}{2}", NEAR, APART), (r"\frac{1}{x}", APART, FAR)]
+    ("entry", "one", "both"),
+    [
+        ("1", ROW_PLAIN, ROW_PLAIN),
+        (r"\tfrac{1}{2}", ROW_SMALL_FRACTIONS, ROW_ONE_FRACTION),
+        (r"\frac{1}{x}", ROW_ONE_FRACTION, ROW_FRACTIONS),
+    ],
 )
 def test_rows_of_a_matrix_stand_apart_as_the_fractions_in_both_need(entry: str, one: str, both: str) -> None:
     rows = [["0", "0"], ["0", "0"], ["0", entry], [entry, "0"]]
     between = re.findall(r" \\\\ (?:\\noalign\{.*?\} )?", array(rows))
-    assert between == [CLOSE, one, both]
+    assert between == [ROW_PLAIN, one, both]
 
 
 def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() -> None:

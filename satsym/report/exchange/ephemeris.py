@@ -18,7 +18,7 @@ from satsym.report.plots import curves
 from satsym.solution import Simulation, Solution
 from satsym.status import BadInput
 
-ALIKE = 0.01
+MU_TOLERANCE = 0.01
 """By how much, relative, the gravitational parameter of a model may differ from that of the body that it names."""
 FINEST = 2.0 * np.pi / 90.0
 """Angle about the centre between two points of what is exported, in rad: readers such as STK ask for so many."""
@@ -197,7 +197,7 @@ def placed(instance: Instance) -> OrbitOptions:
     length, time = _length_unit(instance), units.time_unit(v.unit for v in spec.states)
     mu = float(instance.model.inertial_state(instance.t0, instance.initial, instance.parameters)[6])
     factor = units.in_base_units(length) ** 3 / units.in_base_units(time) ** 2 / 1e9
-    if abs(mu * factor - orbit.body.mu) > ALIKE * orbit.body.mu:
+    if abs(mu * factor - orbit.body.mu) > MU_TOLERANCE * orbit.body.mu:
         raise BadInput(
             f"{instance.called}: [orbit] centre: the model attracts with mu = {mu * factor:.7g} km**3/s**2, but "
             f"that of the body {orbit.centre} is {orbit.body.mu:.7g} km**3/s**2; correct the centre, or write "

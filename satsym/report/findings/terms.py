@@ -16,7 +16,7 @@ _HOLE = re.compile(r"<(\d)>")
 _SIGNS = {ast.Add: " + ", ast.Sub: " - ", ast.Mult: " × ", ast.Div: "/", ast.Pow: "^"}
 _BINDING = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.Pow: 3}
 _OPENS, _CLOSES = "([{", ")]}"
-_LONGEST = 240
+_LONGEST_TERM = 240
 """Characters of a term, as it was measured, beyond which no sentence would help."""
 
 
@@ -59,7 +59,7 @@ def _sentence(part: str, texts: Texts) -> str:
 
 def term_in_words(term: str, texts: Texts) -> str:
     """A term of a proposition in words; one that cannot be put so, as it stands."""
-    if len(term) > _LONGEST:
+    if len(term) > _LONGEST_TERM:
         return texts.get("terms", "long")
     try:
         return _said(ast.parse(term, mode="eval").body, texts)

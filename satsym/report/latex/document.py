@@ -204,7 +204,7 @@ class _Composer:
         return self._texts.get("declared", name) + (f"~{numbers_of(*ends)}" if ends else "")
 
 
-ASIDE = (
+ON_BOUNDARY = (
     *("boundary_control", "control_rates", "constraint_multiplier", "constrained_costates", "junction_conditions"),
     *("mixed_constraints", "mixed_costates"),
 )
@@ -228,7 +228,9 @@ def collected(context: Context) -> Iterator[str]:
     along = [*(row_of(context, motion, e) for e in motion.equations), *costate_rows(context, costates)]
     yield said("multipliers" if problem.end_conditions else "unknowns") + "\n" + _shown(along)
     yield said("control") + "\n" + _shown([*(row_of(context, law, e) for e in law.equations), *_parts(context, law)])
-    steps = [rf"\ref{{{tex.label(context.address(derivation.step(name)))}}}" for name in ASIDE if name in derivation]
+    steps = [
+        rf"\ref{{{tex.label(context.address(derivation.step(name)))}}}" for name in ON_BOUNDARY if name in derivation
+    ]
     if steps and _constrained(problem):
         yield said("aside", steps=texts.listed(steps))
     if arc := _singular(context):

@@ -23,8 +23,10 @@ LINE = 35.0
 INDENT = 1.0
 """What a continued line is moved in by, in em; twice that within parentheses."""
 
-CLOSE, NEAR, APART, FAR = (r" \\ " + (rf"\noalign{{\vskip {gap}pt}} " if gap else "") for gap in (0, 2, 5, 10))
-"""Between rows of a matrix: both without fractions, one with, both with; and where fractions are small, one step less.
+ROW_PLAIN, ROW_SMALL_FRACTIONS, ROW_ONE_FRACTION, ROW_FRACTIONS = (
+    r" \\ " + (rf"\noalign{{\vskip {gap}pt}} " if gap else "") for gap in (0, 2, 5, 10)
+)
+"""What parts rows of a matrix: both without fractions, one with, both with; where fractions are small, one step less.
 
 What stands below the line of one fraction is not to be read as part of the one in the next row.
 """
@@ -82,12 +84,15 @@ def also(back: int, addresses: Sequence[str]) -> str:
 
 def _between(above: str, below: str) -> str:
     """What parts two rows of a matrix."""
-    for fraction, both, one in ((r"\frac", FAR, APART), (r"\tfrac", APART, NEAR)):
+    for fraction, both, one in (
+        (r"\frac", ROW_FRACTIONS, ROW_ONE_FRACTION),
+        (r"\tfrac", ROW_ONE_FRACTION, ROW_SMALL_FRACTIONS),
+    ):
         if fraction in above and fraction in below:
             return both
         if fraction in above + below:
             return one
-    return CLOSE
+    return ROW_PLAIN
 
 
 def display(rows: Sequence[Row], line: float = LINE) -> str:

@@ -18,7 +18,7 @@ SIZE = 2.6
 WIDE, HIGH = 3.2, 2.2
 """Where the switching curve ends in a phase plane, in cm from the target."""
 
-CLEAR = "fill=white,inner sep=1pt,outer sep=3pt"
+COVERING = "fill=white,inner sep=1pt,outer sep=3pt"
 """A name that covers the lines below it."""
 
 _WORD = re.compile(r"\\text\{([^}]*)\}")
@@ -104,7 +104,7 @@ def _space(shown: Picture) -> Iterator[str]:
         start, end = _at(arrow.start, scale), _at(arrow.end, scale)
         yield rf"\draw[->,thick] {start} -- {end}"
     for arrow in others:  # after all lines, none of which crosses a name
-        yield rf"\node[{_side(arrow, beside)},{CLEAR}] at {_at(arrow.end, scale)} {_names(arrow)}"
+        yield rf"\node[{_side(arrow, beside)},{COVERING}] at {_at(arrow.end, scale)} {_names(arrow)}"
     yield rf"\fill (0,0) circle (1.5pt) {_at(first.end, scale)} circle (2pt)"
 
 

@@ -17,9 +17,9 @@ from satsym.symbolic.principle.path.notation import mixed, of_states, rate
 from satsym.symbolic.principle.transversality import on_a_reference
 from satsym.symbolic.switching.phase_plane import phase_plane
 
-LONGEST = 12
+LONGEST_ROW = 12
 """Lines of an equation that is shown where a step has several of no other use, at most."""
-FEW = 6
+ZEROS_IN_A_LINE = 6
 """Things that are zero on one line, at most; fewer have a line each."""
 
 
@@ -272,7 +272,7 @@ def _with_phase_plane(context: Context, step: Step) -> Shown:
 def _shorter(context: Context, step: Step) -> Shown:
     """Without equations that take a good part of a page, which have the number of the one before."""
     rows = [row_of(context, step, e) for e in step.equations]
-    shown = [row for row in rows if width(joined(row.right)) <= LONGEST * LINE] or rows
+    shown = [row for row in rows if width(joined(row.right)) <= LONGEST_ROW * LINE] or rows
     left = [row for row in rows if row not in shown]
     if not left:
         return _once(rows)
@@ -287,9 +287,9 @@ def _zeros_together(context: Context, step: Step) -> Shown:
     """Several things that are zero on one line; the others as they stand."""
     rows = [(row_of(context, step, e), context.typeset.is_zero(e.rhs)) for e in step.equations]
     zero, others = ([row for row, vanishes in rows if vanishes is kept] for kept in (True, False))
-    if len(zero) < FEW:
+    if len(zero) < ZEROS_IN_A_LINE:
         return _as_they_stand(context, step)
-    lines = [zero[k : k + FEW] for k in range(0, len(zero), FEW)]
+    lines = [zero[k : k + ZEROS_IN_A_LINE] for k in range(0, len(zero), ZEROS_IN_A_LINE)]
     shown = [replace(line[0], left=plain(" = ".join(row.left_tex for row in line))) for line in lines]
     labels = [also(len(lines) - 1 - k, [row.address for row in line[1:]]) for k, line in enumerate(lines)]
     body = "\n".join([*([display(others)] if others else []), display(shown), *filter(None, labels)])

@@ -44,7 +44,7 @@ _SYMBOLS = {
     "³": r"\ensuremath{^3}",
     "\N{NO-BREAK SPACE}": "~",
 }
-LARGEST, LARGEST_DIGITS = 100, 12
+LARGEST_DENOMINATOR, LARGEST_DIGITS = 100, 12
 """Denominator of a fraction as which a number is written that has more digits than these, at most."""
 GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
@@ -131,7 +131,7 @@ def number(value: float | None, point: str = ".") -> str:
     """A number as a person writes it, with a decimal point or what stands for it; an en dash for none."""
     if value is None:
         return "--"
-    ratio = Fraction(value).limit_denominator(LARGEST)
+    ratio = Fraction(value).limit_denominator(LARGEST_DENOMINATOR)
     if float(ratio) == value and ratio.denominator > 1 and len(f"{value:.12g}") > LARGEST_DIGITS:
         return f"${ratio}$"
     digits, _, exponent = f"{value:.12g}".replace(".", point).partition("e")

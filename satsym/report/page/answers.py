@@ -24,7 +24,7 @@ from satsym.solution import Solution
 from satsym.status import BadInput
 from satsym.wording import printable
 
-MOST = 60
+MOST_ANSWERS = 60
 """Answers on a page, evenly chosen among more."""
 ROUNDING = 1e-12
 """Relative difference below which two numbers of an instance are the same."""
@@ -115,6 +115,6 @@ def _chosen(table: dict[str, Array], varied: Sequence[str], rows: Sequence[int])
     """The rows that are shown, in the order in which a slider goes through them."""
     whole = [row for row in rows if all(math.isfinite(table[name][row]) for name in varied)]
     ordered = sorted(whole, key=lambda row: tuple(table[name][row] for name in varied))
-    if len(ordered) <= MOST:
+    if len(ordered) <= MOST_ANSWERS:
         return ordered
-    return [ordered[k] for k in np.linspace(0, len(ordered) - 1, MOST).round().astype(int)]
+    return [ordered[k] for k in np.linspace(0, len(ordered) - 1, MOST_ANSWERS).round().astype(int)]

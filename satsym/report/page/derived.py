@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 ROOM = 44.0
 """Width in em that an equation may take, on paper too, which cannot be scrolled."""
 
-BETWEEN, FRACTIONS, SMALLEST = 1.0, 0.75, 0.45
+BETWEEN, FRACTIONS, SMALLEST_FONT = 1.0, 0.75, 0.45
 """Space between columns of a matrix, in em; the size of letters in its fractions, and of those of a wide one at least.
 """
 
@@ -166,7 +166,7 @@ class Derived:
 
     def _equation(self, address: str, line: str, room: float) -> Markup:
         label = tex.label(address)
-        small = room > ROOM and f"font-size: {max(SMALLEST, ROOM / room):.0%}"
+        small = room > ROOM and f"font-size: {max(SMALLEST_FONT, ROOM / room):.0%}"
         self._numbers[label] = f"({sum(name.startswith('(') for name in self._numbers.values()) + 1})"
         name = address.partition(":")[0]
         step = tex.label(f"{name}:{address.partition(':')[2].partition('.')[0]}")

@@ -156,11 +156,11 @@ def _body(name: str, places: Array) -> Markup:
     return tag("circle", r="6", class_=joined("body of-", name), style=still)
 
 
-SAME = 1e-6
+UNIT_TOLERANCE = 1e-6
 """How far from one the norm of a quaternion may be."""
 ANGLES = {"yaw": 2, "roll": 0, "pitch": 1}
 """The axis about which each angle turns, in the order in which they do."""
-SMALL, SEEN = 0.1, 0.5
+SMALL_TURN, SEEN = 0.1, 0.5
 """Angles of which none is larger, in rad, are magnified so that the largest is as large as the latter."""
 
 
@@ -193,7 +193,7 @@ class Attitude:
         if (angles := _angles(scene)) is None:
             return None
         largest = float(np.nanmax(np.abs(list(angles.values()))))
-        magnified = max(1.0, float(f"{SEEN / largest:.1g}")) if 0.0 < largest < SMALL else 1.0
+        magnified = max(1.0, float(f"{SEEN / largest:.1g}")) if 0.0 < largest < SMALL_TURN else 1.0
         turns = np.broadcast_to(np.eye(3), (len(scene.times), 3, 3))
         for name, axis in ANGLES.items():
             if name in angles:
@@ -229,7 +229,7 @@ def _quaternion(scene: Scene) -> Array | None:
     if not set(wanted) <= set(names):
         return None
     q = scene.x[[names.index(name) for name in wanted]]
-    if np.nanmax(np.abs((q * q).sum(axis=0) - 1.0)) > SAME:
+    if np.nanmax(np.abs((q * q).sum(axis=0) - 1.0)) > UNIT_TOLERANCE:
         return None
     return q
 

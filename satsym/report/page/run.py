@@ -200,7 +200,7 @@ _ABOUT = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _COLOURS = {
     **dict.fromkeys((style.INK.lower(), "#000000"), "ink"),
     **dict.fromkeys((style.SOFT.lower(), style.GREY.lower(), "#777777", "#9a9a9a"), "faint"),
-    **dict.fromkeys((style.FAINT.lower(), "#c4c4c4", "#c8c8c8"), "line"),
+    **dict.fromkeys((style.PALE_GREY.lower(), "#c4c4c4", "#c8c8c8"), "line"),
     "#ffffff": "card",
     **{
         getattr(style, name).lower(): name.lower()

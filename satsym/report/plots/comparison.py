@@ -11,7 +11,7 @@ from satsym.arrays import Array
 from satsym.report import display
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
-from satsym.report.plots.reading import ROUNDING, SMALL
+from satsym.report.plots.reading import ROUNDING, SMALL_DEVIATION
 from satsym.report.results import files
 from satsym.report.said import decimal, say
 from satsym.report.terminal.comparison import unit_of
@@ -96,7 +96,7 @@ def _differences(cases: Sequence[Case], variable: Variable) -> dict[int, Array]:
     for k, case in enumerate(cases[1:], start=1):
         own = case.times - case.times[0]
         apart = np.where(own <= times[-1], case.signal(variable.symbol) - np.interp(own, times, values), np.nan)
-        if ROUNDING * np.ptp(values) < np.nanmax(np.abs(apart)) < SMALL * np.ptp(values):
+        if ROUNDING * np.ptp(values) < np.nanmax(np.abs(apart)) < SMALL_DEVIATION * np.ptp(values):
             found[k] = apart
     return found
 

@@ -12,11 +12,11 @@ from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.spec import ProblemSpec, Variable
 
-LARGEST = 1e100
+LARGEST_DRAWN = 1e100
 """Beyond it a number is the debris of a failed run, and too large for arithmetic on axes."""
 _COMPLEX_STEP = 1e-30
 _REAL_STEP = 1e-5
-_ALIKE = 1e-9
+_COMMON_TOLERANCE = 1e-9
 """Relative to the largest rate: what differs by less is the same motion."""
 
 
@@ -24,7 +24,7 @@ def clean(values: Array) -> Array:
     """The values with NaN for whatever cannot be drawn."""
     array = np.array(values, dtype=float)
     with np.errstate(invalid="ignore"):
-        array[~(np.abs(array) < LARGEST)] = np.nan
+        array[~(np.abs(array) < LARGEST_DRAWN)] = np.nan
     return array
 
 
@@ -73,7 +73,7 @@ def rests(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> bool:
     with np.errstate(all="ignore"):
         one, *others = (model.dynamics_batch(times, x, u, p) for u in _opposite(model, x.shape[1]))
     size = np.nanmax(np.abs(one), axis=1, initial=0.0)[:, None]
-    return all(bool((np.abs(other - one) <= _ALIKE * size).all()) for other in others)
+    return all(bool((np.abs(other - one) <= _COMMON_TOLERANCE * size).all()) for other in others)
 
 
 def _angles(model: Kernels) -> list[int]:
@@ -169,7 +169,7 @@ def relative(positions: Array, reference: Array) -> Relative | None:
     return Relative(radius * angle, np.hypot(up, on) - radius)
 
 
-NEAR, EXACT = 0.1, 1e-12
+NUDGE, EXACT = 0.1, 1e-12
 """How far from the trajectory rates are compared, relative to the sizes of states, and how exactly."""
 _NAME = re.compile(r"(?:|[pqrs]_?|pos_?)([xyz])")
 
@@ -184,7 +184,7 @@ def pairs(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) 
         return []
     times, x, u = times[known], x[:, known], u[:, known]
     sizes = np.abs(x).max(axis=1, initial=0.0, keepdims=True)
-    beside = x + NEAR * np.where(sizes > 0.0, sizes, 1.0) * np.random.default_rng(0).uniform(-1.0, 1.0, x.shape)
+    beside = x + NUDGE * np.where(sizes > 0.0, sizes, 1.0) * np.random.default_rng(0).uniform(-1.0, 1.0, x.shape)
     with np.errstate(all="ignore"):
         rates = model.dynamics_batch(times, beside, u, p)
     found = []
@@ -233,7 +233,7 @@ def level(
 
         def matters(i: int) -> bool:
             moved = x.copy()
-            moved[i] += NEAR * (np.abs(x[i]).max() or 1.0)
+            moved[i] += NUDGE * (np.abs(x[i]).max() or 1.0)
             return not np.allclose(model.dynamics_batch(times, moved, u, p), rates, rtol=EXACT, atol=0.0)
 
         first, second = found

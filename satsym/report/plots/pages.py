@@ -116,7 +116,7 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
     return page
 
 
-MOST = 8
+MOST_PANELS = 8
 """States, and controls, that have a panel here; all of them are on pages of their own."""
 
 
@@ -125,7 +125,7 @@ def overview(scene: Scene) -> Figure | None:
     if not scene.drawable:
         return None
     shown = space.Orbit.of(scene)
-    states, controls = series.states(scene)[:MOST], series.controls(scene)[:MOST]
+    states, controls = series.states(scene)[:MOST_PANELS], series.controls(scene)[:MOST_PANELS]
     columns = style.across(1 if len(states) == 1 else 2)
     narrow = style.across(2) == 1
     rows = -(-len(states) // columns) + -(-len(controls) // columns)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 ROOM = 0.15
 """Beside a path, relative to its width, for the switching curve to go on in."""
-MOST = 4
+MOST_PLANES = 4
 """Planes that are drawn; states over time show more than a page of many of them."""
 
 
@@ -56,7 +56,7 @@ def of(scene: Scene) -> list[Plane]:
     if not scene.drawable:
         return []
     states, rated = series.states(scene), scene.rated or ([(0, 1)] if len(scene.spec.states) == 2 else [])
-    if len(rated) > MOST:
+    if len(rated) > MOST_PLANES:
         return []
     return [_plane(scene, i, j, *read([states[i]]), *read([states[j]])) for i, j in rated]
 

@@ -12,7 +12,7 @@ from satsym.arrays import Array
 from satsym.report.display import Scale, labelled, together
 from satsym.report.plots.series import Series
 
-SMALL = 0.02
+SMALL_DEVIATION = 0.02
 """A deviation smaller than this fraction of the value is shown itself: in the value it could not be seen."""
 BURIED = 1e-3
 """A variation smaller than this fraction of the value is counted from the first value: ticks would need many digits."""
@@ -161,7 +161,7 @@ def _datum(series: Series, size: float) -> tuple[Array | float, bool]:
     if series.from_first:
         return float(known[0]), False
     if reference is not None and np.isfinite(reference).all():
-        hidden = ROUNDING * size < _size(series.values - reference) < SMALL * _size(known)
+        hidden = ROUNDING * size < _size(series.values - reference) < SMALL_DEVIATION * _size(known)
         return (reference, True) if hidden else (0.0, False)
     hidden = ROUNDING * size < _width(known) < BURIED * _size(known)
     return (float(known[0]), False) if hidden else (0.0, False)

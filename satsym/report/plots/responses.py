@@ -14,7 +14,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves, legend, style
-from satsym.report.plots.reading import ROUNDING, SMALL
+from satsym.report.plots.reading import ROUNDING, SMALL_DEVIATION
 from satsym.report.results.unit_names import COST, of_regulator
 from satsym.report.said import say
 from satsym.spec import Variable
@@ -29,7 +29,7 @@ LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
 NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 3.2}
 SMALL_ROW = 1.7
 """Height of a row of panels on a page that cannot grow downwards, in inches on a screen."""
-BEYOND = 1.5
+ROOM_BEYOND = 1.5
 """How far beyond the linear response a nonlinear one is shown, relative to its width."""
 
 
@@ -53,8 +53,8 @@ class Curve:
         width = high - low or 1.0
         exact = np.zeros(1) if self.exact is None else curves.clean(self.exact)
         if np.isfinite(exact).any():
-            low = max(min(low, float(np.nanmin(exact))), low - BEYOND * width)
-            high = min(max(high, float(np.nanmax(exact))), high + BEYOND * width)
+            low = max(min(low, float(np.nanmin(exact))), low - ROOM_BEYOND * width)
+            high = min(max(high, float(np.nanmax(exact))), high + ROOM_BEYOND * width)
         return low, high
 
     @property
@@ -64,7 +64,7 @@ class Curve:
             return None
         found, width = curves.clean(self.exact - self.linear), float(np.ptp(self.linear))
         most = float(np.abs(found).max()) if np.isfinite(found).all() else np.inf
-        return found if ROUNDING * width < most < SMALL * width else None
+        return found if ROUNDING * width < most < SMALL_DEVIATION * width else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 PANEL = 3.6
 """Height of a panel, in inches on a screen."""
-SHORT = 1e3
+SHORT_RANGE = 1e3
 """Last value by first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
 """Greys of cells without a number, one for each way to end."""
@@ -156,7 +156,7 @@ def _scale(place: Axes, axis: str, values: Array) -> None:
         return
     getattr(place, f"set_{axis}scale")("log")
     own = getattr(place, f"{axis}axis")
-    if values.max() < SHORT * values.min():
+    if values.max() < SHORT_RANGE * values.min():
         own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         own.set_major_formatter(FuncFormatter(lambda value, _: decimal(display.number(value, 4))))
         own.set_minor_formatter(NullFormatter())

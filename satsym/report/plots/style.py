@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
 SKY = "#56B4E9"
 """Colour of the same palette that is read on a dark ground."""
-INK, SOFT, GREY, FAINT, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
+INK, SOFT, GREY, PALE_GREY, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
 SHADE = 0.12
 STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE
 
@@ -118,7 +118,7 @@ _RC: dict[Any, Any] = {
     "axes.axisbelow": True,
     "axes.unicode_minus": True,
     "axes.formatter.useoffset": False,
-    "grid.color": FAINT,
+    "grid.color": PALE_GREY,
     "grid.linewidth": 0.7,
     "xtick.color": "#9A9A9A",
     "ytick.color": "#9A9A9A",

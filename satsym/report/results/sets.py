@@ -33,7 +33,7 @@ from satsym.wording import printable
 NEXT = ".satsym-next"
 STAGING = ".satsym-new-"
 
-APART = (STUDY, "plot")
+KEPT_APART = (STUDY, "plot")
 """Commands whose sets replace only their own kind."""
 
 
@@ -150,7 +150,7 @@ def keep_apart(folder: Path, command: str) -> None:
         if command == "plot":
             raise
         return  # which is not whole, and is to be written anew
-    if other not in (None, command) and (other == STUDY or command in APART):
+    if other not in (None, command) and (other == STUDY or command in KEPT_APART):
         raise BadInput(f"{printable(str(folder))}: holds the result of {other}; give another folder")
 
 

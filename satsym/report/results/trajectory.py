@@ -38,7 +38,7 @@ COMMANDS = ("solve", "simulate")
 _LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
 """How methods and feedbacks are called."""
 
-SAME = 1e-9
+EQUAL_STATES = 1e-9
 """Difference of initial states that is none, relative to their size along the way."""
 
 
@@ -284,4 +284,4 @@ def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
         return True
     with np.errstate(all="ignore"):
         off = np.abs(x[:, 0] - initial)
-        return not (off > SAME * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()
+        return not (off > EQUAL_STATES * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()

@@ -31,7 +31,7 @@ _LABEL = 10
 _BAR = 24
 _CHARTED = 3
 """Rows from which on a chart says more than their list."""
-_SHORT = 30
+_SHORT_FORMULA = 30
 """Characters of what is printed that stand behind a verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
 """Where a word that is longer than a line may be parted: after signs."""
@@ -186,7 +186,7 @@ def _facts(review: Review, row: Judged, *, short: bool = False, code: bool = Fal
 
 
 def _is_short(row: Judged) -> bool:
-    return row.kind != "claim" and 0 < len(flat(row.printed)) <= _SHORT
+    return row.kind != "claim" and 0 < len(flat(row.printed)) <= _SHORT_FORMULA
 
 
 def _labelled(label: str, text: str) -> list[str]:

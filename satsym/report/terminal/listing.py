@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 80
 """Width of a list where there is no terminal to fill."""
-MOST = 4
+MOST_NAMES = 4
 """Names of a model that fit in its line; `satsym models MODEL` has all."""
 
 
@@ -45,9 +45,9 @@ def _by_subject(titles: Mapping[str, str], subjects: Mapping[str, str]) -> str:
 
 
 def _few(names: Sequence[str]) -> str:
-    if len(names) <= MOST:
+    if len(names) <= MOST_NAMES:
         return ", ".join(names)
-    return say("<names> ... <number> in all", names=", ".join(names[: MOST - 1]), number=len(names))
+    return say("<names> ... <number> in all", names=", ".join(names[: MOST_NAMES - 1]), number=len(names))
 
 
 def instances_text(instances: Sequence[Instance], whole: bool = False) -> str:

@@ -61,7 +61,7 @@ class Texts:
         return self.find(PHRASES, text) or text
 
     def with_own(self, own: Mapping[str, Mapping[str, str]]) -> Texts:
-        """These texts and some more, table by table; where both have a key, the others count."""
+        """Add texts of one's own, table by table; where both have a key, the added ones count."""
         merged = {name: {**self.tables.get(name, {}), **table} for name, table in own.items()}
         return Texts(self.language, {**self.tables, **merged})
 

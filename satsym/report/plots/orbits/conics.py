@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.survey import Survey
 
 POINTS = 2000
-APART = 0.02
+ROUND_ECCENTRICITY = 0.02
 """Eccentricity from which the foci can be seen apart in the picture."""
 SMALLEST_REACH, MOST_REACH = 5.0, 40.0
 """How far from the centre an open orbit is drawn, in units of the nearest distance or that of the start."""
@@ -83,7 +83,7 @@ class Drawn:
             farthest=-orbit.apoapsis * orbit.towards
             if orbit.apoapsis and orbit.periapsis_argument is not None
             else None,
-            empty=-2.0 * axis * e * orbit.towards if closed and axis and e > APART else None,
+            empty=-2.0 * axis * e * orbit.towards if closed and axis and e > ROUND_ECCENTRICITY else None,
             asymptotes=_asymptotes(orbit, reach) if axis is not None and not closed and -axis * e < reach else (),
         )
 

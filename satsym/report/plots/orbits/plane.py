@@ -54,7 +54,7 @@ MARGIN = 1.25
 """Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
 SIDE = 6.6
 """Side of the page, in inches."""
-APART, NOUGHT = 100.0, 1e-8
+FURTHEST_ON_A_SCALE, NOUGHT = 100.0, 1e-8
 """How many times further from zero than the nearest eigenvalue the furthest lies where decades are as long as each
 other, and relative to the furthest what counts as zero, being so by rounding only."""
 MARKED = 3
@@ -121,7 +121,7 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "")
     factor, unit = display.time_scale(units, 2.0 * np.pi / furthest)
     reach = MARGIN * furthest * factor
     sizes = np.abs(values)[np.abs(values) > NOUGHT * furthest]
-    if furthest > APART * min(sizes, default=furthest):
+    if furthest > FURTHEST_ON_A_SCALE * min(sizes, default=furthest):
         reach = _decades(axes, float(sizes.min()) * factor, furthest * factor)
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)

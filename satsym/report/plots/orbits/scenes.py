@@ -28,11 +28,11 @@ FREE = 1.5
 """Up to so many widths of the path the uncontrolled motion is shown whole."""
 LENGTH = 0.4
 """Largest length of the axes of space, relative to half the size of the picture."""
-LONGEST = 0.13
+LONGEST_ARROW = 0.13
 """Length of the longest arrow, relative to the size of the picture."""
 CLOSED = 0.05
 """How near to its start, relative to its size, a curve is taken to close."""
-NEAR = 0.3
+NEIGHBOURHOOD = 0.3
 """Up to this distance from the reference, relative to the orbit, the path is also shown from the reference."""
 MOVED = 1e-4
 """By how much, relative to its size or to one, a state is changed to see whether the place depends on it."""
@@ -203,7 +203,7 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     if orbit.free is not None:
         axes.plot(*((seen @ orbit.free - datum) * scale), **style.FREE)
     if orbit.thrust is not None:
-        _arrows(axes, curve * scale, seen @ orbit.thrust, LONGEST * 2.0 * half * scale)
+        _arrows(axes, curve * scale, seen @ orbit.thrust, LONGEST_ARROW * 2.0 * half * scale)
     drawn_curve = surroundings.before(around, view, orbit.path) - datum
     axes.plot(*(drawn_curve * scale), color=style.STATE, **style.MAIN)
     if orbit.central and not datum.any() and not around.radius:
@@ -325,7 +325,7 @@ def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
     if seen is None or reference is None:
         return False
     furthest = np.nanmax(np.abs([seen.along, seen.radial]))
-    return bool(0.0 < furthest < NEAR * np.linalg.norm(reference, axis=0).max())
+    return bool(0.0 < furthest < NEIGHBOURHOOD * np.linalg.norm(reference, axis=0).max())
 
 
 def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[Array, Array]:

@@ -26,13 +26,13 @@ IDLE = 1e-6
 """Thrust that is smaller than this share of the largest is none."""
 BURNING = 0.02, 0.98
 """Share of the time with thrust between which burns are drawn apart from coasts."""
-ALIKE = 1e-9
-"""Relative to its size, what differs by less is the same."""
+UNMOVED_TOLERANCE = 1e-9
+"""Change of values, relative to the largest of them, up to which a region does not move."""
 MOST_TURNS = 20
 """Another orbit is followed until it closes, for this many times the duration at most."""
 STEPS = 720
 """Steps in which a motion is followed, over each duration."""
-SMALLEST = 0.02
+SMALLEST_BODY = 0.02
 """Smallest radius of a body that is drawn to scale, relative to the size of the path."""
 
 
@@ -182,7 +182,7 @@ def entries(around: Surroundings) -> list[legend.Entry]:
 
 def _radius(radius: float, path: Array) -> float:
     """Return the radius of a body, or 0 where it would be a mere dot beside the path."""
-    return radius if radius > SMALLEST * float(np.nanmax(np.abs(path))) else 0.0
+    return radius if radius > SMALLEST_BODY * float(np.nanmax(np.abs(path))) else 0.0
 
 
 def _circle(radius: float) -> Array:
@@ -232,7 +232,8 @@ def _beside_reference(scene: Scene, one: restrictions.Restriction, polar: tuple[
     size = float(np.abs(scene.x[distance][np.isfinite(scene.x[distance])]).max())
     probes = size * np.random.default_rng(0).uniform(-0.5, 0.5, (2, restrictions.PROBES))
     first, last = at(0)(probes), at(-1)(probes)
-    return at(0) if np.allclose(first, last, rtol=ALIKE, atol=ALIKE * np.abs(first).max()) else None
+    unmoved = np.allclose(first, last, rtol=UNMOVED_TOLERANCE, atol=UNMOVED_TOLERANCE * np.abs(first).max())
+    return at(0) if unmoved else None
 
 
 def _burns(scene: Scene, path: Array, thrust: Array | None) -> Array | None:
