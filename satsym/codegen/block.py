@@ -1,4 +1,4 @@
-"""An expression graph as straight-line assignments: invariants taken out, powers made cheap, repeats shared."""
+"""An expression graph as lines of assignments: invariants taken out, powers made cheap, repeats shared."""
 
 from __future__ import annotations
 

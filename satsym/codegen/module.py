@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import derived_units, polynomials, rk4, roots, symplectic
+from satsym.codegen import derived_units, loops, searching
 from satsym.codegen.block import Assignment, Emitter, build
 from satsym.codegen.functions import Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
@@ -44,14 +44,14 @@ def render(derivation: Derivation, source: str) -> str:
     """
     code = code_of(derivation)
     s, constants = code.symbols, list(code.constants.items())
-    parts_of_motion = symplectic.split(derivation)
+    parts_of_motion = loops.split(derivation)
     written = [(f, *_straight_line(f, s, constants, code.chain)) for f in code.functions]
     parts = [
         _header(derivation, source),
         _literal(spec(derivation, source)),
         *(_scalar_form(f, s, assignments, outputs) for f, assignments, outputs in written),
-        *(rk4.source(loop) for loop in _loops(derivation, code, constants)),
-        *([symplectic.source(code, parts_of_motion, constants)] if parts_of_motion else []),
+        *(loops.source(loop) for loop in _loops(derivation, code, constants)),
+        *([loops.kicks_and_drifts(code, parts_of_motion, constants)] if parts_of_motion else []),
         *(_batch_form(f, s, assignments, outputs) for f, assignments, outputs in written),
     ]
     return sealed("\n\n".join(parts))
@@ -100,7 +100,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         switching_curve=states_of(derivation) or (),
         chattering=chattering(derivation),
         moving_magnitudes=tuple(u.name for u in moving_magnitudes(derivation)) if switches(derivation) else (),
-        coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
+        coordinates=tuple(q.name for q in parts.coordinates) if (parts := loops.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),
         equilibria=model.followed(),
@@ -171,7 +171,7 @@ def _literal(described: ProblemSpec) -> str:
 def _unpack(function: Function, s: Symbols) -> list[str]:
     """Lines that give the arguments' components their names."""
     groups = [(a, s.of(a)) for a in function.arguments if a != "t"]
-    return [f"{rk4.unpacking(names)} = {a}" for a, names in groups if names]
+    return [f"{loops.unpacking(names)} = {a}" for a, names in groups if names]
 
 
 def _straight_line(
@@ -186,7 +186,13 @@ def _straight_line(
 
 def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
     """The statements that assign a value."""
-    written = roots.lines if isinstance(value, Root) else polynomials.lines if isinstance(value, Argmin) else None
+    written = (
+        searching.root_lines
+        if isinstance(value, Root)
+        else searching.least_lines
+        if isinstance(value, Argmin)
+        else None
+    )
     return written(symbol.name, value, form, code) if written else [f"{symbol} = {code(value)}"]
 
 
@@ -232,12 +238,12 @@ def _function(signature: str, summary: str, body: Sequence[str]) -> str:
     return "\n".join([f"def {signature}:", f'    """{summary}"""', *(f"    {line}" for line in body), ""])
 
 
-def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) -> list[rk4.Loop]:
+def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) -> list[loops.Loop]:
     """The forward loop and, where there is a cost, the backward one."""
     problem, s = derivation.problem, code.symbols
     fixed = {*s.p, *(c for c, _ in constants)}
     rates = [*derivation.rhs("first_order"), *([sp.sympify(problem.running_cost)] if problem else [])]
-    forward = rk4.Loop(
+    forward = loops.Loop(
         name="forward",
         summary="RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."
         if problem
@@ -258,7 +264,7 @@ def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) 
         return [forward]
     return [
         forward,
-        rk4.Loop(
+        loops.Loop(
             name="backward",
             summary="RK4 over the nodes, from the costates lam_f at times[-1] back to times[0].",
             signature="times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid",

@@ -1,4 +1,4 @@
-"""Audits as users meet them."""
+"""Audits, and checks of single formulas, as users meet them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from satsym.front.single_threaded import single_threaded
 from satsym.report.findings import objects, review
 from satsym.report.results.files import to_json
 from satsym.report.terminal import audit as reporting
-from satsym.report.terminal.checked import checked_text
+from satsym.report.terminal.audit import checked_text
 
 
 @dataclass(frozen=True, eq=False, repr=False)

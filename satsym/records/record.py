@@ -206,12 +206,6 @@ def look_up(found: Record, address: str) -> Found:
     return family
 
 
-def addresses(found: Record) -> list[str]:
-    """Every equation, and every declared thing, that can be named."""
-    equations = [f"{found.name}:{step.name}.{equation.name}" for step in found.steps for equation in step.equations]
-    return equations + [f"{found.name}:{DECLARED}.{name}" for name in found.declared]
-
-
 def variables(found: Record, kind: str) -> tuple[str, ...]:
     """Names of a kind, in the order of the model."""
     return tuple(name for name, entry in found.names.items() if entry.kind == kind)

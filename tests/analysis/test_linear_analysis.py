@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import equilibrium, linearise
-from satsym.analysis.linear.polynomials import characteristic, companion_form, companion_matrix, place
-from satsym.analysis.linear.ranks import TOLERANCE, controllability, kalman, observability, staircase
+from satsym.analysis.linear.ranks import TOLERANCE, controllability, observability, staircase
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.spectrum import spectrum, stability
+from satsym.analysis.linear.spectrum import characteristic, companion_matrix, spectrum, stability
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.linear.system import system
 from satsym.status import BadInput
@@ -73,7 +72,6 @@ def test_units_change_eigenvalues_by_the_unit_of_time_alone_and_no_rank_at_all(s
     for analysis, alone in ((controllability, {"u1": 3, "u2": 4}), (observability, {"y1": 3, "y2": 4})):
         found = analysis(other)
         assert (found.rank, {name: each.rank for name, each in found.alone.items()}) == (4, alone)
-    assert kalman(other.with_inputs(["u1"])).sizes == (0, 3, 0, 1)
 
 
 def test_naive_ranks_would_be_fooled_by_kilometres_and_seconds():
@@ -137,18 +135,6 @@ def test_staircases_are_orthogonal_and_hide_what_is_out_of_reach(n, inputs, seed
     assert rank == np.linalg.matrix_rank(exact)
 
 
-def test_kalmans_form_has_zeros_where_a_group_cannot_act_and_all_four_groups():
-    A, B, C = np.diag([-1.0, -2.0, -3.0, -4.0]), [[1.0], [1.0], [0.0], [0.0]], [[0.0, 1.0, 0.0, 1.0]]
-    T = well_conditioned(4, 5)
-    found = kalman(system(T @ A @ np.linalg.inv(T), T @ np.array(B), np.array(C) @ np.linalg.inv(T)))
-    assert found.sizes == (1, 1, 1, 1)
-    assert np.allclose(np.diag(found.A), [-1.0, -2.0, -3.0, -4.0])
-    allowed = np.array([[1, 1, 1, 1], [0, 1, 0, 1], [0, 0, 1, 1], [0, 0, 0, 1]], bool)
-    assert np.abs(found.A[~allowed]).max() < 1e-12
-    assert np.abs(found.B[2:]).max() < 1e-12
-    assert np.abs(found.C[:, [0, 2]]).max() < 1e-12
-
-
 @pytest.mark.parametrize(
     ("matrix", "verdict", "reason"),
     [
@@ -182,37 +168,6 @@ def test_characteristic_polynomials_are_monic_with_exact_zeros():
 @given(st.lists(st.integers(-6, 6).map(lambda half: half / 2), min_size=1, max_size=5))
 def test_companion_matrices_have_the_polynomial_they_are_made_of(rest):
     assert np.allclose(characteristic(companion_matrix([1.0, *rest])), [1.0, *rest], atol=1e-11)
-
-
-@pytest.mark.parametrize("omega", [1.0, OMEGA])
-def test_companion_forms_are_the_same_system(omega: float):
-    one = satellite(omega).with_inputs(["u2"])
-    T, form = companion_form(one)
-    assert np.allclose(np.linalg.solve(T, one.A @ T), form.A, rtol=1e-9, atol=1e-12 * omega)
-    assert np.allclose(np.linalg.solve(T, one.B), form.B, atol=1e-9)
-    assert np.allclose(one.C @ T, form.C)
-    with pytest.raises(BadInput, match=r"u1 cannot control the mode s = 0"):
-        companion_form(satellite(omega).with_inputs(["u1"]))
-    with pytest.raises(BadInput, match="one input"):
-        companion_form(satellite(omega))
-
-
-@pytest.mark.parametrize("inputs", [["u2"], ["u1", "u2"]])
-@pytest.mark.parametrize("omega", [1.0, OMEGA])
-def test_poles_go_where_they_are_wanted(inputs: list[str], omega: float):
-    wanted = omega * np.array([-1.0, -2.0, -1.0 + 1.0j, -1.0 - 1.0j])
-    given_system = satellite(omega).with_inputs(inputs)
-    closed = given_system.with_feedback(place(given_system, wanted.tolist()))
-    assert np.allclose(characteristic(closed.A / omega), np.poly(wanted / omega).real, rtol=1e-9)
-
-
-def test_poles_that_cannot_be_placed_are_refused():
-    with pytest.raises(BadInput, match="cannot control the mode"):
-        place(satellite().with_inputs(["u1"]), [-1.0, -2.0, -3.0, -4.0])
-    with pytest.raises(BadInput, match="conjugates"):
-        place(satellite(), [-1.0, -2.0, -1.0 + 1.0j, -1.0 + 1.0j])
-    with pytest.raises(BadInput, match="poles"):
-        place(satellite().with_inputs(["u2"]), [-1.0, -1.0, -2.0, -3.0])
 
 
 @pytest.mark.parametrize("time", [0.1, 2.0, 50.0])

@@ -10,8 +10,7 @@ import pytest
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.modes import modes, participation
-from satsym.analysis.linear.polynomials import characteristic
-from satsym.analysis.linear.spectrum import spectrum
+from satsym.analysis.linear.spectrum import characteristic, spectrum
 from satsym.analysis.linear.structure import analyse
 from satsym.instance import Instance
 

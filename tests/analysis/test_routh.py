@@ -9,9 +9,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from satsym.analysis.linear.polynomials import characteristic, companion_matrix
 from satsym.analysis.linear.routh import ZERO_ELEMENT, ZERO_ROW, routh
-from satsym.analysis.linear.spectrum import spectrum
+from satsym.analysis.linear.spectrum import characteristic, companion_matrix, spectrum
 from satsym.status import BadInput
 
 SMALL = st.integers(-3, 3)

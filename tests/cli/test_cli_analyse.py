@@ -19,9 +19,8 @@ from satsym.analysis.regulator.responses import responses as linear_and_exact
 from satsym.cli import main
 from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane
-from satsym.report.results.exact import exact
-from satsym.report.results.linear import analysis_object, regulator_object
-from satsym.report.results.unit_names import of_regulator
+from satsym.report.results.linear import analysis_object, exact, regulator_object
+from satsym.report.results.objects import of_regulator
 from satsym.report.terminal.linear import analysis_text, regulator_text
 from tests.house.test_floors import run_satsym
 

@@ -12,7 +12,7 @@ from satsym import symbolic
 from satsym.symbolic import FirstOrder, Model, Newton, Problem, Variable, derive, loader
 from satsym.symbolic.model import Particle
 from satsym.symbolic.principle import set_laws
-from satsym.symbolic.reserved import reserved
+from tests.support.reserved import reserved
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")

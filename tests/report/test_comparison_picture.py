@@ -9,7 +9,7 @@ import satsym
 from satsym import instance
 from satsym.analysis.comparison import case_of
 from satsym.report.plots import comparison, style
-from satsym.report.results.unit_names import times
+from satsym.report.results.objects import times
 from satsym.report.terminal.comparison import unit_of
 
 

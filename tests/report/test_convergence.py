@@ -8,7 +8,7 @@ import pytest
 from satsym import instance
 from satsym.report import display
 from satsym.report.plots import style
-from satsym.report.plots.convergence import convergence
+from satsym.report.plots.pages import convergence
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
 from satsym.solvers import solve

@@ -15,7 +15,7 @@ from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.report.page import explored as shown_as
 from satsym.report.page import switching_functions
-from satsym.report.page.answers import explored
+from satsym.report.page.explore import explored
 from satsym.report.page.explored import Answer, data, shown
 from satsym.report.page.motion import Attitude, about, turned_by
 from satsym.report.page.run import Given, render

@@ -14,7 +14,7 @@ from satsym import kernels
 from satsym.analysis.linear.structure import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
-from satsym.report.plots import convergence, curves, figures, pages, phase_planes, series, style
+from satsym.report.plots import curves, figures, pages, phase_planes, series, style
 from satsym.report.plots.orbits import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
@@ -142,7 +142,7 @@ def converging(costs: list[float], residuals: list[float], **changes: float) -> 
 def drawn(found: Solution) -> list[tuple[float, float]]:
     """The ends of the axes of the panels."""
     with style.applied():
-        page = convergence.convergence(Scene.of(found))
+        page = pages.convergence(Scene.of(found))
     return [] if page is None else [axes.get_ylim() for axes in page.axes]
 
 

@@ -340,10 +340,10 @@ assert not sys.modules.keys() & {"matplotlib.pyplot", "scipy", "sympy", "tkinter
     + [("ball", name) for name in ("overview", "orbit", "controls")],
 )
 def test_no_text_leaves_the_page_or_covers_another(which: str, name: str, request: pytest.FixtureRequest) -> None:
-    from satsym.report.plots import convergence, pages, style
+    from satsym.report.plots import pages, style
 
     found = request.getfixturevalue(which)
-    draw = convergence.convergence if name == "convergence" else getattr(pages, name)
+    draw = pages.convergence if name == "convergence" else getattr(pages, name)
     with style.applied():
         page = draw(Scene.of(found))
         style.rendered(page, "png")

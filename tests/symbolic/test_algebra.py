@@ -6,9 +6,16 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from satsym.analysis.linear.polynomials import characteristic, companion_matrix
 from satsym.analysis.linear.routh import routh
-from satsym.analysis.linear.spectrum import ASYMPTOTIC, MARGINAL, UNSTABLE, spectrum, stability
+from satsym.analysis.linear.spectrum import (
+    ASYMPTOTIC,
+    MARGINAL,
+    UNSTABLE,
+    characteristic,
+    companion_matrix,
+    spectrum,
+    stability,
+)
 from satsym.analysis.linear.system import system
 from satsym.analysis.regulator import many
 from satsym.analysis.regulator.lqr import lqr

@@ -1,4 +1,4 @@
-"""Controllability and observability: ranks, what is out of reach, and Kalman's decomposition.
+"""Controllability and observability: ranks, and what is out of reach.
 
 Rational systems are decided exactly (:mod:`satsym.analysis.linear.rational`). Else ranks are decided on the system in
 units that suit it (:mod:`satsym.analysis.linear.scaling`), by the staircase of singular value decompositions, which
@@ -121,44 +121,3 @@ def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
         block = form[reached + rank :, reached : reached + rank]
         reached += rank
     return reached, basis, form
-
-
-@dataclass(frozen=True, eq=False)
-class KalmanForm:
-    """Kalman's decomposition: coordinates in four groups, by whether inputs move and outputs show them."""
-
-    T: Array
-    """Old coordinates from new ones, x = T z, shape (n, n)."""
-    sizes: tuple[int, int, int, int]
-    """Dimensions: moved and hidden; moved and shown; neither; shown only."""
-    A: Array
-    B: Array
-    C: Array
-    """The system in the new coordinates; what couples a group to one that it cannot act on is zero up to rounding."""
-
-
-def kalman(given: LinearSystem) -> KalmanForm:
-    """Kalman's decomposition of a system."""
-    fitted = scaled(given)
-    n = len(given.states)
-    moved, basis, _ = staircase(fitted.A, fitted.B)
-    shown, dual, _ = staircase(fitted.A.T, fitted.C.T)
-    reach, hidden = basis[:, :moved], dual[:, shown:]
-    _, sine, right = np.linalg.svd(reach - hidden @ (hidden.T @ reach))  # of the angles between the two subspaces
-    outside = int((sine > TOLERANCE).sum())
-    shared = moved - outside
-    rest, both = reach @ right[:outside].T, reach @ right[outside:].T
-    neither = _beyond(both, hidden, n - shown - shared)
-    known = np.hstack([both, rest, neither])
-    last = _beyond(known, np.eye(n), n - known.shape[1])
-    T = fitted.states[:, None] * np.hstack([known, last])
-    sizes = (shared, moved - shared, neither.shape[1], last.shape[1])
-    inverse = np.linalg.inv(T)
-    return KalmanForm(T, sizes, inverse @ given.A @ T, inverse @ given.B, given.C @ T)
-
-
-def _beyond(known: Array, among: Array, count: int) -> Array:
-    """So many orthonormal directions in the span of those given, orthogonal to those known."""
-    orthonormal = np.linalg.qr(known)[0]
-    left, _, _ = np.linalg.svd(among - orthonormal @ (orthonormal.T @ among))
-    return left[:, :count]

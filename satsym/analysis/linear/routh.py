@@ -18,8 +18,7 @@ from itertools import pairwise
 from numbers import Rational
 from typing import Any, TypeAlias
 
-from satsym.analysis.linear.polynomials import companion_matrix
-from satsym.analysis.linear.spectrum import spectrum
+from satsym.analysis.linear.spectrum import companion_matrix, spectrum
 from satsym.status import BadInput
 
 ZERO_ELEMENT, ZERO_ROW = "zero in the first column", "row of zeros"

@@ -281,3 +281,24 @@ def shown(value: complex) -> str:
         return f"{value.real + 0.0:.6g}"
     real = f"{value.real:.6g} " if value.real else ""
     return f"{real}\N{PLUS-MINUS SIGN}{' ' if real else ''}{abs(value.imag):.6g}i"
+
+
+CANCELLED_COEFFICIENT = 1e-13
+"""A coefficient that is smaller than this, relative to what it would be if nothing in it cancelled, is zero."""
+
+
+def characteristic(A: Array) -> Array:
+    """Coefficients of det(s - A), highest power first, the first one 1; shape (n + 1,)."""
+    values = np.array([each.value for each in spectrum(A) for _ in range(each.algebraic)])
+    rate = float(np.abs(values).max()) or 1.0
+    coefficients, largest = np.poly(values / rate).real, np.poly(-np.abs(values / rate))
+    coefficients[np.abs(coefficients) <= CANCELLED_COEFFICIENT * largest] = 0.0
+    return np.asarray(coefficients * rate ** np.arange(len(values) + 1))
+
+
+def companion_matrix(coefficients: Sequence[float] | Array) -> Array:
+    """The matrix with this monic characteristic polynomial, its coefficients negated in the last row, lowest first."""
+    n = len(coefficients) - 1
+    found = np.eye(n, k=1)
+    found[-1] = -np.asarray(coefficients)[:0:-1]
+    return found

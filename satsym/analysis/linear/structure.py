@@ -10,10 +10,9 @@ import numpy as np
 from satsym.analysis.linear import rational
 from satsym.analysis.linear.equilibrium import Linearisation, linearise
 from satsym.analysis.linear.modes import Mode, modes
-from satsym.analysis.linear.polynomials import characteristic
 from satsym.analysis.linear.ranks import Reach, controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
-from satsym.analysis.linear.spectrum import Eigenvalue, Stability, spectra, stability
+from satsym.analysis.linear.spectrum import Eigenvalue, Stability, characteristic, spectra, stability
 from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 from satsym.instance import Instance

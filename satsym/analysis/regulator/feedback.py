@@ -106,13 +106,13 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
 
         return classical.simulate(instance)
     if feedback == "switching":
-        from satsym.analysis.classical import relay
+        from satsym.analysis.classical import least_time
 
-        return relay.simulate(instance)
+        return least_time.by_relay(instance)
     if feedback == "pulses":
-        from satsym.analysis.classical import pulses
+        from satsym.analysis.classical import least_time
 
-        return pulses.simulate(instance)
+        return least_time.by_pulses(instance)
     design = designed(instance)
     about, found = design.about, design.regulator
     simulation = simulated(instance, law(about, found))

@@ -45,7 +45,7 @@ def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: b
     """
     from satsym.auditing.check.answer import check_in
     from satsym.auditing.check.answers import as_object, worst
-    from satsym.report.terminal.checked import checked_text
+    from satsym.report.terminal.audit import checked_text
 
     found = check_in(formula, model, Path(), let, free)
     answer(as_json, as_object(formula, found), lambda: checked_text(found))

@@ -41,7 +41,7 @@ def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_
     """
     from satsym.auditing.document import drafting
     from satsym.report.results.files import write_text
-    from satsym.report.terminal.checked import drafted_text
+    from satsym.report.terminal.audit import drafted_text
 
     ledger = out or document.with_suffix(drafting.SUFFIX)
     found = drafting.draft(document, model, _text_before(ledger), let)

@@ -58,7 +58,7 @@ def report(
     from satsym import instance, solvers
     from satsym.instance.numbers import changed
     from satsym.report.extra import library
-    from satsym.report.page.answers import explored
+    from satsym.report.page.explore import explored
     from satsym.report.page.run import Given, render
     from satsym.report.results.files import write_text
     from satsym.report.terminal.solution import progress_line, with_files

@@ -9,7 +9,7 @@ from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Weight
 from satsym.records import shelf
 from satsym.report.findings.review import Review, title
-from satsym.report.html import derived
+from satsym.report.html import section
 from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.html.section import Section, breakable, scrolled, slug
 from satsym.report.texts import Texts, load
@@ -42,11 +42,11 @@ def render(
     texts = load(language)
     reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     parts = [Section(review) for review in reviews]
-    equations: dict[str, derived.Derived] = {}
+    equations: dict[str, section.Derived] = {}
     for ledger, part in zip(ledgers, parts, strict=True):
         with shelf.opened(ledger.folder):
-            named = {address for row in part.rows for address in derived.addresses(row)}
-            equations |= derived.typeset(named - equations.keys(), announce)
+            named = {address for row in part.rows for address in section.addresses(row)}
+            equations |= section.typeset(named - equations.keys(), announce)
     equations = dict(sorted(equations.items()))
     body = [
         tag("a", texts.get("audit", "skip"), class_="skip", href="#all-findings"),
@@ -128,7 +128,7 @@ def _filters(texts: Texts, reviews: Sequence[Review]) -> Markup:
     )
 
 
-def _equations(texts: Texts, found: Mapping[str, derived.Derived], documents: Sequence[Section]) -> Markup:
+def _equations(texts: Texts, found: Mapping[str, section.Derived], documents: Sequence[Section]) -> Markup:
     """What the rows are held against."""
     parts = [tag("h2", texts.get("audit", "derived")), tag("p", texts.get("audit", "derived_about"))]
     last = ""

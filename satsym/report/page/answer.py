@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from satsym.proof.record import Enclosure, Outcome, Proof
 from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
-from satsym.report.results.unit_names import time_unit
+from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.arcs import in_words, rows_of_arcs
 from satsym.report.terminal.solution import control_rows, state_rows

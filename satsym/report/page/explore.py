@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+import io
 import json
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.resources import files
+from pathlib import Path
 
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.numbers import changed
 from satsym.report.extra import library
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.explored import Answer, data
+from satsym.report.results import sets, study_table
+from satsym.report.results.set_list import STUDY
+from satsym.report.results.studies import TRAJECTORIES
 from satsym.report.said import decimal, say
+from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
+from satsym.solution import Solution
+from satsym.status import BadInput
+from satsym.wording import printable
 
 WORDS = {
     "path": "solution",
@@ -98,3 +114,99 @@ def scripts(answers: Sequence[Answer]) -> Markup:
         tag("script", Markup(offline.get_plotlyjs())),
         tag("script", Markup(own)),
     )
+
+
+MOST_ANSWERS = 60
+"""Answers on a page, evenly chosen among more."""
+ROUNDING = 1e-12
+"""Relative difference below which two numbers of an instance are the same."""
+ARRAYS = ("t", "x", "u", "lam")
+
+
+def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
+    """The answer alone, or those of a study: in the order of what it varies, if that is one number.
+
+    Parameters
+    ----------
+    solution
+        Of the page's own instance, which the study must vary.
+    study
+        A folder with its results.
+
+    Raises
+    ------
+    BadInput
+        If that is no study of this instance, or it kept no trajectories.
+    """
+    if study is None:
+        return [Answer(solution)]
+    place, instance = printable(str(study)), solution.instance
+    listing = sets.read(study)
+    said = json.loads(listing.result)
+    if listing.command != STUDY or said.get("each") != "solve":
+        raise BadInput(
+            f"--study: {place}: holds no study of solutions; `satsym study X --trajectories --out DIR` makes one"
+        )
+    if (said["model"], said["instance"]) != (instance.model.spec.name, instance.name):
+        raise BadInput(f"--study: {place}: belongs to {printable(said['instance'])}, not to {instance.name}")
+    kept = _trajectories(study, sorted(listing.listed))
+    if not kept:
+        raise BadInput(f"--study: {place}: kept no trajectories; make it again with --trajectories")
+    table = study_table.columns(study_table.path_of(study), lambda _: [*said["varied"], "objective"])
+    settings = {name: float(value) for name, value in said.get("settings", {}).items()}
+    found = []
+    for row in _chosen(table, said["varied"], [row for row in kept if set(ARRAYS) <= kept[row].keys()]):
+        values = {name: float(table[name][row]) for name in said["varied"]}
+        label = ", ".join(f"{name} = {decimal(figure(value))}" for name, value in values.items())
+        objective = instance.model.spec.objective(float(table["objective"][row]))
+        case = changed(instance, settings | values)
+        arrays = kept[row]
+        own = replace(
+            solution,
+            instance=case,
+            objective=objective,
+            times=arrays["t"],
+            x=arrays["x"],
+            u=arrays["u"],
+            lam=arrays["lam"],
+            switching_times=tuple(() for _ in arrays["u"]),
+            certificate=None,
+            events=(),
+            history=(),
+        )
+        found.append(Answer(own, label, _same(case, instance)))
+    return found
+
+
+def _same(one: Instance, other: Instance) -> bool:
+    """Whether two instances of a model have the same numbers, but for rounding."""
+
+    def numbers(case: Instance) -> list[float]:
+        ends = [value for value in case.final.values() if isinstance(value, float)]
+        times = [case.t0, math.inf if case.tf is None else case.tf]
+        return [*case.initial, *case.parameters, *ends, *times, *case.lower, *case.upper, case.max_norm]
+
+    first, second = numbers(one), numbers(other)
+    return len(first) == len(second) and bool(np.allclose(first, second, rtol=ROUNDING, atol=0.0))
+
+
+def _trajectories(folder: Path, names: Sequence[str]) -> dict[int, dict[str, Array]]:
+    """Arrays by the number of their row."""
+    beginning = TRAJECTORIES.partition("{")[0]
+    wanted = [name for name in names if name.startswith(beginning)]
+    found: dict[int, dict[str, Array]] = {}
+    for content in sets.read(folder, wanted).contents.values() if wanted else ():
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+            for key in arrays.files:
+                row, _, name = key.partition(".")
+                found.setdefault(int(row), {})[name] = arrays[key]
+    return found
+
+
+def _chosen(table: dict[str, Array], varied: Sequence[str], rows: Sequence[int]) -> list[int]:
+    """The rows that are shown, in the order in which a slider goes through them."""
+    whole = [row for row in rows if all(math.isfinite(table[name][row]) for name in varied)]
+    ordered = sorted(whole, key=lambda row: tuple(table[name][row] for name in varied))
+    if len(ordered) <= MOST_ANSWERS:
+        return ordered
+    return [ordered[k] for k in np.linspace(0, len(ordered) - 1, MOST_ANSWERS).round().astype(int)]

@@ -21,7 +21,7 @@ from satsym.report.plots.orbits.surroundings import Surroundings
 from satsym.report.plots.reading import Reading, read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
-from satsym.report.results.unit_names import cost_per
+from satsym.report.results.objects import cost_per
 from satsym.report.said import decimal, say
 from satsym.solution import Solution
 

@@ -11,8 +11,7 @@ from satsym.instance.files import text as text_of
 from satsym.report.display import unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page import answer
-from satsym.report.results.objects import file_of
-from satsym.report.results.unit_names import time_unit
+from satsym.report.results.objects import file_of, time_unit
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts

@@ -55,7 +55,7 @@ def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Fig
 
 def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots import pages
-    from satsym.report.plots.convergence import convergence
+    from satsym.report.plots.pages import convergence
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)

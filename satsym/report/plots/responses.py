@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves, legend, style
 from satsym.report.plots.reading import ROUNDING, SMALL_DEVIATION
-from satsym.report.results.unit_names import COST, of_regulator
+from satsym.report.results.objects import COST, of_regulator
 from satsym.report.said import say
 from satsym.spec import Variable
 

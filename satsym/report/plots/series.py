@@ -16,7 +16,7 @@ from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results import restrictions
-from satsym.report.results.unit_names import cost_per, time_unit
+from satsym.report.results.objects import cost_per, time_unit
 from satsym.report.said import say
 from satsym.solution import Simulation
 from satsym.spec import PRODUCT, ProblemSpec, Variable

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from satsym.choices import TableFormat
 from satsym.instance.numbers import SIDES, Table
 from satsym.report.results.files import Content
-from satsym.report.results.unit_names import COST, per, units, with_units
+from satsym.report.results.objects import COST, per, units, with_units
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 from satsym.studies.rows import TEXTS, Column, Row, Scalar

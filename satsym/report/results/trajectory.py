@@ -19,8 +19,8 @@ from satsym.report.results import files, sets
 from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
+from satsym.report.results.objects import units, with_units
 from satsym.report.results.set_list import LIST, unusable
-from satsym.report.results.unit_names import units, with_units
 from satsym.solution import CostInterval, Event, Invariant, Iteration, Simulation, Solution
 from satsym.status import BadInput, Status
 from satsym.wording import printable

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.results.objects import file_of, head, plain
-from satsym.report.results.unit_names import times, units
+from satsym.report.results.objects import file_of, head, plain, times, units
 from satsym.report.said import each, message, say
 from satsym.report.terminal.solution import ROUNDING
 from satsym.report.terminal.table import figure, joined, table, wrapped

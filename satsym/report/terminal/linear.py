@@ -1,4 +1,4 @@
-"""What an analysis or a regulator says to people, as plain text."""
+"""What an analysis, a regulator or the equilibria of an attitude say to people, as plain text."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from satsym.analysis.linear.spectrum import UNSTABLE, shown
 from satsym.report.results.equilibria import axis
-from satsym.report.results.exact import omitted_because
-from satsym.report.results.unit_names import COST, of_regulator, time_unit
+from satsym.report.results.linear import omitted_because
+from satsym.report.results.objects import COST, of_regulator, time_unit
 from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.table import figure, joined, table, wrapped
 

@@ -11,7 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
-from satsym.report.results.unit_names import cost_per, time_unit
+from satsym.report.results.objects import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
 from satsym.report.terminal.certificate import certificate_lines

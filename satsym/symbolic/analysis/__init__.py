@@ -24,8 +24,15 @@ from satsym.symbolic.analysis.field import NotExact
 from satsym.symbolic.analysis.routh import RouthArray, routh
 from satsym.symbolic.analysis.spectrum import Eigenvalue, Spectrum, spectrum
 from satsym.symbolic.analysis.stability import Stability, stability
-from satsym.symbolic.analysis.structure import KalmanForm, Mode, Reach, controllability, observability
-from satsym.symbolic.analysis.system import LinearSystem, linear_system
+from satsym.symbolic.analysis.structure import (
+    KalmanForm,
+    LinearSystem,
+    Mode,
+    Reach,
+    controllability,
+    linear_system,
+    observability,
+)
 
 __all__ = [
     "Analysis",

@@ -1,4 +1,4 @@
-"""A matrix taken apart: for each factor of its characteristic polynomial, the invariant subspace and A on it.
+"""A matrix taken apart: invariant subspaces by factors of its characteristic polynomial, Jordan and companion form.
 
 On the subspace of an irreducible factor f, A is the sum of two commuting matrices: S, which obeys f(S) = 0 and has
 no Jordan blocks but single ones, and N, a power of which vanishes (the Jordan-Chevalley decomposition). Projector,

@@ -1,4 +1,4 @@
-"""Attitudes at which bodies rest relative to their orbit: equations in direction cosines, and what holds near them."""
+"""Attitudes at which bodies rest relative to their orbit, isolated or not, and what holds near them."""
 
 from __future__ import annotations
 

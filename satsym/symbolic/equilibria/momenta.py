@@ -1,4 +1,4 @@
-"""Equilibria followed over a parameter: where their number or their stability changes, in brackets counted exactly."""
+"""Equilibria of one attitude: all of them, and followed over a parameter, in brackets counted exactly."""
 
 from __future__ import annotations
 

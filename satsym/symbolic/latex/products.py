@@ -1,4 +1,4 @@
-"""Products taken apart for print: sign, numbers, what stands above the fraction line and what below."""
+"""Products taken apart for print, by what stands above and below the fraction line; sums, as signed terms."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import sympy as sp
 from satsym.spec import MOST_LETTERS
 from satsym.symbolic.algebra import definitions_of, vanishes
 from satsym.symbolic.analysis.field import NotExact, exact
-from satsym.symbolic.analysis.system import LinearSystem
+from satsym.symbolic.analysis.structure import LinearSystem
 from satsym.symbolic.checks import numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear.notation import results

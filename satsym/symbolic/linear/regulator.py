@@ -17,8 +17,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.analysis.field import sign_of
 from satsym.symbolic.analysis.spectrum import spectrum
-from satsym.symbolic.analysis.structure import controllability
-from satsym.symbolic.analysis.system import LinearSystem
+from satsym.symbolic.analysis.structure import LinearSystem, controllability
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.factoring import as_factors

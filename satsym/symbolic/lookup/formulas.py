@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -245,11 +245,6 @@ def differs_somewhere(expression: sp.Expr) -> bool:
             except (ArithmeticError, ValueError, TypeError, AttributeError):  # mpmath orders no complex numbers
                 continue
     return False
-
-
-def in_symbols(expression: sp.Expr, symbols: Mapping[str, sp.Expr]) -> sp.Expr:
-    """The expression with its symbols replaced by those of the same name."""
-    return expression.xreplace({s: symbols[s.name] for s in expression.free_symbols if symbols.get(s.name, s) != s})
 
 
 ZERO = sp.Integer(0)

@@ -23,7 +23,7 @@ from satsym.records import record, shelf
 from satsym.records.record import Equated, Family
 from satsym.status import BadInput
 from satsym.symbolic import dimensions, loader
-from satsym.symbolic.analysis.system import LinearSystem
+from satsym.symbolic.analysis.structure import LinearSystem
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.dimensions import Known
 from satsym.symbolic.lookup import formulas
