@@ -18,7 +18,7 @@ from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
-from satsym.symbolic.principle.path import inequalities, interior, mixed_constraints, path_constraints
+from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints
 from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -194,7 +194,7 @@ def _of_interior(derivation: Derivation) -> list[Function]:
 
 def _of_path_constraints(derivation: Derivation) -> list[Function]:
     """Functions of constraints along the way, a row for each of these."""
-    if not (found := inequalities.every(derivation)):
+    if not (found := mixed_constraints.every(derivation)):
         return []
     states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
     steps = [

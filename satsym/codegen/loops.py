@@ -21,7 +21,7 @@ import sympy as sp
 from satsym.codegen.block import Assignment, Block, Emitter, build, free_symbols, live
 from satsym.codegen.naming import Code
 from satsym.codegen.printers import ScalarPrinter
-from satsym.kernels.composition import exact_weights
+from satsym.kernels.plain import exact_weights
 from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.decimals import DIGITS
 from satsym.symbolic.derivation import Derivation

@@ -22,7 +22,7 @@ from satsym.symbolic.functions.roots import Argmin, Root, Vertex
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.principle import product, set_laws
-from satsym.symbolic.principle.path import inequalities
+from satsym.symbolic.principle.path import mixed_constraints
 from satsym.symbolic.switching.curve import states_of
 from satsym.symbolic.switching.functions import moving_magnitudes
 from satsym.symbolic.switching.singular import chattering
@@ -77,11 +77,11 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         objective_unit=derived_units.of_objective(derivation),
         has_reference=bool(model.reference),
         terminal_inequalities=tuple(problem.terminal_inequalities) if problem else (),
-        path_constraints=tuple(PathConstraint(one.name, one.order) for one in inequalities.every(derivation)),
+        path_constraints=tuple(PathConstraint(one.name, one.order) for one in mixed_constraints.every(derivation)),
         interior=tuple(InteriorPoint(name, len(stated)) for name, stated in problem.interior.items())
         if problem
         else (),
-        linear_quadratic=inequalities.linear_quadratic(derivation),
+        linear_quadratic=mixed_constraints.linear_quadratic(derivation),
         autonomous=not any(
             e.has(t) for e in (*derivation.rhs("first_order"), sp.sympify(problem.running_cost if problem else 0))
         ),

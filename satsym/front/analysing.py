@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym.analysis import subject as subjects
 from satsym.front import html
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.instance import Instance
-from satsym.front.refusals import in_one_line
-from satsym.front.single_threaded import single_threaded
 from satsym.instance import Instance as Case
 from satsym.kernels import Kernels
 from satsym.report.results.files import to_json
@@ -21,9 +20,9 @@ from satsym.status import Status
 
 if TYPE_CHECKING:
     from satsym import symbolic
-    from satsym.analysis.linear.structure import Analysis as Linear
-    from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.regulator.feedback import Design
+    from satsym.analysis.subject import Analysis as Linear
+    from satsym.analysis.subject import Survey
     from satsym.arrays import Array
     from satsym.front.derivation import Derivation
     from satsym.symbolic.equilibria.momenta import Attitudes

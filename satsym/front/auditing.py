@@ -14,8 +14,7 @@ from satsym.auditing.check import answers as checking
 from satsym.auditing.check.answer import check_in
 from satsym.auditing.check.answers import Answer, Verdict
 from satsym.front import html
-from satsym.front.refusals import in_one_line
-from satsym.front.single_threaded import single_threaded
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.report.findings import objects, review
 from satsym.report.results.files import to_json
 from satsym.report.terminal import audit as reporting

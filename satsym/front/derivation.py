@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from satsym.front.refusals import in_one_line
+from satsym.front.calls import in_one_line
 from satsym.kernels.digest import sealed
 from satsym.records import record
 from satsym.status import BadInput

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from satsym.front.refusals import in_one_line
+from satsym.front.calls import in_one_line
 from satsym.front.solution import Solution
 from satsym.front.trajectory import Trajectory
 from satsym.report.results.files import write_text

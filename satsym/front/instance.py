@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym import instance as instances
 from satsym.front import tables
-from satsym.front.refusals import in_one_line
+from satsym.front.calls import in_one_line
 from satsym.instance import Written
 from satsym.status import BadInput
 from satsym.wording import shown

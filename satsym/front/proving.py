@@ -9,9 +9,8 @@ from typing import Any
 
 from satsym import solution, solvers
 from satsym.front import html
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.instance import Instance, as_case
-from satsym.front.refusals import in_one_line
-from satsym.front.single_threaded import single_threaded
 from satsym.instance import Instance as Case
 from satsym.proof import record
 from satsym.proof.proving import prove as prove_found

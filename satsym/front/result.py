@@ -15,9 +15,9 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.front import between, html, saved
+from satsym.front.calls import in_one_line
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance
-from satsym.front.refusals import in_one_line
 from satsym.report import plots
 from satsym.report.look import Look
 from satsym.report.results.files import Content, check_writable, store, to_json, unwritable

@@ -12,11 +12,10 @@ import numpy as np
 from satsym import solution, solvers
 from satsym.arrays import Array, distinct
 from satsym.front import between, html
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance, as_case
-from satsym.front.refusals import in_one_line
 from satsym.front.result import Result
-from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import solution_object
 from satsym.report.terminal.certificate import statement, verdict_text
 from satsym.report.terminal.solution import solution_text

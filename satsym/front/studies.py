@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from satsym.front import saved
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.instance import Instance, as_case
-from satsym.front.refusals import in_one_line
-from satsym.front.single_threaded import single_threaded
 from satsym.front.tables import name_of, plain
 from satsym.report.look import Look
 from satsym.report.results.files import to_json

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from satsym.front import html
+from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.instance import Instance, as_case
-from satsym.front.refusals import in_one_line
 from satsym.front.result import Result
-from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import simulation_object
 from satsym.report.terminal.solution import simulation_text
 from satsym.solution import Invariant, Simulation

@@ -22,8 +22,8 @@ from satsym.kernels.batch.workspace import (
     over_lanes,
     stored,
 )
-from satsym.kernels.composition import weights
 from satsym.kernels.core import Kernels
+from satsym.kernels.plain import weights
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 

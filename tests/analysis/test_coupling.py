@@ -10,8 +10,8 @@ from satsym import instance, kernels, solvers
 from satsym.analysis.comparison import case_of, compare
 from satsym.analysis.coupling import Driver, reached, undriven
 from satsym.analysis.linear.ranks import controllability
-from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
+from satsym.analysis.subject import analyse
 from satsym.status import BadInput
 
 PITCH = {"theta", "w_y", "eta_y", "eta_y_dot", "wheel_speed"}

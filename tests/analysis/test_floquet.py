@@ -16,7 +16,7 @@ from satsym.analysis.orbits.elements import Elements, elements
 from satsym.analysis.orbits.floquet import FASTER, NEARLY_CIRCULAR, VERDICT, floquet, hill_equations
 from satsym.analysis.orbits.kepler import propagate
 from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy, transition
-from satsym.analysis.orbits.survey import survey
+from satsym.analysis.subject import survey
 from tests.analysis.test_orbit_analysis import started, turned
 
 

@@ -11,7 +11,7 @@ from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.modes import modes, participation
 from satsym.analysis.linear.spectrum import characteristic, spectrum
-from satsym.analysis.linear.structure import analyse
+from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 
 NAMED = {

@@ -17,7 +17,7 @@ from satsym import instance
 from satsym.analysis.orbits.elements import TOLERANCE, Conic, Elements, elements
 from satsym.analysis.orbits.kepler import propagate
 from satsym.analysis.orbits.point import at_start, rule, rule_of_the_conclusion
-from satsym.analysis.orbits.survey import survey
+from satsym.analysis.subject import survey
 from satsym.status import BadInput
 from tests.support import conics
 

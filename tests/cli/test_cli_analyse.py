@@ -13,9 +13,9 @@ import sympy
 
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import linearise
-from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
 from satsym.analysis.regulator.responses import responses as linear_and_exact
+from satsym.analysis.subject import analyse
 from satsym.cli import main
 from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from satsym import instance
-from satsym.analysis.orbits.survey import survey
+from satsym.analysis.subject import survey
 from satsym.cli import main
 from satsym.report.plots import style
 from satsym.report.plots.orbits import conics, plane

@@ -123,8 +123,8 @@ def test_nothing_is_cut_off_in_a_column() -> None:
     """Titles, labels and legends of pictures with long ones, in the language that is longer."""
     from satsym import instance
     from satsym.analysis.comparison import compare
-    from satsym.analysis.orbits.survey import survey
     from satsym.analysis.regulator.feedback import designed
+    from satsym.analysis.subject import survey
     from satsym.report.plots import comparison, responses
     from satsym.report.plots.orbits import conics, plane
     from satsym.report.said import spoken

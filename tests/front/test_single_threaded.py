@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import satsym
 from satsym import solvers
-from satsym.front.single_threaded import VARIABLES, single_threaded
+from satsym.front.calls import VARIABLES, single_threaded
 from satsym.status import BadInput
 
 BEGINNING = """
@@ -23,7 +23,7 @@ from threading import Event, Thread
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.pop(name, None)
 import numpy, threadpoolctl
-from satsym.front.single_threaded import single_threaded
+from satsym.front.calls import single_threaded
 with threadpoolctl.threadpool_limits(3, "blas") as limited:
     limited.restore_original_limits = lambda: None
 def threads():

@@ -11,7 +11,7 @@ from sympy import sin
 from satsym.analysis.orbits import kepler
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
-from satsym.kernels.composition import weights
+from satsym.kernels.plain import weights
 from satsym.status import BadInput
 from satsym.symbolic import FirstOrder, Variable, symbols_of, t
 from tests.support.derived import derived

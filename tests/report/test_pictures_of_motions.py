@@ -11,7 +11,7 @@ import sympy
 import satsym
 from satsym import instance as instances
 from satsym import kernels
-from satsym.analysis.linear.structure import analyse
+from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
 from satsym.report.plots import curves, figures, pages, phase_planes, series, style

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym import instance, kernels
-from satsym.analysis.orbits.survey import survey
+from satsym.analysis.subject import survey
 from satsym.report.terminal import listing
 from satsym.report.terminal.orbit import orbit_text
 from satsym.report.terminal.solution import simulation_text, solution_text, with_files

@@ -12,7 +12,7 @@ from satsym.report.latex.document import render
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError, Step
 from satsym.symbolic.model import Convention, t
-from satsym.symbolic.principle.path import inequalities
+from satsym.symbolic.principle.path import mixed_constraints
 from satsym.symbolic.principle.path import path_constraints as steps
 from tests.support.derived import derived, shipped, stated
 
@@ -80,7 +80,7 @@ def test_with_the_maximum_convention_costates_change_their_sign_and_multipliers_
 def test_weights_that_depend_on_time_are_not_said_to_be_convex(weight: sp.Expr, alike: bool):
     """However often they are looked at, they may be negative in between."""
     problem = kept(d - t, running_cost=(u**2 + weight * a**2) / 2)
-    assert inequalities.linear_quadratic(derived(problem)) == alike
+    assert mixed_constraints.linear_quadratic(derived(problem)) == alike
 
 
 @pytest.mark.parametrize("direction", ["minimum", "maximum"])

@@ -15,8 +15,7 @@ from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
-    from satsym.analysis.linear.structure import Analysis
-    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.subject import Analysis, Survey
     from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.symbolic.equilibria.momenta import Attitudes

@@ -18,9 +18,8 @@ from satsym.report.said import message, say
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from satsym.analysis.linear.structure import Analysis
-    from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.regulator.feedback import Design
+    from satsym.analysis.subject import Analysis, Survey
     from satsym.instance import Instance
     from satsym.kernels import Kernels
     from satsym.symbolic.equilibria.momenta import Attitudes

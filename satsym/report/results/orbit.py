@@ -13,11 +13,10 @@ from satsym.report.results.objects import head_about
 from satsym.status import Status
 
 if TYPE_CHECKING:
-    from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.elements import Elements
     from satsym.analysis.orbits.floquet import Floquet
     from satsym.analysis.orbits.point import Point
-    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.subject import Analysis, Survey
     from satsym.instance import Instance
     from satsym.kernels import Kernels
     from satsym.spec import ProblemSpec

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.equilibrium import Linearisation
     from satsym.analysis.linear.ranks import Reach
     from satsym.analysis.linear.routh import Routh
-    from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.regulator.feedback import Design
+    from satsym.analysis.subject import Analysis
     from satsym.arrays import Array
     from satsym.symbolic.equilibria.momenta import Attitudes
 

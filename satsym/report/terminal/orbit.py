@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.floquet import Floquet
     from satsym.analysis.orbits.monodromy import Monodromy
     from satsym.analysis.orbits.point import Point
-    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.subject import Survey
 
 DIGITS = 10
 

@@ -18,7 +18,7 @@ from satsym.kernels import Kernels
 from satsym.kernels.batch.factored import Unsuited
 from satsym.kernels.batch.runge_kutta import BLOCK, OnTape
 from satsym.kernels.blocks import block_step, pairs
-from satsym.kernels.composition import weights
+from satsym.kernels.plain import weights
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from satsym.analysis.orbits.elements import Elements
-    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.subject import Survey
 
 POINTS = 2000
 ROUND_ECCENTRICITY = 0.02

@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from satsym.analysis.linear.spectrum import Eigenvalue
-    from satsym.analysis.linear.structure import Analysis
-    from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.regulator.feedback import Design
+    from satsym.analysis.subject import Analysis, Survey
 
 
 OPEN: dict[str, Any] = {

@@ -15,14 +15,14 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic.algebra import simplified, simplify, tidy, total_derivative
+from satsym.symbolic.algebra import depends, simplified, simplify, tidy, total_derivative
 from satsym.symbolic.checks import Check, Point, identity, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.principle.path import notation as pn
-from satsym.symbolic.principle.path import stationary_controls
+from satsym.symbolic.principle.path import path_constraints, stationary_controls
 from satsym.symbolic.principle.path.path_constraints import (
     COMPETITORS,
     Constraint,
@@ -158,3 +158,34 @@ def _cheapest(so_far: Derivation, found: Constraint, active: dict[sp.Symbol, sp.
 
     symbols = h.free_symbols.union(g.free_symbols, *(e.free_symbols for e in (*hats.values(), *active.values())))
     return never_below(worded("cheapest that keeps it", problem), symbols, margins)
+
+
+def every(so_far: Derivation) -> list[Constraint]:
+    """Return all constraints along the way, first those on states alone."""
+    return [*path_constraints.constraints(so_far), *constraints(so_far)]
+
+
+def linear_quadratic(so_far: Derivation) -> bool:
+    """Whether the motion is linear, costs are quadratic, and constraints along the way, if any, linear or quadratic.
+
+    What is left to make the problem convex are signs of matrices, which depend on the parameters.
+    """
+    problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
+    if problem is None or problem.interior:  # times that are free make none convex
+        return False
+    moving = (*states, *symbols_of(so_far.model.controls))
+
+    def settled(expressions: list[Any], order: int) -> bool:
+        """Whether derivatives of this order are free of states and controls."""
+        table = [sp.sympify(e) for e in expressions]
+        for _ in range(order):
+            table = [sp.diff(e, v) for e in table for v in moving]
+        varying = {*moving, t} if order > 1 else set(moving)  # weights are looked at once
+        return not any(depends(e, varying) for e in table)
+
+    return (
+        settled(list(so_far.rhs("first_order")), 1)
+        and settled(list(problem.end_conditions), 1)
+        and settled([problem.running_cost, problem.terminal_cost], 2)
+        and settled([one.rates[0] for one in found], 2)
+    )

@@ -1,4 +1,6 @@
-"""Linear algebra on one thread while something is computed.
+"""What surrounds a call from Python: one line about bad input, and linear algebra on one thread.
+
+The line that says what is wrong stands below the caller's own, without what lies between.
 
 On matrices as small as ours threads cost several times what they save, and on cores that others use as well they only
 wait for each other, until time is up before a certificate has compared all that it would. The command line says so to
@@ -8,9 +10,32 @@ libraries before it loads them; a notebook has loaded some already.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from threading import RLock
+from typing import ParamSpec, TypeVar
+
+from satsym.status import BadInput
+
+Given = ParamSpec("Given")
+Answer = TypeVar("Answer")
+
+
+def in_one_line(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
+    """The function, whose refusals have a traceback that ends at it; SATSYM_DEBUG=1 in the environment keeps all."""
+
+    @wraps(function)
+    def asked(*args: Given.args, **options: Given.kwargs) -> Answer:
+        try:
+            return function(*args, **options)
+        except BadInput as error:
+            if os.environ.get("SATSYM_DEBUG"):
+                raise
+            raise error.with_traceback(None) from None
+
+    return asked
+
 
 VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 """Read by libraries when they are loaded, as SciPy's own is in the midst of a solution."""
