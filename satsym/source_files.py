@@ -40,6 +40,28 @@ def shipped() -> list[Path]:
     return [p for paths in found for p in paths if not p.name.startswith("_")]
 
 
+def translations(path: Path) -> dict[str, Path]:
+    """Files beside a derivation file that translate its phrases, by language: ``NAME.id.toml`` beside ``NAME.py``."""
+    own = re.compile(rf"{re.escape(path.stem)}\.([a-z]{{2,3}}){re.escape(DATA)}")
+    return {found[1]: each for each in sorted(path.parent.iterdir()) if (found := own.fullmatch(each.name))}
+
+
+def phrases(path: Path) -> dict[str, str]:
+    """The phrases of a translation, and what they are in its language.
+
+    Raises
+    ------
+    ValueError
+        If it is no such file: TOML, with a line ``"velocity" = "kecepatan"`` for each phrase.
+    """
+    import tomllib
+
+    found = tomllib.loads(path.read_text(encoding="utf-8"))
+    if odd := next((phrase for phrase, text in found.items() if not isinstance(text, str)), None):
+        raise ValueError(f'{odd}: not a text; write lines such as "velocity" = "kecepatan"')
+    return found
+
+
 def models() -> list[str]:
     """Names of the generated models that come with satsym, without importing them."""
     found = {file.stem for folder in generated() for file in folder.glob(f"*{SUFFIX}")}

@@ -118,7 +118,7 @@ class Model:
         What the parameters must obey together; instances that do not are refused. May be empty.
     translations
         Language -> titles, meanings and other words of this declaration, as they stand in it -> in that language. May
-        be empty; a derivation file states them once for all, as ``TRANSLATIONS``.
+        be empty; a derivation file states them once for all, as ``TRANSLATIONS``, or ``NAME.id.toml`` beside it does.
     """
 
     name: str

@@ -189,12 +189,14 @@ def translations(asked: str) -> Mapping[str, str]:
 
 
 def _of_models(asked: str) -> Iterator[tuple[str, str]]:
-    """Titles and meanings of shipped derivation files, as they have them in that language; no file is executed."""
+    """Titles and meanings of shipped derivation files, as they or files beside them have them; no file is executed."""
     import ast
 
     from satsym import source_files
 
     for file in source_files.shipped():
+        if beside := source_files.translations(file).get(asked):
+            yield from source_files.phrases(beside).items()
         for statement in ast.parse(file.read_text(encoding="utf-8")).body:
             match statement:
                 case ast.Assign(targets=[ast.Name(id="TRANSLATIONS")], value=table):

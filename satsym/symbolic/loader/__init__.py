@@ -167,8 +167,20 @@ def _translate(module: ModuleType) -> None:
     words, stated = getattr(module, "TRANSLATIONS", {}), getattr(module, "PROBLEMS", ())
     if not isinstance(words, Mapping) or not all(isinstance(each, Mapping) for each in words.values()):
         raise TypeError('TRANSLATIONS must have phrases by language, {"id": {"velocity": "kecepatan"}}')
+    beside = {
+        language: _phrases(path) for language, path in source_files.translations(Path(module.__file__ or "")).items()
+    }
+    words = {key: {**beside.get(key, {}), **words.get(key, {})} for key in dict.fromkeys((*words, *beside))}
     if words and isinstance(stated, tuple):
         module.PROBLEMS = tuple(_in_languages(one, words) for one in stated)  # type: ignore[attr-defined]
+
+
+def _phrases(path: Path) -> dict[str, str]:
+    """Phrases of a derivation file and what they are in the language of a file beside it."""
+    try:
+        return source_files.phrases(path)
+    except ValueError as error:
+        raise ValueError(f"its translation {path.name}: {error}") from None
 
 
 def _in_languages(one: Any, words: Mapping[str, Mapping[str, str]]) -> Any:
