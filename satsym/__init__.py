@@ -51,8 +51,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "front.analysing": ("analyse", "lqr"),
-    "front.auditing": ("audit",),
-    "front.checking": ("check",),
+    "front.auditing": ("audit", "check"),
     "front.derivation": ("derive",),
     "front.exporting": ("export",),
     "front.instance": ("Instance", "load"),

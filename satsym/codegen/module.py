@@ -189,7 +189,7 @@ def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr
     written = (
         searching.root_lines
         if isinstance(value, Root)
-        else searching.least_lines
+        else searching.minimum_lines
         if isinstance(value, Argmin)
         else None
     )

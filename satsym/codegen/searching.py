@@ -53,7 +53,7 @@ class _Form:
         return found + ([] if high is None else [f"{place} = {self.chosen(high, place, high, place)}"])
 
 
-def least_lines(name: str, least: Argmin, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
+def minimum_lines(name: str, least: Argmin, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
     """Statements that give a name the place at which a polynomial is least.
 
     Parameters

@@ -11,12 +11,12 @@ from functools import lru_cache
 from typing import Any
 
 from satsym.kernels.batch import compiling
-from satsym.kernels.batch.inlined import inlined
 from satsym.kernels.batch.workspace import (
     Workspace,
     element,
     function,
     indented,
+    inlined,
     loaded,
     over_blocks,
     over_lanes,

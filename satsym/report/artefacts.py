@@ -114,7 +114,7 @@ def renew(
 def _stated(path: Path, seconds: float) -> dict[str, str]:
     """Name of each problem of a derivation file -> its identity."""
     from satsym.symbolic import loader
-    from satsym.symbolic.identity import identity
+    from satsym.symbolic.declared import identity
     from satsym.symbolic.time_limit import within
 
     with loader.explained(), within(seconds, str(path)):

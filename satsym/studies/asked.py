@@ -21,7 +21,7 @@ from satsym.choices import Checked, Command, TableFormat
 from satsym.instance import Instance
 from satsym.instance.numbers import Key
 from satsym.kernels import Kernels
-from satsym.studies.design import Design, chain
+from satsym.studies.reading import Design, chain
 from satsym.version import __version__
 
 LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8

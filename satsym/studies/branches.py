@@ -34,7 +34,7 @@ from satsym.solvers.simulation.extrapolation import integrate
 from satsym.status import Verdict
 from satsym.studies import chunks, rows
 from satsym.studies.asked import Study, Task
-from satsym.studies.design import Grid
+from satsym.studies.reading import Grid
 from satsym.studies.rows import Column, Row
 from satsym.studies.solving import SINGLE_ORIGIN, certified, drawn_for_competitors
 from satsym.studies.together import CLOSED, plain

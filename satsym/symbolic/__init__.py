@@ -4,8 +4,8 @@ from satsym.spec import ModeGroup, Variable
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds.about_rest import AboutRest
 from satsym.symbolic.kinds.bodies import CLOCK, moving
-from satsym.symbolic.kinds.closed_loop.declared import COMMAND, s
-from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
+from satsym.symbolic.kinds.closed_loop import ClosedLoop
+from satsym.symbolic.kinds.commanded import COMMAND, s
 from satsym.symbolic.kinds.first_order import FirstOrder
 from satsym.symbolic.kinds.gyrostat import Gyrostat, Motor
 from satsym.symbolic.kinds.linearised import Linearised

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import equilibrium, linearise
 from satsym.analysis.linear.ranks import TOLERANCE, controllability, observability, staircase
-from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import characteristic, companion_matrix, spectrum, stability
-from satsym.analysis.linear.system import system
+from satsym.analysis.linear.system import scaled, system
 from satsym.analysis.subject import analyse
 from satsym.status import BadInput
 from tests.support.linear_models import OMEGA, in_other_units, pendulum, satellite

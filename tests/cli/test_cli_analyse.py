@@ -17,8 +17,7 @@ from satsym.analysis.regulator.feedback import designed
 from satsym.analysis.regulator.responses import responses as linear_and_exact
 from satsym.analysis.subject import analyse
 from satsym.cli import main
-from satsym.report.plots import responses, style, systems
-from satsym.report.plots.orbits import plane
+from satsym.report.plots import plane, responses, style, systems
 from satsym.report.results.linear import analysis_object, exact, regulator_object
 from satsym.report.results.objects import of_regulator
 from satsym.report.terminal.linear import analysis_text, regulator_text

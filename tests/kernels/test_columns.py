@@ -11,7 +11,7 @@ import pytest
 
 from satsym.kernels import load
 from satsym.kernels.batch import compiling
-from satsym.kernels.batch.inlined import inlined
+from satsym.kernels.batch.workspace import inlined
 from satsym.kernels.core import Kernels
 
 SECOND = """

@@ -15,7 +15,7 @@ from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
 from satsym.report.plots import curves, figures, pages, phase_planes, series, style
-from satsym.report.plots.orbits import plane as eigenvalue_plane
+from satsym.report.plots import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series

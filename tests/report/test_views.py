@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from satsym import instance
 from satsym.report import display
-from satsym.report.plots.orbits.scenes import Orbit
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.scenes import Orbit
 from satsym.report.plots.views import views
 from satsym.solvers import simulate
 

@@ -29,7 +29,7 @@ from satsym.solvers.improving import goes_on
 from satsym.status import BadInput, Verdict
 from satsym.studies import reading, rows, solving
 from satsym.studies.asking import asked
-from satsym.studies.design import Axis, Grid, Sample
+from satsym.studies.reading import Axis, Grid, Sample
 from tests.support.chunks import Here, failing
 
 NAME = "return-to-orbit"

@@ -21,7 +21,7 @@ from _pytest.mark import ParameterSet
 from satsym import source_files, user_cache
 from satsym.report import stamps
 from satsym.symbolic import Derivation, Model, Problem, derive, loader
-from satsym.symbolic.identity import identity
+from satsym.symbolic.declared import identity
 
 SHARE = 3
 """Every third shipped model is derived for tests of all of them, others after each change of the engine."""

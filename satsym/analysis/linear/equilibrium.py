@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.analysis.linear.rational import exact_matrices
-from satsym.analysis.linear.scaling import Scaled, scaled
-from satsym.analysis.linear.system import LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, Scaled, scaled, system
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels

@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.analysis.linear.equilibrium import Linearisation, jacobians
-from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import Eigenvalue
-from satsym.analysis.linear.system import system
+from satsym.analysis.linear.system import scaled, system
 from satsym.arrays import Array
 from satsym.spec import ModeGroup
 

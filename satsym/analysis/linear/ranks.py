@@ -1,7 +1,7 @@
 """Controllability and observability: ranks, and what is out of reach.
 
 Rational systems are decided exactly (:mod:`satsym.analysis.linear.rational`). Else ranks are decided on the system in
-units that suit it (:mod:`satsym.analysis.linear.scaling`), by the staircase of singular value decompositions, which
+units that suit it (:mod:`satsym.analysis.linear.system`), by the staircase of singular value decompositions, which
 never forms A^k B: what the inputs move directly, what that moves, and so on. A singular value below ``TOLERANCE`` times
 the size of the system is zero. So the ranks are exactly those of a system that differs from the given one by less than
 that.
@@ -19,9 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.analysis.linear import rational
-from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import Eigenvalue, of_roots, spectrum
-from satsym.analysis.linear.system import LinearSystem
+from satsym.analysis.linear.system import LinearSystem, scaled
 from satsym.arrays import Array
 
 TOLERANCE = 1e-10

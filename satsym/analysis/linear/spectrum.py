@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from satsym.analysis.linear import rational
 from satsym.analysis.linear.nearby import BITS, Group, group
-from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.system import LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, scaled, system
 from satsym.arrays import Array
 
 ROUNDING, KNOWN = 2e-15, 1e-12

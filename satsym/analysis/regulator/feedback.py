@@ -106,13 +106,13 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
 
         return classical.simulate(instance)
     if feedback == "switching":
-        from satsym.analysis.classical import least_time
+        from satsym.analysis.classical import minimum_time
 
-        return least_time.by_relay(instance)
+        return minimum_time.by_relay(instance)
     if feedback == "pulses":
-        from satsym.analysis.classical import least_time
+        from satsym.analysis.classical import minimum_time
 
-        return least_time.by_pulses(instance)
+        return minimum_time.by_pulses(instance)
     design = designed(instance)
     about, found = design.about, design.regulator
     simulation = simulated(instance, law(about, found))

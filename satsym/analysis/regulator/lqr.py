@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from satsym.analysis.linear.equilibrium import Linearisation
 from satsym.analysis.linear.ranks import controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
-from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import Eigenvalue, characteristic, shown
-from satsym.analysis.linear.system import LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, scaled, system
 from satsym.analysis.regulator import riccati
 from satsym.analysis.regulator.refinement import Refined
 from satsym.analysis.regulator.riccati import balancing, hamiltonian

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from satsym.analysis.linear.equilibrium import ENTRY_TOLERANCE, LOOKED_AT, linearise
-from satsym.analysis.linear.scaling import Scaled, scaled
+from satsym.analysis.linear.system import Scaled, scaled
 from satsym.analysis.regulator import riccati
 from satsym.analysis.regulator.lqr import DOUBTFUL
 from satsym.arrays import Array

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.analysis.linear.equilibrium import Linearisation
-from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.system import LinearSystem
+from satsym.analysis.linear.system import LinearSystem, scaled
 from satsym.analysis.regulator.feedback import Design, gain, law, running_cost
 from satsym.analysis.regulator.lqr import Regulator
 from satsym.arrays import Array

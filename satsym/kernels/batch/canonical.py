@@ -11,13 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from satsym.kernels.batch.compiling import HEAD
-from satsym.kernels.batch.inlined import Inlined, Loads, inlined
 from satsym.kernels.batch.workspace import (
     LANES,
+    Inlined,
+    Loads,
     Workspace,
     element,
     function,
     indented,
+    inlined,
     loaded,
     over_blocks,
     over_lanes,

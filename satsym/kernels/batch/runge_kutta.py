@@ -18,8 +18,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.kernels.batch import compiling
 from satsym.kernels.batch.factored import INVERSE, UNIT, Arithmetic, Factored
-from satsym.kernels.batch.inlined import inlined
 from satsym.kernels.batch.tape import Bound, Buffers, Moved, Operation, Tape, aligned, bound
+from satsym.kernels.batch.workspace import inlined
 from satsym.kernels.core import Kernels
 from satsym.spec import ProblemSpec
 

@@ -57,14 +57,14 @@ def of_analysis(found: Analysis, look: Look = SCREEN) -> Pictures:
     dict
         Name -> content of each file.
     """
-    from satsym.report.plots.orbits import plane
+    from satsym.report.plots import plane
 
     return _drawn({"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: portrait(found)}, look)
 
 
 def of_orbit(found: Survey, look: Look = SCREEN) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
-    from satsym.report.plots.orbits import conics, plane
+    from satsym.report.plots import conics, plane
 
     pictures: dict[str, Callable[[], Figure | None]] = {
         "orbit": lambda: conics.page(found),
@@ -84,8 +84,7 @@ def of_design(design: Design, look: Look = SCREEN) -> Pictures:
 
     Where the linear and the exact response are one curve, ``differences`` shows by how much they are not.
     """
-    from satsym.report.plots import responses
-    from satsym.report.plots.orbits import plane
+    from satsym.report.plots import plane, responses
 
     pictures: dict[str, Callable[[], Figure | None]] = {"eigenvalues": lambda: plane.of_design(design)}
     if design.instance is not None and design.instance.tf is not None:

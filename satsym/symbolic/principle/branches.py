@@ -20,8 +20,7 @@ from satsym.control_part import DIRECTED, Branch
 from satsym.symbolic.algebra import gradient, simplified, simplify, tidy, vanishes
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, Vertex
-from satsym.symbolic.principle.circle import by_circle
-from satsym.symbolic.principle.control_sets import refuse_singular
+from satsym.symbolic.principle.control_sets import by_circle, refuse_singular
 from satsym.symbolic.principle.parts import Part
 from satsym.symbolic.principle.stationary import indefinite, minimiser, nearest_angle, with_angle
 

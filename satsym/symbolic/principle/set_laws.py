@@ -17,7 +17,7 @@ from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import effort as pn
 from satsym.symbolic.principle.branches import Minimum, minima, norm_of, with_norms
-from satsym.symbolic.principle.circle import by_circle
+from satsym.symbolic.principle.control_sets import by_circle
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, minimum_norm_of, parts_of
 
 EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))

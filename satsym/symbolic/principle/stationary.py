@@ -22,7 +22,7 @@ from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.factoring import as_factors
 from satsym.symbolic.functions.minimisers import Clip
 from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
-from satsym.symbolic.principle.circle import by_circle
+from satsym.symbolic.principle.control_sets import by_circle
 
 SAMPLES, CONTROLS = 10, 12
 """Random points at which H is looked at, and controls at each."""

@@ -1,4 +1,4 @@
-"""Least time as a feedback: by the switching curve, through a relay with a deadband; and by pairs of pulses.
+"""Minimum time as a feedback: by the switching curve, through a relay with a deadband; and by pairs of pulses.
 
 The relay switches where the position is past the curve by the deadband. It then runs alongside the curve, as far from
 it as that, and stops where the rate has its final value: the position is within the deadband, by its width at most.

@@ -18,9 +18,9 @@ from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, power_of, product
 from satsym.symbolic.factoring import as_factors
-from satsym.symbolic.kinds.closed_loop import answers
-from satsym.symbolic.kinds.closed_loop import declared as cn
-from satsym.symbolic.kinds.closed_loop.declared import COMMAND, SECONDS, Statement, control_of, loop_of, s
+from satsym.symbolic.kinds import commanded as cn
+from satsym.symbolic.kinds import step_answers
+from satsym.symbolic.kinds.commanded import COMMAND, SECONDS, Statement, control_of, loop_of, s
 from satsym.symbolic.kinds.derived import original_equations
 from satsym.symbolic.model import MaybeStep, Problem, Requirement, symbols_of
 from satsym.symbolic.motion import steps as motion
@@ -175,7 +175,7 @@ class ClosedLoop(Statement):
     """Small motions about rest under a linear law that follows a command, critically damped.
 
     Its controls are none: the law takes their place. Its states are those of the motion.
-    What is stated of it: :class:`~satsym.symbolic.kinds.closed_loop.declared.Statement`.
+    What is stated of it: :class:`~satsym.symbolic.kinds.commanded.Statement`.
     """
 
     def steps(self) -> tuple[MaybeStep, ...]:
@@ -187,9 +187,9 @@ class ClosedLoop(Statement):
             transfer_functions,
             poles_and_zeros,
             critical_damping,
-            answers.step_response,
-            answers.control_response,
-            answers.extremes,
+            step_answers.step_response,
+            step_answers.control_response,
+            step_answers.extremes,
             first_order,
             motion.linearisation,
         )

@@ -1,4 +1,4 @@
-"""What may be stated of a linear law that follows a command."""
+"""What may be stated of a linear law that follows a command, and the symbols of its answers to a step."""
 
 from __future__ import annotations
 

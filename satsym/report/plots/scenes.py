@@ -11,11 +11,10 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, formula, labelled, length_scale, length_unit, number, plain, unit_text
-from satsym.report.plots import curves, legend, series, style
-from satsym.report.plots.orbits import surroundings
-from satsym.report.plots.orbits.surroundings import NOTHING, Surroundings
+from satsym.report.plots import curves, legend, series, style, surroundings
 from satsym.report.plots.reading import BURIED, FURTHEST, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.surroundings import NOTHING, Surroundings
 from satsym.report.plots.views import View, from_aside, views
 from satsym.report.said import say
 

@@ -17,8 +17,8 @@ from satsym.symbolic.algebra import simplify
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.factoring import as_factors
-from satsym.symbolic.kinds.closed_loop import declared as cn
-from satsym.symbolic.kinds.closed_loop.declared import SECONDS, control_of, loop_of, s
+from satsym.symbolic.kinds import commanded as cn
+from satsym.symbolic.kinds.commanded import SECONDS, control_of, loop_of, s
 from satsym.symbolic.model import symbols_of
 
 

@@ -1,1 +1,0 @@
-"""Pictures of paths in space, of conics and of points in the plane."""

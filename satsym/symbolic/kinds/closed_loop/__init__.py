@@ -1,1 +1,0 @@
-"""A linear law that follows a command: small motions about rest, transfer functions, critical damping, answers."""
