@@ -40,12 +40,11 @@ if TYPE_CHECKING:
     from satsym.front.analysing import analyse, lqr
     from satsym.front.auditing import audit, check
     from satsym.front.derivation import derive
-    from satsym.front.exporting import export
     from satsym.front.instance import Instance, load
     from satsym.front.proving import prove
     from satsym.front.solution import Solution, solve
     from satsym.front.studies import study
-    from satsym.front.trajectory import simulate
+    from satsym.front.trajectory import export, simulate
     from satsym.spec import Variable
     from satsym.symbolic import Angle, Annulus, Ball, Box, FirstOrder, Free, Newton, Problem
 
@@ -53,12 +52,11 @@ _HOMES = {
     "front.analysing": ("analyse", "lqr"),
     "front.auditing": ("audit", "check"),
     "front.derivation": ("derive",),
-    "front.exporting": ("export",),
     "front.instance": ("Instance", "load"),
     "front.proving": ("prove",),
     "front.solution": ("Solution", "solve"),
     "front.studies": ("study",),
-    "front.trajectory": ("simulate",),
+    "front.trajectory": ("export", "simulate"),
     "spec": ("Variable",),
     "symbolic": ("Angle", "Annulus", "Ball", "Box", "FirstOrder", "Free", "Newton", "Problem"),
 }

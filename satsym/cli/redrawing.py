@@ -113,7 +113,7 @@ def _of_one(subject: str, written: _Written, found: Found, look: Look) -> Drawn:
     else:
         from satsym.analysis.subject import examined
         from satsym.report.plots.systems import of_subject
-        from satsym.report.results.equilibria import attitudes
+        from satsym.report.results.linear import attitudes
 
         pictures = of_subject(given, *examined(given), attitudes(given), look)
     return head_about("plot", given, Status.CONVERGED), (own.title if own else "") or spec.title, pictures

@@ -12,9 +12,9 @@ from satsym.spec import Variable, names
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.chain import Assignment, jacobians, parts_of
 from satsym.symbolic.derivation import Derivation, resolved
-from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.motion.central_force import inertial_state, strength_of
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of

@@ -19,8 +19,8 @@ from satsym.kernels.digest import sealed
 from satsym.spec import PRODUCT, Condition, InteriorPoint, PathConstraint, ProblemSpec, Variable, names
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.functions.roots import Argmin, Root, Vertex
-from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
+from satsym.symbolic.motion.central_force import strength_of
 from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.path import mixed_constraints
 from satsym.symbolic.switching.curve import states_of

@@ -88,7 +88,7 @@ class Analysis(_Said):
     @cached_property
     def attitudes(self) -> Attitudes | None:
         """All equilibria, of a model that is one attitude in orbit."""
-        from satsym.report.results.equilibria import attitudes
+        from satsym.report.results.linear import attitudes
 
         return attitudes(self.given, self.derivation.derived if self.derivation else None)
 

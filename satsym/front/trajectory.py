@@ -1,4 +1,4 @@
-"""Simulated motions as users meet them."""
+"""Simulated motions as users meet them, and motions for other programs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from satsym.front import html
 from satsym.front.calls import in_one_line, single_threaded
 from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
+from satsym.front.solution import Solution
+from satsym.report.results.files import write_text
 from satsym.report.results.objects import simulation_object
 from satsym.report.terminal.solution import simulation_text
 from satsym.solution import Invariant, Simulation
@@ -78,3 +80,41 @@ def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Tr
 
     case = as_case(instance)
     return Trajectory(case, simulated(case.case, feedback))
+
+
+@in_one_line
+def export(result: Solution | Trajectory, kind: str, path: str | Path | None = None) -> str:
+    """A motion about a central body as other programs read it.
+
+    Parameters
+    ----------
+    result
+        Of an instance with a table [orbit].
+    kind
+        ``"oem"`` (orbit ephemeris message of CCSDS), ``"czml"`` (Cesium), ``"stk"`` (ephemeris of STK) or ``"csv"``.
+    path
+        Also write it there; a file of this name is replaced.
+
+    Returns
+    -------
+    str
+        The text of the file.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be placed in the sky, or the library that writes the format is not installed: with one line that
+        says what, where and what to do.
+
+    Examples
+    --------
+    ::
+
+        satsym.export(satsym.solve("return-to-geo"), "oem", "geo.oem")
+    """
+    from satsym.report.exchange import exported
+
+    text = exported(result.found, kind)
+    if path is not None:
+        write_text(Path(path), text)
+    return text

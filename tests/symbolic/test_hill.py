@@ -11,9 +11,9 @@ from satsym import kernels
 from satsym.symbolic import Derivation, loader, symbols_of, t
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis import analyse
-from satsym.symbolic.kepler import central_force
 from satsym.symbolic.linear.matrices import system_of
 from satsym.symbolic.lookup import library
+from satsym.symbolic.motion import central_force
 
 (HILL,) = loader.load(loader.find("hill"))
 (PLANE,) = loader.load(loader.find("clohessy_wiltshire"))

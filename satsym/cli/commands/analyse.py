@@ -44,7 +44,7 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
     orbit: all equilibria, counted exactly, and how their number and stability change with the momentum of the wheel.
     """
     from satsym.analysis.subject import examined, find
-    from satsym.report.results.equilibria import attitudes
+    from satsym.report.results.linear import attitudes
     from satsym.report.results.orbit import examination_object
     from satsym.report.terminal.solution import with_files
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.analysis.orbits.elements import TOLERANCE
 from satsym.report.display import length_unit, time_unit
 from satsym.report.results.certificate import plain
-from satsym.report.results.equilibria import attitudes_object
-from satsym.report.results.linear import analysis_object, eigenvalue_object, exact
+from satsym.report.results.linear import analysis_object, attitudes_object, eigenvalue_object, exact
 from satsym.report.results.objects import head_about
 from satsym.status import Status
 

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from satsym.analysis.linear.spectrum import UNSTABLE, shown
-from satsym.report.results.equilibria import axis
-from satsym.report.results.linear import omitted_because
+from satsym.report.results.linear import axis, omitted_because
 from satsym.report.results.objects import COST, of_regulator, time_unit
 from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.table import figure, joined, table, wrapped

@@ -14,11 +14,9 @@ from satsym.symbolic.algebra import constants_of, simplified, tidy, total_deriva
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
-from satsym.symbolic.kepler import central_force, points
-from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
-from satsym.symbolic.motion import geometry
+from satsym.symbolic.motion import central_force, geometry, points_of_orbits
 from satsym.symbolic.motion import steps as motion
 from satsym.wording import unlike
 
@@ -45,11 +43,11 @@ class Newton(Particle):
             central_force.central_force,
             motion.reference,
             motion.conserved,
-            points.conic,
+            points_of_orbits.conic,
             motion.linearisation,
             central_force.gravity_gradient,
-            point_steps.no_equilibrium,
-            point_steps.point_spectrum,
+            points_of_orbits.no_equilibrium,
+            points_of_orbits.point_spectrum,
         )
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:

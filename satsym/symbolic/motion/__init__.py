@@ -1,1 +1,1 @@
-"""What follows from a motion whatever its kind: the reference, conserved quantities, outputs."""
+"""What follows from a motion: the reference, conserved quantities, outputs; and where a fixed centre attracts."""

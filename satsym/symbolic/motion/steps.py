@@ -11,8 +11,8 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, gradient, simplified, simplify, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kepler.central_force import inertial_velocity, uncontrolled_force
 from satsym.symbolic.model import Particle, symbols_of, t
+from satsym.symbolic.motion.central_force import inertial_velocity, uncontrolled_force
 
 _PLANES = {
     2: {n.ANGULAR_MOMENTUM.name: (0, 1)},

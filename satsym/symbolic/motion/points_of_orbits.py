@@ -18,10 +18,10 @@ from satsym.symbolic.analysis.field import sign_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.checks import Check, Point, compare, identity, numeric
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
-from satsym.symbolic.kepler.central_force import inertial_accelerations, inertial_velocity, jacobian_blocks, strength_of
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.matrices import numeric_matrix, numeric_rank
 from satsym.symbolic.model import Particle, symbols_of, variables_of
+from satsym.symbolic.motion.central_force import inertial_accelerations, inertial_velocity, jacobian_blocks, strength_of
 
 
 def conic(so_far: Derivation) -> Step | None:

@@ -1,1 +1,0 @@
-"""What follows where a fixed centre attracts: conics, the gradient of gravity, points of an orbit."""
