@@ -32,6 +32,9 @@ RELAXED = 20_000
 COMPARED = 2_000_000
 """Unknowns times iterations that a search for a cheaper answer may take."""
 
+LITTLE = 200_000
+"""Columns that may be linearised, below which a problem with a free final time is not searched for."""
+
 CHEAPER = 1e-6
 """Share of its size, or of that of its terms, by which something must be cheaper to be taken."""
 
@@ -115,15 +118,18 @@ def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solut
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
     """What a solver finds from a line or a guess; else what the search finds, unless little work is asked for.
 
+    Where the final time is free there is no line, and the search is all there is.
+
     An extremal that is not accurate enough stays what was found where the search has no answer.
     """
     began, deadline = time.perf_counter(), deadline_of(instance)
     found = solver(instance, progress)
-    if found.status is not Status.NOT_CONVERGED or math.isfinite(instance.work):
+    little = instance.work < (LITTLE if instance.tf is None else math.inf)
+    if found.status is not Status.NOT_CONVERGED or little:
         return found
     left = hurried(instance, deadline)
     if left is None:
-        return replace(found, status=Status.TIME_LIMIT)
+        return replace(found, status=Status.TIME_LIMIT, message="time was up before an extremal was found")
     again = solving.solve(left, progress)
     if again.status in (Status.NOT_CONVERGED, Status.TIME_LIMIT) and np.isfinite(found.x).all():
         return found

@@ -103,7 +103,7 @@ def test_turns_of_angles_and_path_constraints_are_not_covered():
     case = found.instance
     turning = replace(case, solver=structs.replace(case.solver, free_angles=(case.model.spec.state_names[0],)))
     assert with_scope(found.certificate, replace(found, instance=turning)).scope is Scope.LOCAL
-    constrained = solve(instance.load("obstacle")).certificate
+    constrained = solve(instance.load("bryson-denham")).certificate
     assert constrained is not None
     assert constrained.scope is Scope.LOCAL
 

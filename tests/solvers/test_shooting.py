@@ -197,7 +197,7 @@ def test_what_cannot_be_done_is_never_called_converged():
 @pytest.mark.parametrize("name", ["return-to-orbit", "ends-2-given-state"])
 def test_the_time_limit_is_kept(name: str):
     began = time.thread_time()
-    found = shooting.solve(options(instance.load(name), max_seconds=1e-3))
+    found = by_search.shooting(options(instance.load(name), max_seconds=1e-3))
     assert time.thread_time() - began < 2.0
     assert found.status is Status.TIME_LIMIT
 

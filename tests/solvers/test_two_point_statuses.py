@@ -85,6 +85,7 @@ def test_a_guess_is_where_the_way_begins(guess: Guess) -> None:
     assert found.objective == pytest.approx(COST, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_weights_next_to_nothing_leave_no_warnings() -> None:
     found = solve.solve(with_parameters(RETURN, c1=1e-300, c2=1e-300))
     assert found.objective == pytest.approx(1e-300 * COST, rel=1e-10)

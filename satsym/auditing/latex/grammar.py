@@ -15,10 +15,10 @@ from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, of_word
 from satsym.auditing.latex.names import capitals, refuse_spelled_name, with_names
-from satsym.auditing.latex.operators import OperatorCursor
+from satsym.auditing.latex.refusals import RefusalCursor, product_of
 from satsym.auditing.latex.rows import lines, without_remarks
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import ACCENTS, ATOMS, FREQUENCIES, FUNCTIONS, KEPT_GROUPS, MARKS
+from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
 from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
 from satsym.wording import printable
@@ -63,7 +63,7 @@ def read(
     return reading
 
 
-class Parser(OperatorCursor):
+class Parser(RefusalCursor):
     """Reads one side of an equation."""
 
     def whole(self) -> Node:
@@ -125,7 +125,7 @@ class Parser(OperatorCursor):
                     raise Unread("a unit behind a slash is not read", unit.at)
                 if unit is not None and not self._plain and self._may_be_divided_by(unit, chain, divisor):
                     raise Unread("what a slash divides by is not clear without brackets", token.at)
-                chain = [Div(_times(chain), divisor)]
+                chain = [Div(product_of(chain), divisor)]
             elif argument and not self._continues_argument(token, chain[-1]):
                 break
             elif self._begins_factor(token):
@@ -133,53 +133,7 @@ class Parser(OperatorCursor):
                 chain.append(self._factor())
             else:
                 break
-        return _times(chain)
-
-    def _continues_argument(self, token: Token, last: Node) -> bool:
-        r"""Whether what a function is taken of goes on: ``2\theta``, ``\omega t``, ``kx``; not ``\theta v``."""
-        if token.kind not in ("letter", "word", "macro") or (token.kind == "macro" and token.text not in GREEK):
-            return isinstance(last, Num) and token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS)
-        if self._is_function(token) or (token.text == "e" and self._is("^", 1)):
-            return False
-        if isinstance(last, Num) or last == Sym("pi"):
-            return True
-        stem = self._reading.letters[last.name].base if isinstance(last, Sym) else ""
-        time = token.text in words.TIMES_OF_ANGLES
-        if self._plain:
-            return time or (stem in FREQUENCIES and token.text in words.PLACES)
-        if (time and stem not in words.ANGLES) or (stem in FREQUENCIES and token.text in words.PLACES):
-            return True
-        if time or (len(stem) == 1) or (stem in GREEK and token.text in GREEK):
-            raise Unread("where what a function is taken of ends is not clear without brackets", token.at)
-        return False
-
-    def _may_be_divided_by(self, token: Token, above: Sequence[Node], divisor: Node) -> bool:
-        """Whether what follows could stand below the slash, too: in ``a/bc``, not in ``1/2 mv`` or before vectors."""
-        if not self._begins_factor(token) or token.text in words.STYLES or token.text in MARKS:
-            return False
-        number = constant(divisor) is not None
-        return not (number and (token.text in "([" or constant(_times(above)) is not None))
-
-    def _refuse_behind(self, last: Node, token: Token) -> None:
-        """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
-        if self._plain:
-            return
-        before, after = self._found[self._i - 1], self._peek(1)
-        if token.text in words.UPRIGHT:
-            said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
-            if said in words.UNITS and (plain or constant(last) is not None):
-                raise Unread("a unit is not read", token.at)
-            if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
-                raise Unread("words between formulas are not read", token.at)
-        if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
-            power = self._peek(2) if after is not None and after.text in "+-" else after
-            if power is not None and power.kind == "number" and power.at <= token.at + 2:
-                raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
-        letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
-        if letter is not None and token.text in ("[", "{") and token.kind in ("sign", "macro"):
-            alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
-            if letter.style == "cal" or alone:
-                raise Unread("what something is taken of, in such brackets, is not read", token.at)
+        return product_of(chain)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
@@ -189,9 +143,9 @@ class Parser(OperatorCursor):
             if token is None or not self._begins_factor(token):
                 if product == "cross":
                     raise Unread("a product of a vector and what is none", sign.at)
-                return _times([left, *right])
+                return product_of([left, *right])
             right.append(self._factor())
-        return Call(product, (left, _times(right)))
+        return Call(product, (left, product_of(right)))
 
     def _is_vector(self, node: Node) -> bool:
         """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
@@ -339,25 +293,6 @@ class Parser(OperatorCursor):
             return self._symbol(replace(letter, marks=(*letter.marks, f"in_{frame}")), self._start)
         return tree
 
-    def _spells(self, word: str) -> bool:
-        """Whether letters side by side, the first of which was taken, are a word; then it is taken."""
-        begin = self._i - 1
-        part = self._found[begin : begin + len(word)]
-        if [token.text for token in part] != list(word) or part[-1].at - part[0].at != len(word) - 1:
-            return False
-        self._i = begin + len(word)
-        return True
-
-    def _refuse_spelled_function(self, token: Token) -> None:
-        """Refuse letters that are the name of a function without its backslash."""
-        if self._plain:
-            return
-        begin = self._i
-        for word in words.SPELLED:
-            if self._spells(word):
-                self._i = begin
-                raise Unread(f"{word} without a backslash; write \\{word}, or put spaces between letters", token.at)
-
     def _macro(self, token: Token) -> Node:
         name = token.text
         if name in words.ROOTS:
@@ -414,28 +349,6 @@ class Parser(OperatorCursor):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
 
-    def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
-        """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
-        if len(above) < 2 or self._plain or above[1].text in ("^", "_"):
-            return
-        if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
-            raise Unread("a derivative of this kind is not read", at)
-        if above[0].text == "d" and (above[1].kind == "letter" or above[1].text in GREEK):
-            raise Unread("a differential is not read", above[0].at)
-
-    def _refuse_word(self, macro: str, word: str, at: int) -> None:
-        """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
-        behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
-        taken = behind is not None and self._begins_factor(behind)
-        places = [t.at for t in self._peek_group() if t.kind == "letter"]
-        parted = macro.startswith(("text", "mbox")) and any(b > a + 1 for a, b in pairwise(places))
-        if word.lower() in words.SAID or parted:
-            raise Unread("words between formulas are not read", at)
-        if word == "d" and taken:
-            raise Unread("a differential is not read", at)
-        if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
-            raise Unread(f"the function {printable(word)} is not known", at)
-
     def _braces(self, token: Token) -> Node:
         """What stands in printed braces."""
         begin, depth = self._i, 1
@@ -485,12 +398,3 @@ class Parser(OperatorCursor):
             letter = dotted
         self._timed()
         return self._symbol(letter, token.at)
-
-
-def _times(factors: Sequence[Node]) -> Node:
-    """A product, written as it is; a sign in front of the first factor is one of the product."""
-    if len(factors) == 1:
-        return factors[0]
-    if isinstance(factors[0], Neg):
-        return Neg(_times([factors[0].operand, *factors[1:]]))
-    return Mul(tuple(factors))

@@ -7,11 +7,11 @@ import shutil
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from satsym.auditing import Judged, Ledger
 from satsym.auditing.causes import SILENT, Finding
 from satsym.auditing.check.answers import Answer
-from satsym.auditing.document.drafting import Draft
 from satsym.auditing.ledger.coverage import KINDS, Coverage
 from satsym.auditing.sentences import in_indonesian
 from satsym.report.findings.review import (
@@ -29,6 +29,9 @@ from satsym.report.said import language, message, say
 from satsym.report.terminal.table import table
 from satsym.report.texts import Texts, load
 from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.auditing.document.drafting import Draft
 
 WIDTH = 100
 _NARROWEST = 40

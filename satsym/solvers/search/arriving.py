@@ -18,16 +18,13 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of, wanted
 from satsym.solvers.search.starts import Plan
-from satsym.solvers.search.transcription import DEGREE, FREE, Function, Places
+from satsym.solvers.search.transcription import FREE, Function
 
 ARRIVED = 1e-4
 """Relative miss that the mesh and the minimisation may leave of none."""
 
 ITERATIONS = 120
 """Iterations of the interior-point code; where more are needed, hardly any number is enough."""
-
-EFFORT = 1e-6
-"""Weight of the mean squared controls, in units of their sizes, beside the squared miss: many do equally well else."""
 
 
 class Missing(Programme):
@@ -79,34 +76,21 @@ class Missing(Programme):
     def _half(self, y: Array) -> Array:
         return np.asarray((self.missed(y) ** 2).sum(axis=0)[None] / 2.0)
 
-    @cached_property
-    def _efforts(self) -> tuple[Places, Array]:
-        """Places of the variables among the unknowns, and weights of their halved squares."""
-        places = np.arange(self.first_variable, self.first_duration)
-        shares = self.weights * np.repeat(self.fractions, DEGREE)
-        return places, EFFORT * np.repeat(shares, self.controls.count)
-
     def objective(self, w: Array) -> float:
-        """Half the squared miss, and next to nothing of the controls."""
-        places, weights = self._efforts
-        return float(self._half(self._at(w, [self.count]))[0, 0] + weights @ w[places] ** 2 / 2.0)
+        """Half the squared miss."""
+        return float(self._half(self._at(w, [self.count]))[0, 0])
 
     def gradient(self, w: Array) -> Array:
         """Of :meth:`objective`."""
         into, places = self._end_into(self.count)
         found = np.zeros(self.unknowns)
         np.add.at(found, places, self.points.slopes(self._half, self._at(w, [self.count]))[0, :, 0] @ into)
-        own, weights = self._efforts
-        found[own] += weights * w[own]
         return found
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
         """Entries of the second derivatives of the Lagrangian."""
         self.factor = factor
-        found = super().hessian(w, multipliers, 0.0)
-        places, weights = self._efforts
-        found[np.searchsorted(self._hessian_keys, places * (self.unknowns + 1))] += factor * weights
-        return found
+        return super().hessian(w, multipliers, 0.0)
 
     def _weighed(self, multipliers: Array, factor: float) -> list[tuple[Function, int, Array]]:
         _, *rows = super()._weighed(multipliers, factor)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
@@ -28,6 +29,9 @@ STARTS = 48
 ITERATIONS = 300
 """Iterations of the interior-point code for a start."""
 
+PRICED = 3
+"""Starts from which what a given duration costs is looked for: hardly any matter where it can be reached at all."""
+
 EDGE = 1e-2
 """By what share a free duration may be off the longest or the shortest that is looked at, to be taken for that."""
 
@@ -36,9 +40,6 @@ INTERVALS, FEWEST = 40, 8
 
 FIRST_SMOOTHINGS = (1e-1, 1e-2, 1e-3)
 """Smoothings of norms on the coarse mesh: fuel alone decides little between bounds, and effort much."""
-
-NEARLY = 1.5
-"""Largest controls of a motion without bounds, relative to these, from which one within them is looked for."""
 
 SIMILAR = 1e-4
 """Relative difference of costs on a coarse mesh that may be of one motion."""
@@ -101,12 +102,6 @@ def _less_smoothed(
         if not arrived(found):
             return replace(found, solved=False)
         start = starts.carried(programme, found.programme, found.unknown)
-    if plan.loosened and (endless := programmes[0].controls.loosened) is not None:
-        loose = nlp.solve(replace(programmes[0], controls=endless, kinds={}), start, limits, most)
-        _, v, *_ = loose.programme.unpacked(loose.unknown)
-        if not loose.solved or programmes[0].controls.excess(v) > NEARLY:
-            return replace(loose, solved=False)
-        start = loose.unknown
     first = found = nlp.solve(
         programmes[0], start, limits, most, near=plan.timed or plan.arriving or plan.at_bound is not None
     )
@@ -133,7 +128,7 @@ class Priced:
 
 
 def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float]) -> list[Priced]:
-    """Durations and what motions cost that last as long, those that are solved.
+    """What motions cost that last so long; none where one of these durations is not solved after a few starts.
 
     Parameters
     ----------
@@ -147,8 +142,11 @@ def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float
         first, found = first_duration(instance, controls), list[Priced]()
     for share in shares:
         given = replace(instance, tf=instance.t0 + share * first, tf_guess=None)
-        one = next((one for _, one in started(given, limits, "") if one.solved), None)
-        found += [] if one is None else [Priced(share * first, one.objective, one.programme.sizes.cost)]
+        tries = islice(started(given, limits, ""), PRICED)
+        one = next((one for _, one in tries if one.solved), None)
+        if one is None:
+            return []
+        found.append(Priced(share * first, one.objective, one.programme.sizes.cost))
     return found
 
 

@@ -36,14 +36,16 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     if limits.late:
         return Status.TIME_LIMIT, "time was up before an extremal was found"
     message, limits = NOT_FOUND, replace(limits, meter=Meter())
+    if instance.tf is None:
+        message += f"; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
     if instance.tf is not None and (separated := tried(partial(unreachable, instance, limits))):
         return Status.INFEASIBLE, separated
     if stated_constraints(instance.model.spec):
         against = tried(partial(contradiction, instance, limits))
         if against:
             return Status.INFEASIBLE, against
-    if instance.tf is None:
-        return _endless(instance, limits) or _unsettled(instance, message)
+    if instance.tf is None and (endless := _endless(instance, limits)):
+        return endless
     if reason := _undecided(instance, limits):
         return Status.NOT_CONVERGED, reason
     if compared := [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]:
@@ -62,12 +64,12 @@ def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
     """Why no duration is the cheapest; ``None`` where costs at some durations do not show that."""
     longer, shorter = (coarse.costs_by_duration(instance, limits, shares) for shares in (LONGER, SHORTER))
     both = longer + shorter
-    if len(both) == len(LONGER + SHORTER) and not any(_clearly_less(a, b) for a in both for b in both):
+    if longer and shorter and not any(_clearly_less(a, b) for a in both for b in both):
         return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix it"
-    if len(longer) == len(LONGER) and all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
+    if longer and all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
         advice = "put a weight on time, or fix the final time"
         return Status.NO_MINIMISER, f"longer is always cheaper: {_listed(longer)}; {advice}"
-    if len(shorter) == len(SHORTER) and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
+    if shorter and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
         advice = "give time a smaller weight, constrain the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_listed(shorter)}; {advice}"
     return None
@@ -84,10 +86,6 @@ def _listed(tried: list[coarse.Priced]) -> str:
         for row in zip(*((one.cost, one.duration) for one in tried), strict=True)
     )
     return f"cost {costs} at durations {durations}"
-
-
-def _unsettled(instance: Instance, message: str) -> tuple[Status, str]:
-    return Status.NOT_CONVERGED, f"{message}; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
 
 
 def _undecided(instance: Instance, limits: Limits) -> str:

@@ -38,9 +38,6 @@ MORE, WIDER = 24, (0.3, 1.0, 3.0)
 LOOKS = 5
 """Drawn points at which it is looked whether anything but time costs."""
 
-FIRST, LOOSENED = 7, 20
-"""Starts within the bounds of controls before those that begin without these, and how many of the latter there are."""
-
 NEXT_TO_BOUND = 0.96
 """Share of their ranges at which controls are held next to their bounds."""
 
@@ -69,9 +66,6 @@ class Plan:
         How far states and controls are bent, as a share of their sizes, and by which random numbers.
     arriving
         Whether a motion that arrives is found first, whatever it costs, from one that obeys its equations.
-    loosened
-        Whether the motion without bounds of controls is solved for first, as weak controls arrive only in time with a
-        swing.
     turns
         How often the motion goes round the origin; ``None`` for a straight line.
     coasting
@@ -93,7 +87,6 @@ class Plan:
     noise: float = 0.0
     seed: int = 0
     arriving: bool = False
-    loosened: bool = False
     turns: int | None = None
     coasting: bool = False
     turned: float | None = None
@@ -138,10 +131,6 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if np.isnan(end).all() and len(_ranged(controls)):
         found[1:1] = [Plan(at_bound=share) for share in (NEXT_TO_BOUND, -NEXT_TO_BOUND)]
     found[1:1] = [Plan(parts=parts) for parts in _parts(len(instance.model.spec.interior) + 1)]
-    if given and not instance.model.spec.switching and controls.loosened is not None:
-        found[FIRST:FIRST] = [
-            Plan(noise=WIDER[seed % len(WIDER)], seed=seed, loosened=True) for seed in range(LOOSENED)
-        ]
     if np.isfinite(end).any():
         found[1:1] = [Plan(arriving=True), Plan(arriving=True, noise=0.3, seed=2)]
     if controls.angles:
