@@ -180,13 +180,8 @@ def others(
             came, answer = _followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
-        alone = (
-            len(seen) == 1
-            and solved > 1
-            and plan.turns is None
-            and not plan.timed
-            and limits.meter.spent - begun > probe
-        )
+        further = plan.turns is not None or plan.timed  # other ways and durations are asked whatever the first come to
+        alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
         parted = parted or bool(plan.drawn)
         enough = (PATIENCE if parted else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
         if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:

@@ -104,8 +104,9 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         drawn += [(WIDER[seed % len(WIDER)], seed) for seed in range(6, 6 + MORE)]
         found = [Plan(), *(Plan(noise=noise, seed=seed) for noise, seed in drawn)]
     else:
-        found = [Plan(), *(Plan(scale=scale, timed=True) for scale in DURATIONS if not _time_alone(instance, duration))]
-        found += [Plan(scale=scale) for scale in (2.5, 0.6, 6.0)]
+        found = [Plan()]
+        found += [Plan(scale=scale, timed=True) for scale in DURATIONS if not _time_alone(instance, duration)]
+        found += [Plan(scale=scale) for scale in (0.6, 6.0)]
         found += [
             Plan(noise=noise, seed=seed, scale=scale)
             for noise, seed, scale in ((0.1, 1, 1.5), (0.3, 2, 2.0), (0.3, 3, 4.0))
@@ -135,6 +136,8 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found[1:1] = [Plan(arriving=True), Plan(arriving=True, noise=0.3, seed=2)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
+    if not given:
+        found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
 
 
