@@ -29,6 +29,10 @@ STARTS = 48
 ITERATIONS = 300
 """Iterations of the interior-point code for a start."""
 
+WEAK, NEARLY = 7, 1.5
+"""Starts after which those come that begin without bounds of controls, and the largest controls of such a motion,
+relative to their bounds, from which one within these is looked for."""
+
 PRICED = 3
 """Starts from which what a given duration costs is looked for: hardly any matter where it can be reached at all."""
 
@@ -51,8 +55,15 @@ def started(
     loose: str,
     most: int = ITERATIONS,
     way: tuple[Array, Array] | None = None,
+    weak: bool = False,
 ) -> Iterator[tuple[Plan, Found]]:
-    """What starts come to on a coarse mesh, which is even unless the way of a motion is known."""
+    """What starts come to on a coarse mesh, which is even unless the way of a motion is known.
+
+    Parameters
+    ----------
+    weak
+        Whether some begin without bounds of controls.
+    """
     controls = controls_of(instance)
     if controls is None:
         return
@@ -64,6 +75,7 @@ def started(
         duration = first_duration(instance, controls)
         sizes = sizes_of(instance, controls, duration)
         plans = starts.plans(instance, controls, duration)[:STARTS]
+        plans[WEAK:WEAK] = starts.weak(instance, controls) if weak else []
     normed = any(norm.spot is not None for norm in controls.norms)
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
@@ -102,6 +114,12 @@ def _less_smoothed(
         if not arrived(found):
             return replace(found, solved=False)
         start = starts.carried(programme, found.programme, found.unknown)
+    if plan.loosened and (endless := programmes[0].controls.loosened) is not None:
+        free = nlp.solve(replace(programmes[0], controls=endless, kinds={}), start, limits, most)
+        _, v, *_ = free.programme.unpacked(free.unknown)
+        if not free.solved or programmes[0].controls.excess(v) > NEARLY:
+            return replace(free, solved=False)
+        start = free.unknown
     first = found = nlp.solve(
         programmes[0], start, limits, most, near=plan.timed or plan.arriving or plan.at_bound is not None
     )

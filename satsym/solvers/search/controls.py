@@ -9,7 +9,7 @@ gained.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -82,6 +82,24 @@ class Controls:
     def count(self) -> int:
         """How many variables there are."""
         return len(self.lower)
+
+    @property
+    def loosened(self) -> Controls | None:
+        """The same without bounds; ``None`` where there are none, or where only they keep the cost from falling."""
+        if self.lifts or self.angles or any(norm.spot is not None for norm in self.norms):
+            return None
+        bounded = bool(self.norms) or bool(np.isfinite(self.lower).any() or np.isfinite(self.upper).any())
+        endless = np.full(self.count, np.inf)
+        return replace(self, lower=-endless, upper=endless, norms=()) if bounded else None
+
+    def excess(self, v: Array) -> float:
+        """The largest of variables (count, M), relative to their bounds: above one outside them."""
+        found = [0.0]
+        for row, low, high in zip(v, self.lower, self.upper, strict=True):
+            middle, half = 0.5 * (low + high), 0.5 * (high - low)
+            found += [float(np.abs(row - middle).max() / half)] if 0.0 < half < np.inf else []
+        found += [float(np.linalg.norm(v[list(one.places)], axis=0).max() / one.outer) for one in self.norms]
+        return max(found)
 
     @property
     def linear(self) -> set[int]:

@@ -113,7 +113,7 @@ def searched(
     """
     costs: list[float] = []
     failing, failed, endless = CONVEX if convex(instance) else FAILING, 0, 0
-    for number, (_, found) in enumerate(started(instance, limits, loose)):
+    for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
         if found.solved and at_edge(found):
             endless += 1
             if endless >= ENDLESS:
@@ -125,7 +125,7 @@ def searched(
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
-        failed = 0 if costs else failed + 1
+        failed = 0 if costs else failed + (not plan.loosened)
         if len(costs) >= TRIED or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():

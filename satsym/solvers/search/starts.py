@@ -38,6 +38,9 @@ MORE, WIDER = 24, (0.3, 1.0, 3.0)
 LOOKS = 5
 """Drawn points at which it is looked whether anything but time costs."""
 
+LOOSENED = 20
+"""Starts that begin without bounds of controls."""
+
 NEXT_TO_BOUND = 0.96
 """Share of their ranges at which controls are held next to their bounds."""
 
@@ -66,6 +69,9 @@ class Plan:
         How far states and controls are bent, as a share of their sizes, and by which random numbers.
     arriving
         Whether a motion that arrives is found first, whatever it costs, from one that obeys its equations.
+    loosened
+        Whether the motion without bounds of controls is solved for first, as weak controls arrive only in time with a
+        swing.
     turns
         How often the motion goes round the origin; ``None`` for a straight line.
     coasting
@@ -87,6 +93,7 @@ class Plan:
     noise: float = 0.0
     seed: int = 0
     arriving: bool = False
+    loosened: bool = False
     turns: int | None = None
     coasting: bool = False
     turned: float | None = None
@@ -139,6 +146,13 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if not given:
         found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
+
+
+def weak(instance: Instance, controls: Controls) -> list[Plan]:
+    """Further starts where controls may be hardly strong enough; none where they have no bounds."""
+    if instance.tf is None or instance.model.spec.switching or controls.loosened is None:
+        return []
+    return [Plan(noise=WIDER[seed % len(WIDER)], seed=seed, loosened=True) for seed in range(LOOSENED)]
 
 
 def _time_alone(instance: Instance, duration: float) -> bool:
