@@ -44,8 +44,8 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
         against = tried(partial(contradiction, instance, limits))
         if against:
             return Status.INFEASIBLE, against
-    if instance.tf is None and (endless := _endless(instance, limits)):
-        return endless
+    if instance.tf is None:  # of ends that are out of reach nothing is said: another duration may reach them
+        return _endless(instance, limits) or (Status.NOT_CONVERGED, message)
     if reason := _undecided(instance, limits):
         return Status.NOT_CONVERGED, reason
     if compared := [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]:
