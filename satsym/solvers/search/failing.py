@@ -26,13 +26,22 @@ BETWEEN, LASTING = 0.05, 0.35
 LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
 """Multiples of the first guess of a free duration at which costs are looked at where no extremal is found."""
 
+FAR_OFF = 0.1
+"""Relative miss of an end above which hardly any other start arrives."""
+
 ENDLESS, EVEN = 1e-2, 1e-7
 """By what share of it the cost falls from each duration to a longer one where nothing keeps that from growing, and the
 share of it, or of the unit of costs, by which costs differ at least that are not one."""
 
 
-def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
-    """The status of an instance of which no start leads to an extremal, and a message."""
+def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status, str]:
+    """The status of an instance of which no start leads to an extremal, and a message.
+
+    Parameters
+    ----------
+    early
+        Whether other starts are left: then only an end that is missed by far counts as out of reach.
+    """
     if limits.late:
         return Status.TIME_LIMIT, "time was up before an extremal was found"
     message, limits = NOT_FOUND, replace(limits, meter=Meter())
@@ -55,7 +64,7 @@ def why(instance: Instance, limits: Limits) -> tuple[Status, str]:
     near = tried(partial(nearest, instance, limits))
     if near is None or near.arrives or limits.expired:
         return Status.NOT_CONVERGED, message
-    if near.undecided:
+    if near.undecided or (early and near.distance <= FAR_OFF):
         return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls may reach it"
     return Status.INFEASIBLE, f"{near.message}; {message}"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -59,9 +59,10 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 
 def exact_arcs(instance: Instance, limits: Limits) -> Exact | None:
     """The extremal of exact arcs of controls that switch to which the first start leads that leads to one."""
-    why = _asked_once(instance, limits)
     within = replace(limits, work=WORK, meter=Meter())
-    return order.searched(instance, within, partial(levels.arcs, instance), hopeless=lambda: why()[0] in CONCLUSIVE)
+    return order.searched(
+        instance, within, partial(levels.arcs, instance), hopeless=partial(_hopeless, instance, limits)
+    )
 
 
 def course(instance: Instance, limits: Limits) -> Course | None:
@@ -70,27 +71,14 @@ def course(instance: Instance, limits: Limits) -> Course | None:
     return None if at is None else Course(at.times, np.concatenate([at.x, at.lam]))
 
 
-def _asked_once(instance: Instance, limits: Limits) -> Callable[[], tuple[Status, str]]:
-    """Why an instance has no answer, worked out when it is asked for the first time."""
-    return cache(partial(failing.why, instance, limits))
+def _hopeless(instance: Instance, limits: Limits) -> bool:
+    """Whether no start will lead to an extremal, as is asked after a few that did not."""
+    return failing.why(instance, limits, early=True)[0] in CONCLUSIVE
 
 
-def searched(
-    instance: Instance, limits: Limits, why: Callable[[], tuple[Status, str]] | None = None
-) -> Solution | None:
-    """What the search finds, without a final state that follows from the others.
-
-    Parameters
-    ----------
-    why
-        Tells why there is no answer, if it does: asked after a few starts that come to nothing.
-    """
-    asked = why or _asked_once(instance, limits)
-
-    def hopeless() -> bool:
-        return asked()[0] in CONCLUSIVE
-
-    less = redundant(instance)
+def searched(instance: Instance, limits: Limits) -> Solution | None:
+    """What the search finds, without a final state that follows from the others."""
+    less, hopeless = redundant(instance), partial(_hopeless, instance, limits)
     if less is None:
         return order.searched(instance, limits, partial(exact, instance), hopeless=hopeless)
     found = order.searched(instance, limits, partial(_met, less), less.state, hopeless)
@@ -147,12 +135,11 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     began = time.perf_counter()
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)
-    why = _asked_once(instance, limits)
-    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits, why)
+    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
     if found is not None:
         limits.tell(found.objective, history[-1].residual if history else math.nan)
         return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
-    status, message = why()
+    status, message = failing.why(instance, limits)
     nothing = unsolved(instance, automatic(instance.model.spec).name, 0.0)
     wall_s = time.perf_counter() - began
     return replace(nothing, status=status, message=message, history=tuple(history), wall_s=wall_s)
