@@ -159,10 +159,14 @@ def others(
     seen: list[tuple[float, float]] = []  # on the coarse mesh, and what each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0, 0, limits.meter.spent
+    spent = begun
     parted = bool(instance.model.spec.path_constraints)
     probe = AROUND if parted else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
-        quiet, solved = quiet + 1, solved + found.solved
+        if plan.arriving:  # these are further starts, not in place of others
+            begun += limits.meter.spent - spent
+        else:
+            quiet, solved = quiet + 1, solved + found.solved
         if not found.solved:
             yield Tried(plan, float("nan"))
         elif abs(found.objective - cost) <= hidden:
@@ -180,7 +184,9 @@ def others(
             came, answer = _followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
-        further = plan.turns is not None or plan.timed  # other ways and durations are asked whatever the first come to
+        spent = limits.meter.spent
+        # other ways and durations are asked, whatever the first starts come to
+        further = plan.turns is not None or plan.timed or plan.arriving
         alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
         parted = parted or bool(plan.drawn)
         enough = (PATIENCE if parted else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
