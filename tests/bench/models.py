@@ -141,6 +141,9 @@ def _alone(seed: int, planted: int, end: int) -> None:
         raise TimeUp
 
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    # a library that never comes back to Python hears no signal; the system ends it then
+    most = int(SECONDS + 2.0 * LONGER)
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most))
     signal.signal(signal.SIGPROF, over)
     signal.setitimer(signal.ITIMER_PROF, SECONDS + LONGER, 1.0)
     try:

@@ -26,17 +26,29 @@ _OPPOSITE: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.In: ast.NotIn, ast.NotIn: ast.In,
 }  # fmt: skip
 # put in place of others: always the same, whatever is shipped some day
-_MODELS = ("clohessy_wiltshire", "double_integrator_energy")
+_MODELS = ("clohessy_wiltshire", "double_integrator_energy", "polar_orbit", "roll_yaw_manoeuvre")
 _INSTANCES = ("double-integrator-energy", "soft-return")
 DOCUMENTS = tuple(path.name for path in auditing.shipped())
 
 
 @dataclass(frozen=True)
 class Changed:
-    """A proposition with one leaf changed; ``kind`` is what was changed, ``text`` what it says now."""
+    """A proposition with one leaf changed.
+
+    Attributes
+    ----------
+    kind
+        What was changed.
+    text
+        What it says now.
+    others
+        What it says with other replacements of the same leaf. A claim that no model but one makes false depends on the
+        model, although most replacements leave it true.
+    """
 
     kind: str
     text: str
+    others: tuple[str, ...] = ()
 
 
 @cache
@@ -59,9 +71,13 @@ def judged(document: str, row: Row, text: str) -> Answer:
 
 
 def changes(text: str) -> Iterator[Changed]:
-    """All propositions with one leaf changed."""
+    """All propositions with one leaf changed; a model is changed wherever the proposition names it, as one slip."""
     tree = ast.parse(" ".join(text.split()), mode="eval")
     nodes = list(ast.walk(tree))
+    texts = dict.fromkeys(node.value for node in nodes if isinstance(node, ast.Constant))
+    for model in (text for text in texts if text in shipped()):
+        first, *rest = (ast.unparse(_renamed(tree, model, other)) for other in _MODELS if other != model)
+        yield Changed("model", first, tuple(rest))
     keys = {id(part) for node in nodes if isinstance(node, ast.Subscript) for part in ast.walk(node.slice)}
     for place, node in enumerate(nodes):
         if id(node) in keys:
@@ -84,13 +100,20 @@ def _changes_of(node: ast.AST) -> Iterator[tuple[str, Any]]:
         if node.func.id == "implies":
             yield "direction", lambda n: n.args.reverse()
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        for kind, known, others in (("model", shipped(), _MODELS), ("instance", _instances(), _INSTANCES)):
-            if node.value in known:
-                yield kind, lambda n, o=others: setattr(n, "value", _another(n.value, o))
+        if node.value in _instances():
+            yield "instance", lambda n: setattr(n, "value", _another(n.value, _INSTANCES))
         if node.value[:1].isdigit() or node.value[:2] in ("0.", "-0"):
             yield "digit", lambda n: setattr(n, "value", other_digit(n.value))
     if isinstance(node, ast.Attribute) and len(_states(node.attr)) > 1:
         yield "state", lambda n: setattr(n, "attr", _another(n.attr, _states(n.attr)))
+
+
+def _renamed(tree: ast.Expression, model: str, other: str) -> ast.Expression:
+    renamed = copy.deepcopy(tree)
+    for node in ast.walk(renamed):
+        if isinstance(node, ast.Constant) and node.value == model:
+            node.value = other
+    return renamed
 
 
 def other_digit(text: str) -> str:
@@ -118,7 +141,10 @@ def _instances() -> tuple[str, ...]:
 
 def turns(document: str, row: Row, changed: Changed, before: Answer) -> bool:
     """Whether a change turns a claim, or makes it say nothing any more."""
-    try:
-        return judged(document, row, changed.text).truth is not before.truth
-    except (BadInput, LookupError):  # what it names is not there
-        return True
+    for text in (changed.text, *changed.others):
+        try:
+            if judged(document, row, text).truth is not before.truth:
+                return True
+        except (BadInput, LookupError):  # what it names is not there
+            return True
+    return False
