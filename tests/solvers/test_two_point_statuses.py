@@ -48,7 +48,6 @@ def test_numbers_beyond_arithmetic_end_as_not_finite(case: Instance, method: Any
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="on 40 intervals the angular momentum seems to grow, and the end to be reached", strict=False)
 @pytest.mark.parametrize("method", [by_search.collocation, by_search.shooting], ids=["collocation", "shooting"])
 def test_where_a_control_can_only_brake_too_much_speed_is_not_reached(method: Any) -> None:
     """The angular momentum h cannot grow, and without it growing the end asked for is out of reach.

@@ -43,8 +43,15 @@ class Missing(Programme):
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds of the unknowns: none of what is asked of the end."""
+        """Lower and upper bounds of the unknowns: none of what is asked of the end.
+
+        Controls without bounds have the limit of what the mesh can show: those that could make up for the whole miss
+        within an interval. Beyond it, states jump between the points and no longer obey their equations.
+        """
         low, high = (row.copy() for row in super().bounds)
+        variables = slice(self.first_variable, self.first_duration)
+        low[variables] = np.where(np.isinf(low[variables]), -self.intervals, low[variables])
+        high[variables] = np.where(np.isinf(high[variables]), self.intervals, high[variables])
         at = self.points.states * self.count + self.given
         low[at], high[at] = -FREE, FREE
         for i in self.given:
@@ -81,7 +88,7 @@ class Missing(Programme):
         return float(self._half(self._at(w, [self.count]))[0, 0])
 
     def gradient(self, w: Array) -> Array:
-        """Of :meth:`objective`."""
+        """The derivatives of :meth:`objective` by all unknowns."""
         into, places = self._end_into(self.count)
         found = np.zeros(self.unknowns)
         np.add.at(found, places, self.points.slopes(self._half, self._at(w, [self.count]))[0, :, 0] @ into)
@@ -118,6 +125,11 @@ def missed(found: Found) -> Array:
     return found.programme.missed_by(found.unknown)
 
 
+def distance(found: Found) -> float:
+    """The largest miss of the end of a motion, in units of its size."""
+    return float(np.abs(missed(found)).max(initial=0.0))
+
+
 def arrived(found: Found) -> bool:
     """Whether a motion arrives, as far as can be told."""
-    return found.solved and bool(np.abs(missed(found)).max(initial=0.0) <= ARRIVED)
+    return found.solved and distance(found) <= ARRIVED

@@ -15,8 +15,9 @@ import numpy as np
 from satsym import activity
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search.arriving import ARRIVED, Missing, arriving, missed
+from satsym.solvers.search.arriving import ARRIVED, Missing, arrived, arriving, distance, missed
 from satsym.solvers.search.controls import controls_of
+from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import motion
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.starts import Plan
@@ -42,6 +43,13 @@ CLOSE = 5e-3
 SIMILAR, AGREEING = 0.1, 0.5
 """Relative difference of misses that are the same, and the share of the searches that have to find the least one: where
 fewer do, others may arrive."""
+
+RESIDUAL = 1.0
+"""Largest residual of the equations between the points of an interval, relative to the sizes of states, with which
+these points still show a motion: next to a singularity a coarse mesh steps over what cannot be passed."""
+
+FEWEST = 2
+"""Searches that have to end at a motion, for the least miss to be evidence."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +108,16 @@ def nearest(instance: Instance, limits: Limits) -> Nearest | None:
     """
     tried, found = 0, list[Found]()
     for one in _solved(instance, limits):
+        if one.solved and refined(one)[1] > RESIDUAL:
+            continue
         tried += 1
         found += [one] if one.solved else []
-        if limits.expired or (one.solved and _distance(one) <= ARRIVED):
+        if limits.expired or arrived(one):
             break
-    best = min(found, key=_distance, default=None)
-    if best is None or (2 * len(found) < tried and _distance(best) > ARRIVED):
+    best = min(found, key=distance, default=None)
+    if best is None or (len(found) < max(FEWEST, tried / 2) and not arrived(best)):
         return None
-    least = _distance(best)
+    least = distance(best)
     programme, spec = best.programme, instance.model.spec
     assert isinstance(programme, Missing)
     by = missed(best)
@@ -116,14 +126,14 @@ def nearest(instance: Instance, limits: Limits) -> Nearest | None:
     units = [*programme.sizes.states[places], *(1.0 for _ in spec.multipliers)]
     given = {v.symbol: v.unit for v in spec.states if v.unit != "1"}
     by_name = dict(zip(names, (by * np.array(units)).tolist(), strict=True))
-    agreeing = sum(_distance(one) <= (1.0 + SIMILAR) * least for one in found)
+    agreeing = sum(distance(one) <= (1.0 + SIMILAR) * least for one in found)
     return Nearest(by_name, given, least, len(found), agreeing)
 
 
 def reaching(instance: Instance, limits: Limits) -> Instance | None:
     """The instance with values for what it leaves free with which its end is reached; ``None`` where none are found."""
     for one in _solved(instance, limits):
-        if one.solved and _distance(one) <= ARRIVED:
+        if arrived(one):
             return motion(one).instance
     return None
 
@@ -141,7 +151,3 @@ def _solved(instance: Instance, limits: Limits) -> Iterator[Found]:
         with np.errstate(all="ignore"):
             found = arriving(instance, controls, [mesh], plan, limits)
         yield found
-
-
-def _distance(found: Found) -> float:
-    return float(np.abs(missed(found)).max(initial=0.0))
