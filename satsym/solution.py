@@ -79,7 +79,7 @@ class Kind(str, Enum):
     STARTS = "seeded starts"
     ARCS = "structure of boundary arcs"
     TIMES = "other times of points on the way"
-    ENDS = "other limits of the end"
+    ENDS = "other limits of the end"  # in results that version 0.2 saved
     UNKNOWNS = "other values of what is free"
 
 

@@ -32,7 +32,7 @@ def in_time_alone(instance: Instance) -> frozenset[str]:
     rng, n = np.random.default_rng(0), len(instance.initial)
     drawn = 10.0 ** rng.uniform(-1.0, 1.0, (DRAWN, n))  # positive, as some states have to be
     with np.errstate(all="ignore"):
-        by_state = [_rows(instance, instance.t0 + 1.0, x)[1][:, :n] for x in drawn]
+        by_state = [inequalities_at(instance, instance.t0 + 1.0, x)[1][:, :n] for x in drawn]
     return frozenset(name for k, name in enumerate(names) if all((rows[k] == 0.0).all() for rows in by_state))
 
 
@@ -54,6 +54,23 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
     return found
 
 
+def never(instance: Instance) -> str:
+    """Why an inequality in time alone holds at no final time; empty where each may hold.
+
+    Where the final time is free and one is never met after the start, it holds there at all times or at none.
+    """
+    names = stated(instance.model).spec.terminal_inequalities
+    last = instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
+    at = last if instance.tf is None else instance.tf
+    values, slopes, _ = inequalities_at(instance, at, np.ones(len(instance.initial)))
+    above = values > TIME_TOLERANCE * np.abs(slopes[:, -1] * at)
+    for name in sorted(in_time_alone(instance)):
+        if above[names.index(name)] and (instance.tf is not None or _root(instance, name) is None):
+            when = "after the start" if instance.tf is None else f"{instance.tf:.6g} that is given"
+            return f"terminal inequality {name}: it is met at no final time {when}"
+    return ""
+
+
 def _root(instance: Instance, name: str) -> float | None:
     """Where Newton's method leads from the guessed final time, or a unit after the start; ``None``: not after it."""
     which = stated(instance.model).spec.terminal_inequalities.index(name)
@@ -61,7 +78,7 @@ def _root(instance: Instance, name: str) -> float | None:
     t = instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
     for _ in range(ITERATIONS):
         with np.errstate(all="ignore"):
-            values, slopes = _rows(instance, t, x)
+            values, slopes, _ = inequalities_at(instance, t, x)
             step = float(values[which] / slopes[which, -1])
         if not np.isfinite(step):
             return None
@@ -71,11 +88,22 @@ def _root(instance: Instance, name: str) -> float | None:
     return None
 
 
-def _rows(instance: Instance, t: float, x: Array) -> tuple[Array, Array]:
-    """Inequalities at an end, shape (i,), and their derivatives by state, costate, multipliers and time, a row each."""
+def inequalities_at(instance: Instance, t: float, x: Array) -> tuple[Array, Array, Array]:
+    """Inequalities at an end.
+
+    Returns
+    -------
+    values
+        Shape (i,), none of which may be positive.
+    slopes
+        Derivatives by the states and, last, by the time, a row each: (i, n + 1).
+    on_time
+        What a multiplier of one adds to the transversality condition of the final time, shape (i,).
+    """
     model, n = stated(instance.model), len(x)
     c, count = len(model.spec.multipliers), len(model.spec.terminal_inequalities)
     arguments = t, tuple(x.tolist()), (0.0,) * n, (0.0,) * c, instance.parameters, instance.control_set.arguments
     place = slice(n + c - count, n + c)
     values = np.array(model.boundary(*arguments, (0.0,) * 3 * n))[place]
-    return values, np.array(model.boundary_jacobian(*arguments, (0.0,) * 3 * n)).reshape(n + c + 1, -1)[place]
+    table = np.array(model.boundary_jacobian(*arguments, (0.0,) * 3 * n)).reshape(n + c + 1, -1)
+    return values, table[place][:, [*range(n), -1]], table[-1, 2 * n + c - count : 2 * n + c]

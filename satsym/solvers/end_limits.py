@@ -1,39 +1,38 @@
-"""Limits of the end: which of them are met is found, and other choices of them are competitors.
+"""Limits of the end: final states in ranges, and inequalities that hold at the end.
 
-Final states may lie in ranges, and inequalities hold at the end. The problem with some of these limits met and no other
-one stated is one like any other. From that with none met, limits are taken where the answer is beyond them, and left
-where their multipliers pull. Where that leads nowhere, all choices are tried. Each of these problems may do so much
-work, whatever the clock says: that with none met may be singular, or have no answer at all. Where no choice has one
-they may do more.
+The problem with some of these limits met and no other one stated is one like any other. Which are met is read from a
+motion that the search finds; from there, limits are taken where the answer is beyond them, and left where their
+multipliers pull. Competitors are motions that end anywhere within the limits.
 """
 
 from __future__ import annotations
 
-import itertools
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from satsym.instance import Instance
+from satsym.instance.end_time import never
 from satsym.instance.ends import Side
-from satsym.solution import Kind, Progress, Solution
+from satsym.solution import Progress, Solution
 from satsym.solvers import iteration
-from satsym.solvers.certificate.competitors.comparison import summed
-from satsym.solvers.certificate.end_limits import BEYOND_LIMIT, SIGN, beyond, pushes
-from satsym.status import BadInput, Status, Verdict
+from satsym.solvers.certificate.end_limits import others_asked
+from satsym.solvers.constrained.refusals import refuse
+from satsym.solvers.search import coarse
+from satsym.solvers.search.reading.limits import limits_met
+from satsym.solvers.search.solving import searched
+from satsym.status import BadInput, Status
 from satsym.wording import counted
 
-CHOICES = 27
-"""Of ends that are tried, at most; where there are more, competitors are those that differ in one state."""
+CHANGES = 20
+"""Choices of limits that follow from one another, at most."""
 
-CHANGES, ROUNDS = 20, 3
-"""Changes of ends from one start, and competitors that are taken for the solution, at most."""
+WORK, STARTS = 2_500_000, 3
+"""Columns that the method may linearise for limits that may be the wrong ones, as such a problem may have no answer.
+And starts for the motion from which limits are read."""
 
-BUDGETS = (250_000, 2_500_000)
-"""Columns that each search of a trial problem may linearise, and again where no choice of ends has an answer."""
-
-CHEAPER = 1e-9
-"""Share of the cost by which a competitor is cheaper, at least."""
+ROUNDS = 3
+"""Answers that ask for other limits once they have a certificate, at most."""
 
 Met = Mapping[str, Side]
 Solver = Callable[[Instance, Progress | None], Solution]
@@ -49,154 +48,111 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
     progress
         Called after each iteration.
     quick
-        Solves with ends given or free, for one choice of ends after the other.
+        Solves with ends given or free, for one choice of limits after the other.
     last
         The same for the answer, with its certificate where one is asked for.
 
     Raises
     ------
     BadInput
-        If the problem is refused whatever ends are given.
+        If the problem is refused whatever limits are met.
     """
     began = time.perf_counter()
+    if why := never(instance):
+        nothing = iteration.unsolved(instance, instance.solver.method, 0.0)
+        return replace(nothing, status=Status.INFEASIBLE, message=why)
+    if instance.model.spec.path_constraints:
+        refuse(instance)
     trials = Trials(instance, progress, quick, iteration.deadline_of(instance))
-    for trials.work in BUDGETS:
-        found = _found(trials, {})
-        if found.status.answered or trials.late or not trials.cut_short:
-            break
-    compared: list[Solution] | None = None
+    limits, _ = iteration.watched(instance, None)
+    at = coarse.first_motion(instance, limits, STARTS)
+    found = trials.following({} if at is None else limits_met(instance, at))
+    if found is None and not trials.late and (at is not None or not trials.refused):
+        found = searched(instance, replace(limits, work=WORK, meter=iteration.Meter())) or trials.following({})
     for _ in range(ROUNDS):
-        if not found.status.answered:
+        if found is None:
             break
         solution = trials.by(last, found.instance.met, instance.work)
-        if solution.status.answered and (instead := changed(solution)) is not None:
-            found = _found(trials, instead)  # what the certificate prefers leaves its ranges, or is held by none
-            continue
-        found = solution
-        if found.status.answered and found.certificate is None:
+        met = others_asked(solution) if solution.status.answered else None
+        if met is None:
+            found = solution
             break
-        compared = [trials(met) for met in _others(instance, found.instance.met)]
-        cheapest = min(filter(_inside, compared), key=lambda one: one.objective, default=found)
-        margin = CHEAPER * abs(found.objective)
-        if cheapest is found or (found.status.answered and not cheapest.objective < found.objective - margin):
-            break
-        found = _found(trials, cheapest.instance.met)
+        found = trials.following(met)  # what the certificate prefers leaves its ranges, or is held by none
+    if found is None:
+        found = trials.unanswered()
     own = replace(found.instance, solver=instance.solver, work=instance.work)
-    solved = replace(found, instance=own, message=_message(found))
-    solved = replace(solved, wall_s=time.perf_counter() - began)
-    return solved if compared is None or solved.certificate is None else _with_others(solved, compared, trials.late)
+    return replace(found, instance=own, message=_message(found), wall_s=time.perf_counter() - began)
 
 
 @dataclass(eq=False)
 class Trials:
-    """Solves with one choice of ends after the other, and remembers what came of it."""
+    """Solves with one choice of limits after the other, and remembers what came of it."""
 
     instance: Instance
     progress: Progress | None
     quick: Solver
     deadline: float
     known: dict[frozenset[tuple[str, Side]], Solution] = field(default_factory=dict)
-    refused: dict[frozenset[tuple[str, Side]], BadInput] = field(default_factory=dict)
-    work: float = float("inf")
-    """Columns that each of their searches may linearise."""
-    cut_short: dict[frozenset[tuple[str, Side]], float] = field(default_factory=dict)
-    """Those without an answer for want of work, and how much they could do."""
+    refused: list[BadInput] = field(default_factory=list)
     late: bool = False
     """Whether time was up before all that was wanted was solved."""
 
-    def __call__(self, met: Met) -> Solution:
-        """The solution with these ends, without a certificate."""
-        key = frozenset(met.items())
-        if key not in self.known or self.cut_short.get(key, self.work) < self.work:
-            self.known[key] = self.by(self.quick, met, self.work)
-            self.cut_short.pop(key, None)
-            if self.known[key].status is Status.TIME_LIMIT:
-                self.cut_short[key] = self.work
-        return self.known[key]
+    def following(self, met: Met) -> Solution | None:
+        """The first solution that asks for no other limits than its own, from a choice on; ``None`` without one."""
+        asked: Met | None = met
+        seen = list[Met]()
+        while asked is not None and asked not in seen and len(seen) < CHANGES:
+            seen.append(asked)
+            key = frozenset(asked.items())
+            if key not in self.known:
+                self.known[key] = self.by(self.quick, asked, min(WORK, self.instance.work))
+            solution = self.known[key]
+            if not solution.status.answered:
+                return None
+            asked = others_asked(solution)
+            if asked is None:
+                return solution
+        return None
 
     def by(self, solver: Solver, met: Met, work: float) -> Solution:
-        """The solution with these ends by a solver; no answer where time is up, or such an end is refused."""
+        """The solution with these limits by a solver; no answer where time is up, or such an end is refused."""
         begun = iteration.hurried(self.instance, self.deadline)
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
-            return replace(nothing, status=Status.TIME_LIMIT, message="time ran out before all ends were tried")
+            return replace(nothing, message="time ran out before all ends were tried")
         try:
             found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
-            self.refused[frozenset(met.items())] = error
+            self.refused.append(error)
             return replace(nothing, status=Status.NOT_CONVERGED, message=str(error))
         self.late = self.late or iteration.computed() > self.deadline
         return found
 
+    def unanswered(self) -> Solution:
+        """No answer, and why.
 
-def changed(solution: Solution) -> dict[str, Side] | None:
-    """Other limits that a solution asks for: one that it is beyond, or none that pulls; ``None`` where these do."""
-    met = dict(solution.instance.met)
-    violated = {place: by for place, by in beyond(solution).items() if by > BEYOND_LIMIT}
-    if violated:
-        name, side = max(violated, key=lambda place: violated[place])
-        return {**met, name: side}
-    pulling = {name: push for name, push in pushes(solution).items() if push < -SIGN}
-    if not pulling:
-        return None
-    return {name: side for name, side in met.items() if name != min(pulling, key=lambda one: pulling[one])}
-
-
-def _inside(solution: Solution) -> bool:
-    """Whether it is an answer, all of whose final states are in their ranges."""
-    return solution.status.answered and max(beyond(solution).values(), default=0.0) <= BEYOND_LIMIT
-
-
-def _found(trials: Trials, met: Met) -> Solution:
-    """The solution that asks for no other ends than its own, from a choice on; no answer where there is none."""
-    first, seen = trials(met), list[Met]()
-    current: dict[str, Side] | None = dict(met)
-    while current is not None and current not in seen and len(seen) < CHANGES:
-        seen.append(current)
-        solution = trials(current)
-        if not solution.status.answered:
-            break
-        if (current := changed(solution)) is None:
-            return solution
-    for choice in itertools.islice(choices(trials.instance), CHOICES):
-        solution = trials(choice)
-        if solution.status.answered and changed(solution) is None:
-            return solution
-        if trials.late:
-            return replace(iteration.unsolved(first.instance, first.method, 0.0), status=Status.TIME_LIMIT)
-    return _unanswered(trials, first)
-
-
-def _unanswered(trials: Trials, first: Solution) -> Solution:
-    """No answer, and why; what is refused with any ends is refused."""
-    if trials.refused.keys() == trials.known.keys():
-        raise next(iter(trials.refused.values()))
-    count = counted(len(trials.known), "choice")
-    nothing = iteration.unsolved(trials.instance, first.method, 0.0)
-    if first.status is Status.INFEASIBLE:  # with fewer conditions, so that more of them have no answer either
-        return replace(nothing, status=first.status, message=first.message)
-    reasons = [one.message for one in trials.known.values() if not one.status.answered]
-    message = f"none of {count} of limits that the end meets has a solution that satisfies the others"
-    return replace(nothing, status=Status.NOT_CONVERGED, message=f"{message}: {reasons[-1]}" if reasons else message)
-
-
-def choices(instance: Instance) -> Iterator[dict[str, Side]]:
-    """All choices of ends, those with few of them first."""
-    sides = instance.end_limits
-    for count in range(len(sides) + 1):
-        for names in itertools.combinations(sides, count):
-            for chosen in itertools.product(*(sides[name] for name in names)):
-                yield dict(zip(names, chosen, strict=True))
-
-
-def _others(instance: Instance, met: Met) -> list[dict[str, Side]]:
-    """Choices of ends to compare one with: all of them, or those that differ in one state."""
-    found = [one for one in itertools.islice(choices(instance), CHOICES + 1) if one != met]
-    if len(found) <= CHOICES:
-        return found
-    names = instance.end_limits
-    return [one for one in choices(instance) if sum(one.get(name) != met.get(name) for name in names) == 1]
+        Raises
+        ------
+        BadInput
+            What is refused with all limits that were tried.
+        """
+        if len(self.refused) == len(self.known):
+            raise self.refused[0]
+        nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
+        if self.late:
+            return nothing
+        first = self.known.get(frozenset())
+        if first is not None and first.status is Status.INFEASIBLE:  # no less so with more conditions
+            return replace(nothing, status=first.status, message=first.message)
+        count = counted(len(self.known), "choice")
+        message = f"none of {count} of limits that the end meets has a solution that satisfies the others"
+        reasons = [one.message for one in self.known.values() if not one.status.answered]
+        return replace(
+            nothing,
+            status=Status.NOT_CONVERGED,
+            message=f"{message}: {reasons[-1]}" if reasons else message,
+        )
 
 
 def _message(solution: Solution) -> str:
@@ -209,21 +165,3 @@ def _message(solution: Solution) -> str:
         for name in solution.instance.end_limits
     )
     return f"{solution.message}; {where}"
-
-
-def _with_others(solution: Solution, others: list[Solution], late: bool) -> Solution:
-    """With other ends among the competitors of the certificate."""
-    certificate = solution.certificate
-    assert certificate is not None
-    kind = summed(solution, Kind.ENDS, len(others), [one.objective for one in filter(_inside, others)], late)
-    missing = (Kind.ENDS,) if late or not any(one.status.answered for one in others) else ()
-    passed = all(check.passed for check in kind.checks)
-    lesser = certificate.verdict is Verdict.CERTIFIED and not passed
-    more = replace(
-        certificate,
-        verdict=Verdict.EXTREMAL_ONLY if lesser else certificate.verdict,
-        checks=(*certificate.checks, *kind.checks),
-        competitors=(*certificate.competitors, kind.summary),
-        not_checked=(*certificate.not_checked, *missing),
-    )
-    return replace(solution, certificate=more)

@@ -13,6 +13,7 @@ from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
 from satsym.solvers import iteration
 from satsym.solvers.certificate.competitors.saddle import departures, fall
+from satsym.solvers.certificate.end_limits import others_asked
 from satsym.solvers.certificate.verdict import examined
 from satsym.status import Status, Verdict
 
@@ -50,10 +51,12 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         message = f"{solution.message}; {less}"
         solution, better = replace(solution, message=message), None
     for seed in range(1, ROUNDS + 1):
-        if better is None:
+        if better is None or others_asked(better) is not None:
             break
         message = f"{better.message}; the first extremal found costs {solution.objective:.6g}"
-        solution = replace(better, instance=solution.instance, message=message, history=solution.history)
+        own = solution.instance
+        own = own if better.instance.met == own.met else own.meeting(better.instance.met)
+        solution = replace(better, instance=own, message=message, history=solution.history)
         certificate, better = examined(solution, deadline, seed)
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != BOUNDARY_ARCS:
         endless = bottomless(solution)

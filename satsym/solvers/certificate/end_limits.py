@@ -8,75 +8,22 @@ none vanishes, a change away from the limits costs more to first order; the rest
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from satsym.arrays import Array
-from satsym.instance.end_time import in_time_alone
+from satsym.instance.end_time import in_time_alone, inequalities_at
 from satsym.instance.ends import Side
 from satsym.kernels.active import stated
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate.end_form import final_values, multipliers
 from satsym.solvers.certificate.reintegration.flow import typical
+from satsym.solvers.search.reading.limits import BEYOND_LIMIT, beyond
 from satsym.status import Verdict
-
-BEYOND_LIMIT = 1e-9
-"""Largest distance beyond a limit, relative to what is limited, that is none."""
 
 SIGN, STRICT = 1e-9, 1e-7
 """Largest multiplier of the wrong sign that is none, and least one that does not vanish, relative to the costate."""
-
-
-def beyond(solution: Solution) -> dict[tuple[str, Side], float]:
-    """By how much the end is beyond its limits, relative to the size of what each limits; negative before them.
-
-    A limit that is met is not looked at: the boundary residual has it.
-    """
-    instance, names = solution.instance, solution.instance.model.spec.state_names
-    found = {}
-    for name, limits in instance.ranges.items():
-        row = solution.x[names.index(name)]
-        size = max([float(np.abs(row).max()), *(abs(v) for v in limits if np.isfinite(v))])
-        for side in instance.end_limits[name]:
-            found[name, side] = side.outward * (float(row[-1]) - side.of(limits)) / max(size, 1e-300)
-    for name, one in _inequalities(solution).items():
-        found[name, Side.UPPER] = one.value / one.size
-    return {place: by for place, by in found.items() if instance.met.get(place[0]) is not place[1]}
-
-
-@dataclass(frozen=True, eq=False)
-class _Inequality:
-    """An inequality at the end of a solution."""
-
-    value: float
-    by_state: Array
-    by_time: float
-    size: float
-    """The size of its terms."""
-    on_time: float
-    """What its multiplier adds to the transversality of the final time."""
-
-
-def _inequalities(solution: Solution) -> dict[str, _Inequality]:
-    """By name, whether they are met or not."""
-    instance, model = solution.instance, stated(solution.instance.model)
-    if not model.spec.terminal_inequalities:
-        return {}
-    tf, x, lam = final_values(solution)
-    n, c, count = len(x), len(model.spec.multipliers), len(model.spec.terminal_inequalities)
-    arguments = tf, x, lam, (0.0,) * c, instance.parameters, instance.control_set.arguments, (0.0,) * 3 * n
-    place, lasting = slice(n + c - count, n + c), tf - float(solution.times[0])
-    values = np.array(model.boundary(*arguments))[place]
-    table = np.array(model.boundary_jacobian(*arguments)).reshape(n + c + 1, -1)
-    slopes, on_time = table[place], table[-1, 2 * n + c - count : 2 * n + c]
-    sizes = np.abs(slopes[:, :n]) @ typical(solution)[0] + np.abs(slopes[:, -1]) * lasting
-    rows = zip(model.spec.terminal_inequalities, values, slopes, sizes, on_time, strict=True)
-    return {
-        name: _Inequality(float(value), slope[:n], float(slope[-1]), max(float(size), 1e-300), float(by_multiplier))
-        for name, value, slope, size, by_multiplier in rows
-    }
 
 
 def pushes(solution: Solution) -> dict[str, float]:
@@ -94,17 +41,34 @@ def pushes(solution: Solution) -> dict[str, float]:
         if name in instance.ranges:
             i = spec.state_names.index(name)
             found[name] = side.outward * float(lacking[i]) / max(float(sizes[i]), abs(float(lacking[i] - lam[i])))
-    of, timed = _inequalities(solution), in_time_alone(instance)
     inside = [name for name in instance.end_limits if name in instance.met and name not in instance.ranges]
+    if not inside:
+        return found
+    _, slopes, on_time = inequalities_at(instance, tf, np.array(x))
+    place, timed = stated(instance.model).spec.terminal_inequalities.index, in_time_alone(instance)
     active = [name for name in inside if name not in timed]
     held = dict(zip(active, nu[len(nu) - len(active) :], strict=True))
     # the final time is given by one in time alone, which makes up what transversality lacks: H + S_t + nu' psi_t
-    held |= {name: -float(residual[-1] + _held_back(solution)) / of[name].on_time for name in inside if name in timed}
+    lacked = float(residual[-1] + _held_back(solution))
+    held |= {name: -lacked / float(on_time[place(name)]) for name in inside if name in timed}
     pace = float(np.abs(np.array(instance.model.canonical(tf, x, lam, *arguments))[:n]) @ sizes)  # the size of H
     for name, multiplier in held.items():
-        strengths = [*(np.abs(of[name].by_state) / sizes), abs(of[name].by_time) / max(pace, 1e-300)]
-        found[name] = float(multiplier) * max(strengths)
+        strengths = np.abs(slopes[place(name)]) / np.append(sizes, max(pace, 1e-300))
+        found[name] = float(multiplier) * float(strengths.max())
     return found
+
+
+def others_asked(solution: Solution) -> dict[str, Side] | None:
+    """Other limits that a solution asks for: one that it is beyond, or none that pulls; ``None`` where its own do."""
+    met = dict(solution.instance.met)
+    over = beyond(solution.instance, solution.times, solution.x)
+    if max(over.values(), default=0.0) > BEYOND_LIMIT:
+        name, side = max(over, key=lambda place: over[place])
+        return {**met, name: side}
+    pulling = {name: push for name, push in pushes(solution).items() if push < -SIGN}
+    if not pulling:
+        return None
+    return {name: side for name, side in met.items() if name != min(pulling, key=lambda one: pulling[one])}
 
 
 def _after_jump(solution: Solution) -> Solution:
@@ -135,8 +99,9 @@ def with_limits(certificate: Certificate, solution: Solution) -> Certificate:
     if not solution.instance.end_limits:
         return certificate
     pressing = min(pushes(solution).values(), default=np.inf)
+    over = max([0.0, *beyond(solution.instance, solution.times, solution.x).values()])
     first = [
-        Check("limit of the end violated", max([0.0, *beyond(solution).values()]), BEYOND_LIMIT),
+        Check("limit of the end violated", over, BEYOND_LIMIT),
         Check("negative multiplier of a limit of the end", max(0.0, -pressing), SIGN),
     ]
     second = [Check("multiplier of a limit of the end vanishes", float(not pressing > STRICT), 0.0)]

@@ -168,9 +168,9 @@ def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float
     return found
 
 
-def first_motion(instance: Instance, limits: Limits) -> Motion | None:
-    """What the first start that is solved comes to, on a coarse mesh."""
-    found = next((one for _, one in started(instance, limits, "") if one.solved), None)
+def first_motion(instance: Instance, limits: Limits, most: int = STARTS) -> Motion | None:
+    """What the first of so many starts that is solved comes to, on a coarse mesh."""
+    found = next((one for _, one in islice(started(instance, limits, ""), most) if one.solved), None)
     return None if found is None else motion(found)
 
 

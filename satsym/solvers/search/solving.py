@@ -22,6 +22,7 @@ from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.nlp import ACCEPTABLE
 from satsym.solvers.search.order import Tried
 from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
+from satsym.solvers.search.reading.limits import exact_within
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.structure import Course
 from satsym.status import Status
@@ -36,14 +37,23 @@ WORK = 4_000_000
 def applies(instance: Instance) -> bool:
     """Whether the search knows the kinds of arcs that an instance may have, and whether it may change its start."""
     spec = instance.model.spec
-    plain = not (spec.chattering or instance.end_limits or instance.guess)
+    plain = not (spec.chattering or instance.guess)
     arcs = not (spec.in_arcs and (spec.throttled or instance.free))
     timed = any(one.place is Place.TIME for one in instance.free)
     return plain and arcs and not timed and not instance.continuation
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """The extremal that a motion is near, as an answer without a certificate."""
+    """The extremal that a motion is near, as an answer without a certificate.
+
+    Where the end has limits, the instance of the answer says which of them are met, whatever is given for these.
+    """
+    if instance.end_limits:
+        return exact_within(instance, at, lambda one: _exact(one, at, limits))
+    return _exact(instance, at, limits)
+
+
+def _exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     spec = instance.model.spec
     if spec.in_arcs:
         return boundaries.exact(instance, at, limits)

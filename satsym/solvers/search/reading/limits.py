@@ -1,0 +1,70 @@
+"""Limits of the end: how far a motion is beyond them, which it meets, and the extremal near it with these limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.end_time import inequalities_at
+from satsym.instance.ends import Side
+from satsym.kernels.active import stated
+from satsym.solution import Solution
+from satsym.solvers.search.motion import Motion
+from satsym.status import BadInput
+
+BEYOND_LIMIT = 1e-9
+"""Largest distance beyond a limit, relative to what is limited, that is none."""
+
+NEAR = 1e-6
+"""Distance before a limit, relative to what is limited, within which the interior-point code meets it."""
+
+
+def beyond(instance: Instance, times: Array, x: Array) -> dict[tuple[str, Side], float]:
+    """By how much the end is beyond its limits, relative to the size of what each limits; negative before them.
+
+    A limit that the instance meets is not looked at: the boundary residual has it.
+
+    Parameters
+    ----------
+    times, x
+        Of the motion: shapes (N,) and (n, N).
+    """
+    names, found = instance.model.spec.state_names, {}
+    largest = np.abs(x).max(axis=1)
+    for name, limits in instance.ranges.items():
+        i = names.index(name)
+        size = max([float(largest[i]), *(abs(v) for v in limits if np.isfinite(v)), 1e-300])
+        for side in instance.end_limits[name]:
+            found[name, side] = side.outward * (float(x[i, -1]) - side.of(limits)) / size
+    inequalities = stated(instance.model).spec.terminal_inequalities
+    if inequalities:
+        values, slopes, _ = inequalities_at(instance, float(times[-1]), x[:, -1])
+        sizes = np.abs(slopes) @ np.append(largest, times[-1] - times[0])
+        for name, value, size in zip(inequalities, values.tolist(), sizes.tolist(), strict=True):
+            found[name, Side.UPPER] = value / max(size, 1e-300)
+    return {place: by for place, by in found.items() if instance.met.get(place[0]) is not place[1]}
+
+
+def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
+    """At which of its limits the end of a motion is, by name."""
+    return {name: side for (name, side), by in beyond(instance.meeting({}), at.times, at.x).items() if by > -NEAR}
+
+
+def exact_within(instance: Instance, at: Motion, exact: Callable[[Instance], Solution | None]) -> Solution | None:
+    """The extremal whose limits of the end are those that a motion meets, if it is beyond no other one.
+
+    Parameters
+    ----------
+    exact
+        Finds the extremal near the motion of an instance whose limits are met or left.
+    """
+    try:
+        found = exact(instance.meeting(limits_met(instance, at)))
+    except BadInput:  # a time that is none
+        return None
+    if found is None or max(beyond(found.instance, found.times, found.x).values(), default=0.0) > BEYOND_LIMIT:
+        return None
+    return found
