@@ -20,7 +20,7 @@ DRAWN = 4
 """Times as many points are drawn as there are monomials."""
 
 SPREAD = 0.4
-"""Of states round the start, relative to their sizes."""
+"""Spread of states round the start, relative to their sizes."""
 
 CANCELS = 1e-11
 """Share of the largest singular value below which rates cancel for every state and control."""
@@ -37,9 +37,9 @@ class Conserved:
     """A polynomial that no control changes."""
 
     names: tuple[str, ...]
-    """Of the states in each monomial, joined as formulas have them."""
+    """Names of the states in each monomial, joined as formulas have them."""
     powers: Array
-    """Of states in each monomial, shape (K, n)."""
+    """Powers of the states in each monomial, shape (K, n)."""
     coefficients: Array
 
     @property
@@ -52,7 +52,7 @@ class Conserved:
         return text.removeprefix(" + ").strip()
 
     def terms(self, x: Array) -> Array:
-        """Of which it consists at states."""
+        """Terms of the quantity at states."""
         return np.asarray(self.coefficients * np.prod(x**self.powers, axis=1))
 
 
@@ -124,7 +124,7 @@ def _rates(instance: Instance, x: Array, rng: np.random.Generator) -> Array:
 
 
 def _reduced(rows: Array) -> Array:
-    """The same space, spanned by rows that have a monomial of their own each."""
+    """The space that rows span, spanned by rows that have a monomial of their own each."""
     found = rows.copy()
     for k in range(len(found)):
         place = int(np.abs(found[k]).argmax())

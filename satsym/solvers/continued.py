@@ -27,7 +27,7 @@ from satsym.status import Status
 from satsym.wording import counted
 
 FIRST, LONGER, SHORTER = 0.2, 1.7, 0.3
-"""Of the way: the first step; and the ratios of the next one after a success, and after a failure."""
+"""The first step, as a share of the way; and the ratios of the next one after a success, and after a failure."""
 
 SHORTEST, MOST = 1e-3, 200
 """The step at which the way is given up, and the most steps."""

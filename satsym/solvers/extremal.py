@@ -115,7 +115,7 @@ def _solution(
 
 
 def _own(met: list[Array], control: int, within: ControlSet) -> list[Array]:
-    """Of the times at which each bound is met, those of a control's bounds; on a ball the bound is everyone's."""
+    """Times at which the bounds of one control are met, of the times of all; on a ball the bound is everyone's."""
     if within.parts:
         return [row for row, places in zip(met, within.limited, strict=False) if control in places]
     return met[control :: len(within.lower)] if within.kind == "box" else met

@@ -72,7 +72,7 @@ class Limits:
     """
 
     iterations: int
-    """Of the method."""
+    """Iterations of the method."""
     deadline: float
     """On the clock of :func:`computed`."""
     watch: Callable[[float, float], None] | None = None

@@ -96,7 +96,7 @@ class Exponential(Arcs):
 
     @cached_property
     def _generator(self) -> Array:
-        """Of the motion by tau, with what drives it as a last column, shape (2n + 1, 2n + 1)."""
+        """Generator of the motion by tau, with what drives it as a last column, shape (2n + 1, 2n + 1)."""
         here, tau = np.append(self.problem.initial, np.zeros(self.problem.states))[:, None], np.zeros(1)
         slopes = self.problem.jacobian(tau, here, self.theta)[:, :, 0]
         driven = self.problem.rates(tau, here, self.theta) - slopes @ here
@@ -171,7 +171,7 @@ def _arcs(problem: TwoPoint) -> Arcs:
 
 
 def _violation(arcs: Arcs) -> float:
-    """Of all conditions at most."""
+    """The largest violation of all conditions."""
     wrong = residual(arcs, arcs.ends())
     return float(max(np.abs(part).max() for part in (wrong.defects, wrong.start, wrong.finish)))
 

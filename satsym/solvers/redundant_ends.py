@@ -42,10 +42,10 @@ SAME = 1e-4
 """Difference of the directions that two controls leave open, if it is one of the motion and none of these controls."""
 
 LARGE_ENOUGH = 0.1
-"""Of the largest component of a direction, with which a state follows from the others well enough."""
+"""Share of the largest component of a direction, with which a state follows from the others well enough."""
 
 HORIZON = 0.25
-"""Of the motion's own time scale, in which controls are varied."""
+"""Share of the motion's own time scale in which controls are varied."""
 
 DRIFTING = 1e-3
 """Share of the largest slope of the motion below which its eigenvalues are none."""
@@ -62,7 +62,7 @@ class Redundant:
     state: str
     given: float
     others: tuple[Redundant, ...] = ()
-    """The same without another one in its place, which the rest leaves other signs open to."""
+    """Instances without another final state, where the signs that the rest leaves open differ."""
 
     @property
     def towards(self) -> Instance:
@@ -149,7 +149,7 @@ def _end(instance: Instance, fixed: Array) -> Array:
 
 
 def _sizes(instance: Instance, end: Array) -> Array:
-    """Of states at both ends; one where both are zero."""
+    """Sizes of states at both ends; one where both are zero."""
     size = np.maximum(np.abs(end), np.abs(np.array(instance.initial)))
     return np.where(size > 0.0, size, 1.0)
 
@@ -171,7 +171,7 @@ def _spans_less(instance: Instance, end: Array) -> bool:
 
 @lru_cache(maxsize=32)
 def _dependent(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row, sizes: Row) -> bool:
-    """The same, states being of these sizes."""
+    """Whether rates and changes at the end leave out a direction, states being of these sizes."""
     columns, made_of = _directions(model, p, within, t, free_time, end)
     size = np.array(sizes)[:, None]
     # what cancels but for rounding must not count: each column is relative to what it is made of
@@ -184,7 +184,7 @@ def _dependent(model: Kernels, p: Row, within: ControlSet, t: float, free_time: 
 
 @lru_cache(maxsize=8)
 def _directions(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row) -> tuple[Array, Array]:
-    """Those rates and changes, a column each, and what they are made of."""
+    """Rates at the end under drawn controls and their commutators, a column each, and what they are made of."""
     drawn = np.random.default_rng(0).normal(size=(len(model.spec.controls), DRAWN))
     given = np.full(DRAWN, t), np.repeat(np.array(end)[:, None], DRAWN, axis=1), within.project(drawn), p
     rates, slopes = model.dynamics_batch(*given), model.jacobian_x_batch(*given)

@@ -37,7 +37,7 @@ PERTURBED = 1e-2
 TURN = 2.0 * np.pi
 
 CORRECTIONS, CLOSE = 20, 1e-6
-"""Of a state until it rotates steadily, and how nearly it does then."""
+"""Corrections of a state until it rotates steadily, and how nearly it does then."""
 
 ALIKE = 0.88
 """Cosine of half a radian: rotations whose axes lie nearer to each other are one."""
@@ -54,7 +54,7 @@ class Rotation:
     angular: NDArray[np.complexfloating[Any, Any]]
     """Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more."""
     inverse: NDArray[np.complexfloating[Any, Any]]
-    """Of the former."""
+    """Inverse of the eigenvectors."""
     vectors: NDArray[np.bool_]
     """Which states such rotations mix, about whatever axis, shape (n, n): components of one vector."""
 

@@ -9,9 +9,6 @@ from pathlib import Path
 
 import pytest
 
-UNFINISHED = {"solvers"}
-"""Rooms of satsym/ in which such docstrings are left. The list may only become shorter."""
-
 UNNAMED = {"proof", "solvers"}
 """Rooms of satsym/ in which constants have such names. The list may only become shorter."""
 
@@ -57,9 +54,7 @@ def room(path: Path) -> str:
 
 def test_docstrings_can_be_understood_out_of_their_place(repository: Path) -> None:
     found = {path: dangling(path.read_text("utf-8")) for path in sorted((repository / "satsym").rglob("*.py"))}
-    left = {path: lines for path, lines in found.items() if lines}
-    assert [f"{path}:{line}" for path, lines in left.items() if room(path) not in UNFINISHED for line in lines] == []
-    assert {room(path) for path in left} == UNFINISHED, "take the rooms from the list in which none is left"
+    assert [f"{path}:{line}" for path, lines in found.items() for line in lines] == []
 
 
 def test_names_of_constants_say_what_they_limit(repository: Path) -> None:

@@ -27,7 +27,7 @@ SETTLED = 1e-7
 """Share of the duration by which these times may move in the end: the motion changes by its square."""
 
 LOOKED_AT = (np.arange(8) + 0.5) / 8.0
-"""Of each segment, at which it is looked on which side of the bounds controls are."""
+"""Places within each segment at which controls are compared with their bounds."""
 
 MOST = 24
 """Times at which an instance meets or leaves a bound, at most."""

@@ -43,10 +43,10 @@ ROUGH = 0.01
 """Relative error of derivatives that is small enough."""
 
 FOLLOWED = 1e-4
-"""The same where phases are followed from segment to segment."""
+"""Largest error where phases are followed from segment to segment."""
 
 HALVINGS = 4
-"""Of segments at most."""
+"""Halvings of segments at most."""
 
 WHOLE = 0.9 * 2.0 * np.pi
 """Turn of a phase in a segment: below a full turn, so that it has no conjugate point of its own."""
@@ -54,7 +54,7 @@ WHOLE = 0.9 * 2.0 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
-    """Of states and costates, to which errors are held; from ``typical`` of the certificate's flow."""
+    """Sizes of states and costates, to which errors are held; from ``typical`` of the certificate's flow."""
 
     state: Array
     largest: Array
@@ -64,18 +64,18 @@ class Sizes:
 
     @classmethod
     def of(cls, many: Many, z: Array) -> Sizes:
-        """Those of solutions."""
+        """The sizes of solutions."""
         n, unit, largest = many.states, many.units[:, None], np.abs(z).max(axis=1)
         return cls(np.maximum(largest[:n], NEGLIGIBLE * unit[:n]), largest[n:], unit)
 
     def costate(self, faint: float) -> Array:
-        """Of costates, smaller ones counting at a share of their unit."""
+        """Sizes of costates, smaller ones counting at a share of their unit."""
         product = (self.state * self.largest).max(axis=0)
         found = np.maximum(self.largest, faint * self.unit[len(self.state) :])
         return np.asarray(np.maximum(found, NEGLIGIBLE * product / self.state))
 
     def both(self, faint: float) -> Array:
-        """Of states and costates, shape (2n, M)."""
+        """Sizes of states and costates, shape (2n, M)."""
         return np.concatenate([self.state, self.costate(faint)])
 
 

@@ -28,7 +28,7 @@ class Many:
     """M instances whose ends and times are given."""
 
     problem: TwoPoint
-    """Of the instance that they vary: scales, times and what else all share."""
+    """The instance that they vary as a two-point problem: scales, times and what else all share."""
     motion: Motion
     """Steps of the canonical equations."""
     initial: Array
@@ -86,12 +86,12 @@ class Many:
 
     @cached_property
     def units(self) -> Array:
-        """Of states and costates, shape (2n,)."""
+        """Units of states and costates, shape (2n,)."""
         return np.asarray(self.problem.scale.both[:, 0])
 
     @property
     def times(self) -> Array:
-        """Of the nodes, shape (N+1, M) or (N+1, 1)."""
+        """Times of the nodes, shape (N+1, M) or (N+1, 1)."""
         return self.instance.t0 + self.problem.duration * self.mesh
 
     @property
@@ -113,7 +113,7 @@ class Many:
         return replace(self, **columns, mesh=mesh)
 
     def within_bounds(self) -> Many:
-        """The same with their bounds, on arrays: few meet them as a rule."""
+        """The instances with their bounds, on arrays: few meet them as a rule."""
         return replace(self, bounded=True, motion=motion(self.instance.model, None, False))
 
     @property

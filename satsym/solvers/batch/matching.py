@@ -27,7 +27,7 @@ class Matching:
     inverse: Array
     """Initial costates by what is missing at the end, in units, shape (n, n, M); not finite where nothing decides."""
     units: Array
-    """Of states and costates, shape (2n,)."""
+    """Units of states and costates, shape (2n,)."""
     condense: Condensing
 
     @classmethod

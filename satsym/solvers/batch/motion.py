@@ -115,12 +115,12 @@ class _OnArrays:
         return tuple(p[:count]), tuple(p[count:]) if self._bounds is None else self._bounds
 
     def _rates(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Of states and costates."""
+        """Rates of states and costates."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         return lambda t, z: np.asarray(model.canonical_batch(t, z[:n], z[n:], own, bounds))
 
     def _costing(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Of these and the cost."""
+        """Rates of states, costates and the cost."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
 
         def rates(t: Any, y: Array) -> Array:
@@ -132,7 +132,7 @@ class _OnArrays:
         return rates
 
     def _varied(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Of states, costates and derivatives of these."""
+        """Rates of states, costates and their derivatives by the start."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         rows = 2 * n
 

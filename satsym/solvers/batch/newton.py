@@ -58,7 +58,7 @@ class Nodes:
     error: Array
     """Estimate of the largest error, relative to the sizes of states and costates, shape (M,)."""
     outcome: NDArray[np.object_]
-    """Of :class:`Outcome`, shape (M,)."""
+    """An :class:`Outcome` of each, shape (M,)."""
 
     @property
     def solved(self) -> NDArray[np.bool_]:
@@ -157,7 +157,7 @@ def _rough(many: Many, z: Array, parts: int) -> tuple[Array, Array]:
 
 
 def _columns(chosen: NDArray[np.intp], count: int) -> NDArray[np.intp] | slice:
-    """The same columns; as a slice, which copies nothing, where they are all."""
+    """Chosen columns; as a slice, which copies nothing, where they are all."""
     return slice(None) if len(chosen) == count else chosen
 
 

@@ -89,7 +89,7 @@ def _put(found: Nodes, chosen: NDArray[np.intp], some: Nodes) -> None:
 
 
 def _nearest(many: Many, left: NDArray[np.intp], known: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Of those that are known, the one most like each that is left."""
+    """Which of the known ones is most like each that is left."""
     places = np.concatenate([many.initial, many.end, many.parameters])
     spread = np.ptp(places, axis=1)
     varied = spread > 0.0

@@ -27,7 +27,7 @@ MESHES = (30, 60, 120)
 """Intervals that are tried."""
 
 SAMPLES = 401
-"""Of a guess."""
+"""Values of a guess."""
 
 
 def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:

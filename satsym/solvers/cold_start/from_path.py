@@ -69,7 +69,7 @@ def _minimised(
     arrived: Callable[[Curve], bool] | None,
     order: int,
 ) -> Attempt:
-    """The same with so many stages; with fewer than all, what is found is rough."""
+    """Minimise the cost from the path with so many stages; with fewer than all, what is found is rough."""
     curve = paths.curve(problem, path).with_stages(order)
     steps, hard, tolerance = 0, False, ROUGHLY
     while True:

@@ -55,7 +55,7 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
 
 
 def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve, float]]) -> Attempt | None:
-    """The same without its cost; curves on the way, and the corrections that led to them, are put into a list."""
+    """The attempt without its cost; curves on the way, and the corrections that led to them, are put into a list."""
     curve, before = start.with_stages(FEWER), float("inf")
     system = System(problem, start.mesh, FEWER)
     for steps in range(1, FEW + 1):

@@ -22,7 +22,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.sweep import solving as forward_backward
 
 STEPS, SWEEPS = 200, 60
-"""Of each sweep, and their number, which alone limits it: what is found must not depend on the clock."""
+"""Steps of each sweep, and the number of sweeps, which alone limits it: what is found must not depend on the clock."""
 
 ROUGH = 1e-5
 """Residual at which sweeps end: Newton's method goes on from there."""

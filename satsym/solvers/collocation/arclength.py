@@ -49,7 +49,7 @@ class Direction:
     fraction: float
 
     def times(self, factor: float) -> Direction:
-        """The same direction, longer or shorter."""
+        """This direction, longer or shorter."""
         return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.fraction)
 
 

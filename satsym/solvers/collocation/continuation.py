@@ -22,7 +22,7 @@ from satsym.solvers.control.corners import BEYOND, LAST_DIGITS, beyond, enclosed
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
-"""Of the largest violation, by which the bounds move in first."""
+"""Share of the largest violation by which the bounds move in first."""
 
 FASTER = 1.7
 QUICK = 6
@@ -88,7 +88,7 @@ def corners(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> Arra
 
 
 def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> list[Array]:
-    """The same, bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
+    """Violations bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
     if not problem.control_set.bounded:
         return []
 

@@ -72,7 +72,7 @@ class Curve:
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:
-        """The same curve, as far as that can be, on another mesh or with another number of stages."""
+        """This curve, as far as that can be, on another mesh or with another number of stages."""
         if mesh is self.mesh:
             return self.with_stages(order)
         tau = stage_times(mesh, order)
@@ -80,7 +80,7 @@ class Curve:
         return Curve(mesh, self(mesh), stages, self.theta)
 
     def with_stages(self, order: int) -> Curve:
-        """The same polynomials by their values at another number of Gauss points."""
+        """The polynomials by their values at another number of Gauss points."""
         if order == self.order:
             return self
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)

@@ -19,7 +19,7 @@ ROUGHLY = 1e-5
 """Accuracy of solutions on the way."""
 
 SHORTEST = 1.0 / 256.0
-"""Of a step of the continuation, as a share of the way."""
+"""Shortest step of the continuation, as a share of the way."""
 
 MOST_INTERVALS = 60
 

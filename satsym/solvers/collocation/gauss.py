@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 from satsym.arrays import Array
 
 STAGES = 5
-"""Of the collocation equations that are solved: order 10 at the nodes of a mesh."""
+"""Stages of the collocation equations that are solved: order 10 at the nodes of a mesh."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ def lagrange(stages: int, places: Array) -> Array:
 
 
 def barycentric(stages: int, places: Array) -> tuple[Array, Array]:
-    """The same transposed, before it is divided by what each place comes to, shapes (stages + 1, M) and (M,)."""
+    """Transposed weights of :func:`lagrange`, not yet divided, and the divisors, shapes (stages + 1, M) and (M,)."""
     own = scheme(stages)
     table: Array = places - own.known[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -32,13 +32,13 @@ class Scale:
     """Units of the scaled problem."""
 
     state: Array
-    """Of each state, shape (n,)."""
+    """The unit of each state, shape (n,)."""
     cost: float
-    """Of the cost; a costate has the unit cost over state."""
+    """The unit of the cost; a costate has the unit cost over state."""
 
     @cached_property
     def both(self) -> Array:
-        """Of states and costates, shape (2n, 1)."""
+        """Units of states and costates, shape (2n, 1)."""
         return np.concatenate([self.state, self.cost / self.state])[:, None]
 
     @cached_property
@@ -103,7 +103,7 @@ class TwoPoint:
         return np.array(self.instance.initial) / self.scale.state
 
     def starting_at(self, initial: Array) -> TwoPoint:
-        """The same problem from another initial state, scaled."""
+        """This problem from another initial state, scaled."""
         return replace(self, instance=replace(self.instance, initial=tuple((initial * self.scale.state).tolist())))
 
     @cached_property
@@ -117,7 +117,7 @@ class TwoPoint:
         return self.instance.control_set.relaxed(self.relaxation)
 
     def relaxed(self, by: float) -> TwoPoint:
-        """The same problem with bounds relaxed by so much: this one where there are none to be moved."""
+        """This problem with bounds relaxed by so much: itself where there are none to be moved."""
         moved = self.instance.control_set.relaxed(by)
         return self if moved == self.control_set else replace(self, relaxation=by)
 

@@ -15,7 +15,7 @@ POINTS = 9
 """Points of the straight line at which sizes and responses are looked at."""
 
 NO_SLOPE = 1e-40
-"""Of costates that are none, see :func:`satsym.solvers.control.regularised.sloping`."""
+"""Largest slope of costates that are none, see :func:`satsym.solvers.control.regularised.sloping`."""
 
 BESIDE, ROUNDED = 0.1, 1e-12
 """How far beside the straight line slopes are looked at once more, as a share of the sizes of states, and the share of

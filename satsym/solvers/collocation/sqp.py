@@ -130,7 +130,7 @@ class _Merit:
 
     @property
     def value(self) -> float:
-        """Of the penalty function, at the curve."""
+        """Value of the penalty function, at the curve."""
         return float(self.cost + self.penalty @ self.violated)
 
     def slope(self) -> float:
@@ -155,7 +155,7 @@ class _Trial:
     cost: float
     violated: Array
     value: float
-    """Of the penalty function; infinite where it is not a number."""
+    """Value of the penalty function; infinite where it is not a number."""
     fraction: float
     halved: bool
     """The share, and whether it is less than the first one."""

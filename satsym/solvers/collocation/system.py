@@ -29,7 +29,7 @@ class Residual:
     rates: Array
     """A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time."""
     saltations: dict[int, Saltation] = field(default_factory=dict)
-    """Of jumps of the law, by the intervals at whose ends these are."""
+    """Saltations at jumps of the law, by the intervals at whose ends these are."""
 
     @property
     def by_interval(self) -> Array:
@@ -59,7 +59,7 @@ class System:
         return self._summed(curve, self.problem.running_cost(self.tau, curve.flat, curve.theta))
 
     def _summed(self, curve: Curve, running: Array) -> float:
-        """The same by the running cost at its stages, shape (N s,)."""
+        """The cost of a curve, from the running cost at its stages, shape (N s,)."""
         problem, theta = self.problem, curve.theta
         integral = float((running.reshape(self.intervals, self.order) @ self.scheme.weights) @ self.widths)
         return problem.elapsed(theta) * integral + problem.terminal_cost(curve.nodes[:, -1], theta)
@@ -85,7 +85,7 @@ class System:
         )
 
     def _saltations(self, ends: Array, theta: Array) -> dict[int, Saltation]:
-        """Of the jumps, by the intervals at whose ends these are; where those end is given, shape (2n, N)."""
+        """Saltations at the jumps, by the intervals that end there; ``ends`` has shape (2n, N)."""
         found = {}
         for jump in self.jumps:
             k = int(np.abs(self.mesh[1:] - jump.time).argmin())
@@ -117,7 +117,7 @@ class System:
 
 
 def costs(along: Sequence[tuple[System, Curve]]) -> list[float]:
-    """Of several curves of one problem, asked for at once where no extra unknowns tell them apart."""
+    """Costs of several curves of one problem, asked for at once where no extra unknowns tell them apart."""
     if not along or along[0][0].problem.unknowns:
         return [system.cost(curve) for system, curve in along]
     tau, z = (np.concatenate(rows, axis=-1) for rows in zip(*((s.tau, c.flat) for s, c in along), strict=True))

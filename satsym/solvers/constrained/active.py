@@ -27,7 +27,7 @@ from satsym.solvers.constrained.law import by_newton, stationary
 from satsym.solvers.constrained.structure import Active
 
 STEP = 1e-2
-"""Of differences, relative to the time in which a state or a costate changes by its size."""
+"""Step of differences, relative to the time in which a state or a costate changes by its size."""
 
 EIGHTH = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
 """Weights of central differences of order eight."""
@@ -36,7 +36,7 @@ Rates = Callable[[NDArray[Any], NDArray[Any]], Array]
 
 
 def order(instance: Instance, constraint: int) -> int:
-    """Of a constraint."""
+    """The order of a constraint: how often it is differentiated until a control appears."""
     return instance.model.spec.path_constraints[constraint].order
 
 
@@ -176,7 +176,7 @@ class Together:
 
     @property
     def _of_one_order(self) -> Array:
-        """Of constraints on states of the same order: alone each obeys M_kk eta_k = -a_k, together M eta = -a."""
+        """Multipliers of constraints on states of one order: alone M_kk eta_k = -a_k, together M eta = -a."""
         effect = self.effects(list(self.active))
         gram = effect @ np.linalg.solve(self.curvature, effect.swapaxes(1, 2))
         alone = np.array([one_by_one.multiplier(self.instance, k, self.t, self.z) for k in self.active])

@@ -196,7 +196,7 @@ class Arcs:
     instance: Instance
     structure: Structure
     intervals: tuple[int, ...]
-    """Of each arc."""
+    """Intervals of each arc."""
     unknown: Array
     passed: tuple[tuple[float, float], ...] = ()
     """Cost, and the size of a step or how far conditions were from holding, one by one on the way here."""
@@ -274,7 +274,7 @@ class Arcs:
 
     @property
     def times(self) -> Array:
-        """Of the start, the junctions and the end."""
+        """Times of the start, the junctions and the end."""
         first = self.places[-1]
         return np.concatenate([[self.instance.t0], self.unknown[first : first + len(self.junctions)], [self.end]])
 
@@ -303,20 +303,20 @@ class Rest:
     """Places of what is unknown besides the values on arcs."""
 
     times: int
-    """Of the first junction's."""
+    """Where the time of the first junction is."""
     end: int | None
-    """Of a free final time."""
+    """Where a free final time is."""
     jumps: dict[tuple[int, int], int]
     """By junction and constraint."""
     nu: int
-    """Of the first multiplier of terminal constraints."""
+    """Where the first multiplier of terminal constraints is."""
     constraints: int
     pressed: int
     """Multipliers at the end that follow them."""
 
     @property
     def size(self) -> int:
-        """Of the whole row."""
+        """Length of the whole row."""
         return self.nu + self.constraints + self.pressed
 
     def bounds(self, arc: int, count: int) -> tuple[int | None, int | None]:

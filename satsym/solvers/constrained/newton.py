@@ -114,7 +114,7 @@ def cost(arcs: Arcs) -> float:
 
 
 def _cost_or_none(arcs: Arcs) -> float:
-    """The same on the way to an extremal, where numbers may fail: NaN then."""
+    """The cost on the way to an extremal; NaN where numbers fail."""
     found = tried(lambda: cost(arcs))
     return float("nan") if found is None else found
 

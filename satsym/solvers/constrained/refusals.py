@@ -13,7 +13,7 @@ from satsym.solvers.constrained.arcs import decided_at_end, given_end, terms, va
 from satsym.status import BadInput
 
 ROUNDING = 1e-12
-"""Of a constraint that holds exactly, relative to its terms."""
+"""Rounding of a constraint that holds exactly, relative to its terms."""
 
 DURATIONS = (0.37, 1.0, 2.6)
 """Where it is looked whether a constraint at the given end changes with time."""

@@ -82,7 +82,7 @@ def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
 
 
 def sizes(arcs: Arcs) -> Array:
-    """Of each constraint along the way, shape (h,)."""
+    """Sizes of each constraint along the way, shape (h,)."""
     places = (_with_controls(arcs, arc) for arc in range(len(arcs.intervals)))
     return np.asarray(np.max([measured(arcs.instance, *place) for place in places], axis=0))
 
@@ -192,7 +192,7 @@ def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _jumps(arcs: Arcs) -> list[tuple[int, int, float]]:
-    """Of all path constraints: at which junction, which, and its multiplier."""
+    """Jumps of all path constraints: at which junction, which, and its multiplier."""
     met = ((k, one) for k, one in enumerate(arcs.junctions) if one.event is not Event.INTERIOR)
     return [(k, which, arcs.jump(k, which)) for k, one in met for which, _ in one.jumps]
 

@@ -53,7 +53,7 @@ class Contact:
 
     @property
     def middle(self) -> float:
-        """Of both times."""
+        """The middle of both times."""
         return 0.5 * (self.start + self.end)
 
 

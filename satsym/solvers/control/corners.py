@@ -87,7 +87,7 @@ def _vertex(points: list[tuple[float, float]]) -> float | None:
 
 
 def _around(points: list[tuple[float, float]], new: tuple[float, float]) -> list[tuple[float, float]]:
-    """Of three points and one more the three around the least."""
+    """Three points around the least, of three and one more."""
     ordered = sorted([*points, new])
     least = min((1, 2), key=lambda k: ordered[k][1])
     return ordered[least - 1 : least + 2]

@@ -18,7 +18,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 HALVINGS = 48
-"""Of the time between two points, towards where the control moves most."""
+"""Halvings of the time between two points, towards where the control moves most."""
 
 MOVED = 1e-6
 """Share of the largest control by which one moves that may have jumped."""
@@ -51,9 +51,9 @@ class Saltation:
     leap: Array
     """Change of the rates, shape (2n,)."""
     excess: float
-    """Of H after the jump over H before."""
+    """Excess of H after the jump over H before."""
     slopes: Array
-    """Of the former by states and costates, shape (2n,)."""
+    """Slopes of the excess by states and costates, shape (2n,)."""
     drift: float
     """Its rate by explicit time."""
     speed: float
@@ -104,7 +104,7 @@ def jumps(law: Callable[[Array], Array], times: Array, left: float) -> list[Jump
 
 
 def saltation(instance: Instance, t: float, z: Array, jump: Jump, unit: Array, cost: float) -> Saltation:
-    """That of a jump.
+    """The saltation of a jump.
 
     Parameters
     ----------

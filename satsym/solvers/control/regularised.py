@@ -28,7 +28,7 @@ class Regularised(Instance):
     smoothing: float = 1.0
     """In the unit of the running cost over that of the squared control."""
     fraction: float = 1.0
-    """Of the weight of |u| that counts, 0 to 1."""
+    """Share of the weight of |u| that counts, 0 to 1."""
 
     @cached_property
     def control_set(self) -> ControlSet:

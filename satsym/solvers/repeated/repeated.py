@@ -40,7 +40,7 @@ class Answer:
     origin: Origin
     """From where it was found: the last answer, a straight line, or a cold start."""
     extremal: Extremal
-    """The same in scaled variables."""
+    """The extremal in scaled variables."""
 
 
 class Repeated:

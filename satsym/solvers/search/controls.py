@@ -85,7 +85,7 @@ class Controls:
 
     @property
     def loosened(self) -> Controls | None:
-        """The same without bounds; ``None`` where there are none, or where only they keep the cost from falling."""
+        """The variables without bounds; ``None`` where there are none, or only they keep the cost from falling."""
         if self.lifts or self.angles or any(norm.spot is not None for norm in self.norms):
             return None
         bounded = bool(self.norms) or bool(np.isfinite(self.lower).any() or np.isfinite(self.upper).any())

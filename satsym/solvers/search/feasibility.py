@@ -21,7 +21,7 @@ from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.transcription import FREE, Places
 
 INTERVALS = (40, 80)
-"""Of the meshes on which the least violation is looked for."""
+"""Intervals of the meshes on which the least violation is looked for."""
 
 REMAINING, UNAVOIDABLE = 0.5, 1e-6
 """Share of the violation on the coarse mesh that is left on the fine one, and share of the constraint's size, above
@@ -61,7 +61,7 @@ class Eased(Programme):
         return float(w[-1])
 
     def gradient(self, w: Array) -> Array:
-        """Of :meth:`objective`."""
+        """The derivatives of :meth:`objective` by all unknowns."""
         return np.append(np.zeros(self.unknowns - 1), 1.0)
 
     def values(self, w: Array) -> Array:

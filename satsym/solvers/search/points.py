@@ -21,10 +21,10 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.search.controls import Controls, rates
 
 STEP = 1e-30
-"""Of complex differences."""
+"""Step of complex differences."""
 
 DIFFERENCE = 1e-5
-"""Of real ones, in units of the sizes of what is moved."""
+"""Step of real differences, in units of the sizes of what is moved."""
 
 
 @dataclass(frozen=True)

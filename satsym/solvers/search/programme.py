@@ -40,7 +40,7 @@ class Programme(Transcription):
         return into, steps, places
 
     def _end_into(self, point: int) -> tuple[Array, Places]:
-        """The same of one point, whose controls count for nothing: a matrix (l, z), and places (z,)."""
+        """Local variables of one point by the unknowns, without its controls: a matrix (l, z), and places (z,)."""
         n, wide = self.points.states, len(self.globals)
         into = np.zeros((self.points.local, n + wide))
         into[range(n), range(n)] = self.sizes.states
@@ -60,7 +60,7 @@ class Programme(Transcription):
         return self._last_slopes[1]
 
     def gradient(self, w: Array) -> Array:
-        """Of :meth:`objective`."""
+        """The derivatives of :meth:`objective` by all unknowns."""
         _, steps, _ = self._local(w)
         into, grown, places = self._into
         slopes, cost = self._slopes(w)[-1], self._rates(w)[-1]

@@ -24,7 +24,7 @@ WITHIN = 1e2
 """Multiple of its size to which a state may grow in a start."""
 
 WAVES = 3
-"""Of which drawn starts are made."""
+"""Waves of which drawn starts are made."""
 
 SAME = 1e-9
 """Relative difference of a rate and a state that are one but for rounding."""

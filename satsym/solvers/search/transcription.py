@@ -54,7 +54,7 @@ NODES = np.concatenate([[0.0], RADAU])
 SLOPES = np.array([[one.deriv()(tau) for tau in RADAU] for one in basis(NODES)])
 """Derivatives (degree + 1, degree) of the polynomials through all nodes, at the collocation points."""
 WEIGHTS = np.array([one.integ()(1.0) - one.integ()(0.0) for one in basis(RADAU)])
-"""Of the quadrature."""
+"""Weights of the quadrature."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Sizes:
     duration: float
     cost: float
     free: Array
-    """Of what is free besides states and times."""
+    """Units of what is free besides states and times."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Transcription:
         before = np.tril(np.ones((self.phases, self.phases)), -1)
         own = np.equal.outer(self.phase, np.arange(self.phases))
         self.shares = before[self.phase] + own * place[:, None]
-        """Of the durations, row by row, in the time of a point."""
+        """Shares of the durations, row by row, in the time of a point."""
         self.steps = own * np.repeat(self.fractions, DEGREE)[:, None]
         self.weights = np.tile(WEIGHTS, self.intervals)
         unknown = self.instance.free
@@ -165,7 +165,7 @@ class Transcription:
         )
 
     def times(self, durations: Array, start: float) -> Array:
-        """Of all points, the initial time first."""
+        """Times of all points, the initial time first."""
         return start + np.concatenate([[0.0], self.shares @ durations])
 
     def _local(self, w: Array) -> tuple[Array, Array, Array]:
@@ -296,7 +296,7 @@ class Transcription:
         return self.points.states + self.controls.count
 
     def _places(self) -> list[int]:
-        """Of points on the way."""
+        """Places of points on the way."""
         return (DEGREE * np.cumsum([len(mesh) - 1 for mesh in self.meshes])[:-1]).tolist()
 
     def _way(self, y: Array) -> Array:

@@ -13,7 +13,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.shooting.runge_kutta import ORDER, advance
 
 MOST_STEPS = 32
-"""Of one arc; where more are needed, more arcs are better."""
+"""Steps of one arc at most; where more are needed, more arcs are better."""
 
 FAINT = 1e-2
 """Costates whose scaled size is below this are compared at this size: a return from so near feels the rounding of the
@@ -46,13 +46,13 @@ class Arcs:
         return found
 
     def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
-        """The same after a share of a correction; its first argument in shape (N+1, 2n)."""
+        """The arcs after a share of a correction; its first argument in shape (N+1, 2n)."""
         return type(self)(
             self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps
         )
 
     def with_steps(self, steps: int) -> Arcs:
-        """The same with another number of steps."""
+        """The arcs with another number of steps."""
         return type(self)(self.problem, self.mesh, self.nodes, self.theta, steps)
 
     def size(self, nodes: Array, theta: Array) -> float:
@@ -153,7 +153,7 @@ class Arcs:
         return self.problem.elapsed(self.theta) * self.problem.rates(tau, values, self.theta)
 
     def _varied_slope(self, tau: Array, values: Array) -> Array:
-        """The same with those of the variations, which are the other columns of values, shape (2n, 1 + 2n, N)."""
+        """Slopes with those of the variations, which are the other columns of values, shape (2n, 1 + 2n, N)."""
         elapsed, z = self.problem.elapsed(self.theta), values[:, 0]
         slopes = self.problem.jacobian(tau, z, self.theta).transpose(2, 0, 1)
         found = np.empty_like(values)
@@ -162,7 +162,7 @@ class Arcs:
         return found
 
     def _beginnings(self) -> list[Array]:
-        """Of the first steps of all arcs, of the second steps, and so on."""
+        """Beginnings of the first steps of all arcs, of the second steps, and so on."""
         return [self.mesh[:-1] + k * self.widths for k in range(self.steps)]
 
 

@@ -20,8 +20,7 @@ from satsym.solvers.simulation.stability import fastest, stable_steps
 Control: TypeAlias = Callable[[float, Sequence[float]], Sequence[float]]
 
 MOST_EVALUATIONS = 100_000
-"""Of the rates in one run, besides those that the fastest motion needs; what needs more is on its way to a singularity.
-"""
+"""Evaluations of rates in one run, besides those that its fastest motion needs; more are needed near a pole."""
 
 FOR_STABILITY = 4
 """Evaluations of DOP853 while the fastest motion decays by a factor e: twice what its stability needs."""
@@ -53,7 +52,7 @@ class Run:
     u: Array
     """States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end."""
     steps: int
-    """That the integrator took."""
+    """Steps that the integrator took."""
     left_domain: bool
     """Whether a state that must be positive vanished and so ended it."""
 

@@ -23,7 +23,7 @@ SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
 """Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
 
 SAFETY, SMALLEST_CHANGE, MOST = 0.7, 0.1, 4.0
-"""Of the next step: share of what the error allows, and bounds of its change."""
+"""Bounds of the next step: share of what the error allows, and the least and the largest change."""
 
 MOST_STEPS = 100_000
 
@@ -41,7 +41,7 @@ class Trajectory:
     values: Array
     """Shape (K, d)."""
     columns: int = len(SUBSTEPS)
-    """Of the extrapolation table that the steps needed at most."""
+    """Columns of the extrapolation table that the steps needed at most."""
 
     @property
     def end(self) -> Array:
@@ -113,7 +113,7 @@ def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, col
 def leap_and_error(
     rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)
 ) -> tuple[Array, Array]:
-    """The same with an estimate of its errors, that of the value of the next lower order, both of shape (d, M)."""
+    """Values at the ends with an estimate of their errors, from the next lower order, both of shape (d, M)."""
     return next(islice(leaps(rates, t, y, h), columns - 1, None))
 
 
@@ -125,7 +125,7 @@ def leap_varied(
     h: Array,
     columns: int = len(SUBSTEPS),
 ) -> tuple[Array, Array, Array]:
-    """The same, and how its ends follow their starts by the same rule for the variations, with the error of those.
+    """Values at the ends and how they follow their starts by the rule for the variations, with the error of those.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def leap_varied(
 
 @lru_cache
 def _weights(columns: int) -> Array:
-    """Of the columns in the last entry of the table and in that of the next lower order (Aitken, Neville), (2, K)."""
+    """Weights of the columns in the last entry of the table and in that of the next lower order (Aitken, Neville)."""
     squares = np.array(SUBSTEPS[:columns], dtype=float) ** 2
     found = np.zeros((2, columns))
     for row, own in enumerate((squares, squares[1:])):
@@ -174,7 +174,7 @@ def _weights(columns: int) -> Array:
 def leaps(
     rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, together: int = 1
 ) -> Iterator[tuple[Array, Array]]:
-    """The same with one column, two, and so on; the first has an infinite error, having none to be compared with.
+    """Values at the ends with one column, two, and so on; the first has an infinite error, with nothing to compare.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def _midpoint(rates: Callable[[Any, Array], Array], t: Any, y: Array, slope: Arr
 
 
 def _midpoints(rates: Callable[[int, Array], Array], begin: Array, change: Array, width: Array) -> list[Array]:
-    """The same for the first columns of the table side by side.
+    """Midpoint values of the first columns of the table side by side.
 
     Parameters
     ----------

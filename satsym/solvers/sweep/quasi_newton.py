@@ -201,7 +201,7 @@ class Tangent:
         return field if self.normal is None else field - self.normal * (self.normal * field).sum(axis=0)
 
     def free(self, field: Array) -> Array:
-        """The same, and zero where controls are held."""
+        """A field without its normal components, and zero where controls are held, shape (m, M)."""
         return np.where(self.moves, self.along(field), 0.0)
 
 

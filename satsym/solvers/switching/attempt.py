@@ -41,8 +41,8 @@ NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
 
 FLEETING = 1e-4
-"""The same beside a singular arc or at an end, if there is an extremal without: there a switching function may have a
-double zero, and within so little time it comes to nothing that could be seen."""
+"""Shortest arc beside a singular arc or at an end, if there is an extremal without: a switching function may have
+a double zero, and within so little time it comes to nothing that could be seen."""
 
 
 class Origin(Enum):
@@ -110,7 +110,7 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
 
 
 def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> Exact | None:
-    """The same without an arc that is next to nothing beside a singular one or at an end, if that is one as well."""
+    """The extremal without an arc that is next to nothing beside a singular one or at an end, if there is one."""
     lengths, lasting = found.structure.durations(found.at.times, instance.t0, found.at.end), found.at.end - instance.t0
     for control, (row, own) in enumerate(zip(found.structure.levels, lengths, strict=True)):
         for arc in np.flatnonzero(own < FLEETING * lasting).tolist():
@@ -145,7 +145,7 @@ def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
 
 
 def _in_parts(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """The same where deviations grow so much that arcs have to begin anew; ``None`` where they do not."""
+    """The extremal where deviations grow so much that arcs have to begin anew; ``None`` where they do not."""
     course, n = at.course, len(instance.initial)
     if course is None:
         return None

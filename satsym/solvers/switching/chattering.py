@@ -37,7 +37,7 @@ POINTS = 12
 """Gauss points in each interval of the mesh, on which bounds are met at nodes only."""
 
 LEVELS = 5
-"""Of the least smoothed problems that are solved accurately, one after the other, until one is."""
+"""Number of the least smoothed problems that are solved accurately, one after the other, until one is."""
 
 INSIDE = 1e-3
 """Share of the width of its range by which a control is off both bounds, where it may chatter."""
@@ -59,7 +59,7 @@ class Look:
     longest: float
     """The longest time for which such a control is off both bounds."""
     width: float
-    """Of the cost interval, relative to the cost, roughly."""
+    """Width of the cost interval, relative to the cost, roughly."""
 
 
 def look(instance: Instance, near: Smoothed, seen: Sample) -> Look:

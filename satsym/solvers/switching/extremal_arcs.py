@@ -22,7 +22,7 @@ TOLERANCE = 3e-14
 """Error of a step, relative to the size of each component."""
 
 ROUGH = 1e-7
-"""The same where no more is asked for."""
+"""Error of a step where no more is asked for, relative to the size of each component."""
 
 ROUNDING = 1e-14
 """Relative length of a piece in which nothing happens."""
@@ -63,7 +63,7 @@ class Unknowns:
     end: float
     """The final time."""
     multipliers: Array
-    """Of terminal constraints."""
+    """Multipliers of terminal constraints."""
     stops: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """States and costates at the stops, shape (M, 2n)."""
     jumps: Array = field(default_factory=lambda: np.zeros(0))

@@ -125,7 +125,7 @@ class Field:
         return float(self.model.magnitude_weight(t, z[: self.n], z[self.n :], self.p)[control])
 
     def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
-        """That weight by states and costates, shape (2n,), and its rate along the extremal."""
+        """The weight of a magnitude differentiated by states and costates, shape (2n,); its rate along the extremal."""
         steps = np.concatenate([np.eye(2 * self.n), np.array(self.rates(t, z))[:, None]], axis=1)
         x, lam = np.split(np.array(z)[:, None] + 1j * NUDGE * steps, 2)
         times = t + 1j * NUDGE * np.append(np.zeros(2 * self.n), 1.0)
@@ -153,7 +153,7 @@ class Field:
         return sigma + ratio * self.weight(t, z, control), rate + ratio * self.weight_gradient(t, z, control)[1]
 
     def passing_gradient(self, t: float, z: list[float], control: int, ratio: float) -> Array:
-        """The same by states and costates, shape (2n,)."""
+        """Derivatives by states and costates of what vanishes where a control passes between levels, shape (2n,)."""
         gradient = self.gradient(t, z, control)
         return gradient + ratio * self.weight_gradient(t, z, control)[0] if ratio else gradient
 

@@ -46,5 +46,5 @@ def costs(instance: Instance) -> tuple[float, ...]:
 
 
 def resting(instance: Instance) -> tuple[bool, ...]:
-    """Of which controls rest may be best for a while: those whose magnitudes cost something, or stand in the motion."""
+    """Which controls may best be at rest for a while: those whose magnitudes cost something, or stand in the motion."""
     return tuple(cost > 0.0 or moves for cost, moves in zip(costs(instance), moving(instance), strict=True))

@@ -22,7 +22,7 @@ from satsym.solvers.switching.magnitudes import moving
 Function = Callable[..., Any]
 
 STEP = 1e-6
-"""Of the central difference that gives the rate of the reference, relative to the time."""
+"""Step of the central difference that gives the rate of the reference, relative to the time."""
 
 
 def minimum_time(instance: Instance) -> Instance | None:
@@ -83,7 +83,7 @@ class _LeastTime:
         return alone
 
     def _alone_batch(self, name: str, place: int) -> Function:
-        """The same of its batch form."""
+        """The part of a batch function that one argument makes: what is left when that is zero is taken off."""
 
         def alone(*given: Any, out: Array | None = None) -> Array:
             batch, without = self.whole[f"{name}_batch"], (*given[:place], 0.0 * given[place], *given[place + 1 :])
@@ -99,7 +99,7 @@ class _LeastTime:
         return np.asarray(found)
 
     def extremal_jacobian(self, t: float, x: Any, u: Any, lam: Any, p: Any) -> tuple[float, ...]:
-        """The same at one point, row by row."""
+        """The rates of states and costates by both at one point, controls saturated, row by row."""
         n, plain = self.n, self.whole["extremal_jacobian"]
         found, without = (np.array(plain(t, x, u, at, p)).reshape(2 * n, 2 * n) for at in (lam, self.nothing))
         found[n:, :n] -= without[n:, :n]
@@ -121,7 +121,7 @@ class _LeastTime:
     def canonical_jacobian_batch(
         self, t: Array, x: Array, lam: Array, p: Any, bounds: Any, out: Array | None = None
     ) -> Array:
-        """These rates by states and costates."""
+        """The canonical rates under the law by states and costates, shape (2n, 2n, N)."""
         n, m = self.n, self.m
         u, free = self.law(t, x, lam, p, bounds)
         smoothing = ControlSet.from_arguments(self.model.spec, bounds).smoothing

@@ -58,7 +58,7 @@ class Refined:
     iterations: int
     """Corrections."""
     sizes: Array
-    """Of states and costates, which residuals are relative to, shape (2n,)."""
+    """Sizes of states and costates, which residuals are relative to, shape (2n,)."""
     stops: tuple[Stop, ...] = ()
     """Where arcs begin anew."""
 
@@ -71,7 +71,7 @@ class Equations:
     structure: Structure
     """What is solved, and with which levels."""
     sizes: Array
-    """Of states and costates, shape (2n,)."""
+    """Sizes of states and costates, shape (2n,)."""
     duration: float
     """Typical."""
     stops: tuple[Stop, ...] = ()
@@ -252,7 +252,7 @@ class _Switch:
         return value / size, self._moving(field.passing_gradient(*place, ratio), rate) / size
 
     def rate_row(self, sizes: Array) -> tuple[float, Array]:
-        """The same for the rate of the switching function."""
+        """The rate of the switching function, by the unknowns; in units of its own size."""
         field, place = self.field, (self.t, self.z, self.control)
         gradient = field.rate_gradient(*place)
         _, rate = field.switching(*place)
@@ -262,7 +262,7 @@ class _Switch:
     def vanishing_row(
         self, value: float, gradient: Array, by_time: float, sizes: Array | None = None
     ) -> tuple[float, Array]:
-        """The same for a function of states and time, in units of its own size, or as it is."""
+        """A function of states and time, by the unknowns; in units of its own size, or as it is."""
         size = 1.0 if sizes is None else max(float(np.abs(gradient) @ sizes), 1e-300)
         rate = by_time + float(gradient @ np.array(self.field.rates(self.t, self.z)))
         return value / size, self._moving(gradient, rate) / size

@@ -20,7 +20,7 @@ GROWS = 30.0
 """By so much deviations may grow between stops."""
 
 HALVINGS = 5
-"""Of an arc at most: what grows in so small a part as well is no flow that stops would tame."""
+"""Halvings of an arc at most: what grows in so small a part as well is no flow that stops would tame."""
 
 
 def stops(instance: Instance, at: Guess, course: Course, sizes: Array) -> tuple[tuple[Stop, ...], tuple[float, ...]]:

@@ -62,7 +62,7 @@ class Structure:
 
     @property
     def switches(self) -> int:
-        """Of all controls."""
+        """Switches of all controls."""
         return sum(len(row) - 1 for row in self.levels)
 
     @property
@@ -136,7 +136,7 @@ class Course:
         return np.array([np.interp(time, self.times, row) for row in self.z])
 
     def sizes(self) -> Array:
-        """Of states and costates, shape (2n,)."""
+        """Sizes of states and costates, shape (2n,)."""
         return np.asarray(np.abs(self.z).max(axis=1))
 
 

@@ -141,7 +141,7 @@ def shown_by(instance: Instance) -> list[int]:
 
 
 def resting(instance: Instance) -> tuple[bool, ...]:
-    """Of what switches, what may be best at rest for a while."""
+    """Which of what switches may best be at rest for a while."""
     if instance.model.spec.throttled:
         return (False,) * len(instance.control_set.switching[0])
     return magnitudes.resting(instance)

@@ -16,7 +16,7 @@ from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 from satsym.solvers.switching.throttled import signs
 
 PANELS, POINTS = 20, 8
-"""Of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""
+"""Panels of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""
 
 NEAR_ENDS = np.geomspace(1e-6, 1e-2, 9)
 """Shares of an arc after its start and before its end at which its switching functions are looked at as well: where one
@@ -24,7 +24,7 @@ vanishes there, it may have the wrong sign for a moment only."""
 
 
 DECIDING = 1e-3
-"""Of what another control decides on: a switching function that is always smaller is compared with so much of that."""
+"""Share of what another control decides on, with which a switching function that is always smaller is compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +34,9 @@ class Trajectory:
     arcs: list[Arc]
     """Exact arcs that have a length."""
     stations: list[tuple[Array, Array, int]]
-    """Of each arc: starts of the integrator's steps, times (S,) and values (2n, S), and the columns they need."""
+    """Starts of the integrator's steps on each arc, times (S,) and values (2n, S), and the columns they need."""
     points: list[tuple[Array, Array, Array, Array]]
-    """Of each arc: Gauss points, shape (N,), with their weights, values (2n, N) and controls (m, N) there."""
+    """Gauss points of each arc, shape (N,), with their weights, values (2n, N) and controls (m, N) there."""
 
     @classmethod
     def of(cls, arcs: list[Arc], sizes: Array) -> Trajectory:
@@ -58,7 +58,7 @@ class Trajectory:
 
     @property
     def looked_at(self) -> list[tuple[Array, Array]]:
-        """Of each arc times, shape (N,), and values (2n, N): Gauss points, ends, and what is next to these."""
+        """Times of each arc, shape (N,), and values (2n, N): Gauss points, ends, and what is next to these."""
         tables = []
         for which, (arc, (inside, _, values, _)) in enumerate(zip(self.arcs, self.points, strict=True)):
             near = NEAR_ENDS * (arc.end - arc.start)
@@ -115,7 +115,7 @@ class Violation:
     end: float
     """The times between which another level would be better."""
     level: int
-    """That level."""
+    """The level that would be better."""
     amount: float
     """How far the switching function is on the wrong side, relative to its largest value; or how far the control is
     beyond its bounds, relative to the distance between them."""

@@ -24,7 +24,7 @@ ITERATIONS, POLISHING, DEPARTURES = 60, 4, 3
 """Steps of the trust region, of Newton's method at its end, and saddles that are left."""
 
 FIRST = 0.05
-"""Of the unit of each unknown, by which it is changed first: to see whether anything depends on it, and how much."""
+"""Share of the unit of each unknown by which it is changed first, to see how much depends on it."""
 
 NEAR = 1e-3
 """Units by which they are changed to measure the curvature."""

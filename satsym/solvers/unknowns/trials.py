@@ -18,7 +18,7 @@ from satsym.status import Status
 from satsym.wording import counted
 
 Solver = Callable[[Instance, Progress | None], Solution]
-"""Of an instance with everything given."""
+"""A solver of an instance with everything given."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Trial:
     """In units, from the first guess."""
     solution: Solution
     slope: Array
-    """Of the minimum cost, by each unit."""
+    """Slope of the minimum cost, by each unit."""
     residual: float
     """The largest of them, relative."""
 
@@ -40,7 +40,7 @@ class Trial:
 
     @property
     def size(self) -> float:
-        """That of the cost, and of what it changes by."""
+        """The size of the cost, and of what it changes by."""
         return max(abs(self.cost), float(np.abs(self.slope).max(initial=0.0)), 1e-300)
 
 

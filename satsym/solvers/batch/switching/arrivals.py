@@ -28,7 +28,7 @@ FOLLOWED = 1e-7
 """Relative difference of the reference's rate, by differences, from that of a motion without control."""
 
 STEP = 1e-5
-"""Of these differences, relative to times."""
+"""Step of the differences, relative to times."""
 
 
 @dataclass(frozen=True, eq=False)

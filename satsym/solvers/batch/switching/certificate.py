@@ -30,7 +30,7 @@ PARTS = (1, 2, 4, 8)
 """Into which arcs are taken until errors of the flow are small enough."""
 
 PLACES = np.array([1e-3, 0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98, 1.0 - 1e-3])
-"""Of an arc, at which H and switching functions are looked at."""
+"""Shares of an arc at which H and switching functions are looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class _Flow:
 
     begins: Array
     lengths: Array
-    """Of the arcs, shapes (K, M)."""
+    """Lengths of the arcs, shapes (K, M)."""
     u: Array
     """Controls on each arc, shape (K, m, M)."""
     values: Array
@@ -60,12 +60,12 @@ class _Many:
         return self.found.instances[0].model
 
     def parameters(self, times: int = 1) -> tuple[Array, ...]:
-        """Of each, so many times one after the other."""
+        """Parameters of each, so many times one after the other."""
         rows = np.array([one.parameters for one in self.found.instances]).reshape(len(self.found.instances), -1)
         return tuple(np.tile(rows.T, times))
 
     def rates(self, u: Array, p: tuple[Array, ...], t: Array, y: Array) -> Array:
-        """Of states, costates and derivatives of the states."""
+        """Rates of states, costates and derivatives of the states."""
         n, model = len(self.found.costates), self.model
         x, lam = y[:n], y[n : 2 * n]
         rows = [model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)]
@@ -288,7 +288,7 @@ def positive_across(by: Array, hessian: Array) -> NDArray[np.bool_]:
 
 
 def _jump_rates(found: Arrivals, flow: _Flow) -> Array:
-    """Of H where controls switch, shape (S, M); whatever it is where arcs have no length."""
+    """Rates at which H jumps where controls switch, shape (S, M); whatever they are where arcs have no length."""
     many, n, count = _Many(found), len(found.costates), found.costates.shape[1]
     rates, p = np.empty(found.times.shape), many.parameters()
     for k, which in enumerate(found.controls):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 TERMS = 14
-"""Of a series, for a step whose product with the motion's rates is an eighth: they leave nothing out."""
+"""Terms of a series, for a step whose product with the motion's rates is an eighth: they leave nothing out."""
 
 CORNERS = 80
 """Support points for a plane at most."""
@@ -163,7 +163,7 @@ def passed(
 
 
 def minimum(area: float, low: float, high: float) -> float:
-    """Of what a control does to costates times states."""
+    """The least of what a control does to costates times states."""
     return min(area * low, area * high)
 
 

@@ -27,7 +27,7 @@ ROUNDS = 40
 """Planes at most."""
 
 SWITCHES = 24
-"""Of all controls at most."""
+"""Switches of all controls at most."""
 
 TIGHT, PRECISE = 0.1, 1e-3
 """Shares of its distance by which a plane may be nearer than the set."""

@@ -22,7 +22,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
 
 POINTS, MORE = 16, 24
-"""Of each interval, at first and where polynomials through so many leave out too little for a finer mesh."""
+"""Points of each interval, at first and where polynomials through so many leave out too little for a finer mesh."""
 
 MOST = 6
 CONTRACTION = 0.1

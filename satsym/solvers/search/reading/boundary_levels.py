@@ -27,7 +27,7 @@ from satsym.solvers.switching.structure import (
 from satsym.solvers.switching.trajectory import runs
 
 SHORT, OFF = 0.5, 1e-6
-"""Of an interval, an arc at an end that no interval shows; and share of its size by which a boundary is not met."""
+"""Length of an arc at an end that no interval shows, in intervals; and share of its size that a boundary may be off."""
 
 NEAR = 1e-2
 """Share of a constraint's terms that its slacks are measured by where none is larger."""

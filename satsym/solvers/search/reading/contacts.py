@@ -53,7 +53,7 @@ class Along:
 
     @property
     def times(self) -> Array:
-        """Of the points, shape (N,)."""
+        """Times of the points, shape (N,)."""
         return self.at.times[1:]
 
     @cached_property

@@ -25,10 +25,10 @@ STEP, MOST = 1.1, 120
 """Ratio of durations of which one is chosen, and how many are looked at."""
 
 TRIED = 4
-"""Of their local minima, the cheapest first."""
+"""Local minima of the cost over the duration that are tried, the cheapest first."""
 
 HALVINGS = 12
-"""Of the time between two of them, until that with the least cost is known well enough."""
+"""Halvings of the time between two durations, until that with the least cost is known well enough."""
 
 FINER = (1, 5)
 """How many times more steps than usual show a structure, one after the other."""

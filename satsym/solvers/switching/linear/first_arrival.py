@@ -20,7 +20,7 @@ from satsym.solvers.switching.linear.linear_motion import LinearMotion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows, goal, steps
 
 PLANES = 200
-"""That are looked for."""
+"""Planes that are looked for."""
 
 HORIZON = 2**17
 """Steps after which a plane that still tells them apart does so for ever, as far as anyone will wait."""
@@ -48,7 +48,7 @@ class Arrival:
     duration: float
     """From the start; nothing arrives in less than the first of them."""
     costates: tuple[Array, ...]
-    """Of all states at the end, shape (n,), without a scale, one for each way to look for them."""
+    """Costates of all states at the end, shape (n,), without a scale, one for each way to look for them."""
 
 
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:

@@ -19,7 +19,7 @@ SAME = 1e-12
 """Relative difference of coefficients that is rounding."""
 
 TERMS = 18
-"""Of the exponential series, once its argument is below one half."""
+"""Terms of the exponential series, once its argument is below one half."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +31,10 @@ class LinearMotion:
     drift: Array
     """A, B and c: shapes (n, n), (n, m) and (n,)."""
     rate: float
-    """Of the cost with time; NaN where the cost is of another form."""
+    """Rate of the cost with time; NaN where the cost is of another form."""
     slope: Array
     weight: Array
-    """Of the cost with controls and with their magnitudes, shape (m,)."""
+    """Weights of controls and of their magnitudes in the cost, shape (m,)."""
 
     @property
     def priced(self) -> bool:

@@ -25,9 +25,9 @@ class Near:
     """A point next to the nearest."""
 
     point: Array
-    """Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one."""
+    """Point of the set, shape (d,): also the direction of a hyperplane that separates it from the origin, if any."""
     distance: float
-    """Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none."""
+    """Distance of the hyperplane from the origin, a lower bound of the set's; not positive where there is none."""
     corners: Array
     fractions: Array
     """Support points, shape (k, d), whose mean with these weights the point is."""

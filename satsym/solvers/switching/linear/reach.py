@@ -30,7 +30,7 @@ TIGHT = 0.1
 """Share of its distance by which a hyperplane may be nearer than the set."""
 
 SEARCHES = 60
-"""Of hyperplanes, one after the other, until the cost is found."""
+"""Searches for hyperplanes, one after the other, until the cost is found."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Priced:
     cost: float
     """A bound from below that is met up to the accuracy of the search."""
     costate: Array
-    """Of all states at the end, shape (n,); the optimum minimises H with it."""
+    """Costates of all states at the end, shape (n,); the optimum minimises H with them."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,7 +36,7 @@ class Plane:
     """The effect of what moves without control, integrated, and its magnitude."""
 
     def beyond(self, initial: Array, wanted: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
-        """Of which starts, shape (n, M), no control within bounds, (m, M), leads to the end, or past it, shape (M,).
+        """Starts, shape (n, M), from which no control within bounds, (m, M), leads to the end, or past it, shape (M,).
 
         So much less than the end asks for is a proof, as far as the integration is right.
 
