@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from sympy import Rational, nsolve
 
+import satsym
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
@@ -175,3 +176,21 @@ def test_a_guess_that_leads_nowhere_does_no_harm(guess):
 def test_without_a_weight_on_time_nothing_is_said_to_be_cheaper_when_shorter():
     for name in (TWO, FOUR):
         assert "shorter" not in by_search.collocation(weighed(name, 0.0)).message
+
+
+def test_a_cold_start_does_not_depend_on_the_units() -> None:
+    """In kilometres and seconds a thrust of one is a hundred times gravity, and no guess of what is worth its cost."""
+    plain = satsym.solve(FOUR)
+    radius, rate = 6778.14, 0.0011313
+    case = plain.instance.case
+    units = np.array([radius, radius * rate, 1.0, rate])
+    initial = dict(zip(("r", "r_dot", "theta", "theta_dot"), (units * case.initial).tolist(), strict=True))
+    weights = dict(zip((one.symbol for one in case.model.spec.parameters), case.parameters, strict=True))
+    weight = weights["c0"] * radius**2 * rate**4
+    final = dict.fromkeys(initial, "reference")
+    parameters = {"sigma": radius, "omega": rate, "c0": weight}
+    found = satsym.solve(
+        satsym.Instance.of(case.model.spec.name, parameters=parameters, initial=initial, final=final, tf="free")
+    )
+    assert found.objective == pytest.approx(plain.objective * radius**2 * rate**3, rel=1e-9)
+    assert found.found.times[-1] == pytest.approx(plain.found.times[-1] / rate, rel=1e-8)

@@ -21,6 +21,9 @@ and by how much a step is shortened that goes further."""
 FAR, SMALLEST, LARGEST = 0.9, 1e-3, 1e-2
 """Share of the way that is far enough; between which errors of a step it keeps its length."""
 
+SCALES = 10.0 ** np.arange(-12.0, 7.0)
+"""Magnitudes of controls without bounds that are looked at."""
+
 
 def first_duration(instance: Instance, controls: Controls) -> float:
     """The duration that is given or guessed, or else the least in which constant controls have moved every state."""
@@ -39,18 +42,30 @@ def _time_scale(instance: Instance) -> float:
 def _moved(instance: Instance, controls: Controls) -> float | None:
     start = np.array(instance.initial)
     goal = np.abs(wanted(instance, instance.t0) - start)
-    first = _reached(instance, controls, np.array(_constant(controls)).T, start, goal)
+    first = _reached(instance, controls, np.array(_constant(instance, controls)).T, start, goal)
     found = first[(goal > 0.0) & np.isfinite(first)]
     return float(found.max()) if len(found) else None
 
 
-def _constant(controls: Controls) -> list[Array]:
-    """Controls at rest, and each of them at both of its bounds."""
+def _affordable(instance: Instance, controls: Controls, k: int) -> float:
+    """The power of ten at which a control alone costs about as much as time does; one where time costs nothing."""
+    t, x = np.full(len(SCALES) + 1, instance.t0), np.repeat(np.array(instance.initial)[:, None], len(SCALES) + 1, 1)
+    v = np.zeros((controls.count, len(SCALES) + 1))
+    v[k, 1:] = SCALES
+    running = np.abs(flows(instance, controls, t, x, v)[-1])
+    fitting = SCALES[running[1:] <= 2.0 * running[0]]
+    within = running[0] > 0.0 and 0 < len(fitting) < len(SCALES)
+    return float(fitting[-1]) if within else 1.0
+
+
+def _constant(instance: Instance, controls: Controls) -> list[Array]:
+    """Controls at rest, and each of them at both of its bounds; without bounds, as large as time makes it pay."""
     rest = resting(controls)
     found = [rest]
     for k in range(controls.count):
         low, high = controls.lower[k], controls.upper[k]
-        for value in (high if np.isfinite(high) else 1.0, low if np.isfinite(low) else -1.0):
+        most = 1.0 if np.isfinite(low) and np.isfinite(high) else _affordable(instance, controls, k)
+        for value in (high if np.isfinite(high) else most, low if np.isfinite(low) else -most):
             v = np.zeros(controls.count) if controls.norms else rest.copy()
             v[k] = value
             for norm in controls.norms:
