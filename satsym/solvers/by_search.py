@@ -18,7 +18,7 @@ from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.constrained.revision import SLACK
 from satsym.solvers.constrained.violation import violation
-from satsym.solvers.iteration import MOST, Limits, deadline_of, hurried, unsolved, watched
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of, hurried, unsolved, watched
 from satsym.solvers.search import failing, solving
 from satsym.solvers.search.reading import collocated
 from satsym.solvers.search.reading.boundaries import UNMET
@@ -174,7 +174,7 @@ def cheaper(stated: Instance, solution: Solution) -> Solution:
     spec = instance.model.spec
     if not instance.free or spec.linear_quadratic or not solving.applies(instance):
         return solution
-    limits = Limits(MOST, deadline_of(instance), work=COMPARED)
+    limits = Limits(MOST_ITERATIONS, deadline_of(instance), work=COMPARED)
     least = solution.objective - CHEAPER * abs(solution.objective)
     found = min(
         (one.exact for one in solving.others(instance, solution, limits) if one.exact is not None),

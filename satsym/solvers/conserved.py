@@ -25,7 +25,7 @@ SPREAD = 0.4
 CANCELS = 1e-11
 """Share of the largest singular value below which rates cancel for every state and control."""
 
-SAME = 1e-6
+EQUAL_QUANTITY = 1e-6
 """Share of its terms by which a conserved quantity may differ at the end, from numbers that were rounded."""
 
 SEEN = 1e-8
@@ -67,7 +67,7 @@ def contradiction(instance: Instance) -> str:
     end[fixed] = [float(instance.final[names[i]]) for i in fixed]
     for one in sorted(conserved(instance, fixed, start, end), key=lambda one: len(one.names)):
         before, after = one.terms(start), one.terms(end)
-        if abs(after.sum() - before.sum()) > SAME * max(np.abs(before).sum(), np.abs(after).sum()):
+        if abs(after.sum() - before.sum()) > EQUAL_QUANTITY * max(np.abs(before).sum(), np.abs(after).sum()):
             return (
                 f"{one.formula} is conserved whatever the controls do: it is {before.sum():.8g} at the start, "
                 f"and the final states ask for {after.sum():.8g}; {LEAVE_FREE}"

@@ -29,7 +29,7 @@ from satsym.wording import counted
 FIRST, LONGER, SHORTER = 0.2, 1.7, 0.3
 """The first step, as a share of the way; and the ratios of the next one after a success, and after a failure."""
 
-SHORTEST, MOST = 1e-3, 200
+SHORTEST, MOST_STEPS = 1e-3, 200
 """The step at which the way is given up, and the most steps."""
 
 MOST_POINTS = 300
@@ -103,7 +103,7 @@ def at(instance: Instance, share: float) -> Instance:
 def _stepped(instance: Instance, reached: _Reached, progress: Progress | None, quick: Solver) -> _Reached:
     """As far as solutions are near their neighbours."""
     step = FIRST
-    for _ in range(MOST):
+    for _ in range(MOST_STEPS):
         if reached.share >= 1.0 or step < SHORTEST:
             break
         there = min(1.0, reached.share + step)

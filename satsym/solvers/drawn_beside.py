@@ -25,7 +25,7 @@ DRAWN, SIZES = 512, (-1.5, 0.7)
 """Extremals that are drawn on each side, and decimal logarithms of sizes of their costates, as shares of the largest
 known."""
 
-ROUNDS, CHILDREN, PARENTS, NEAR = (0.3, 0.1), 256, 48, 0.15
+ROUNDS, CHILDREN, PARENTS, NEAR_GAP = (0.3, 0.1), 256, 48, 0.15
 """Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
 cheapest whose gaps are below that."""
 
@@ -33,11 +33,11 @@ TIMES, ANY_TIMES, NEIGHBOURS = 8, 40, 4
 """Times at which they may meet, where the duration is given and where it is free, and how many of the nearest of the
 other side are looked at."""
 
-CLOSE, FEWEST, MOST = 0.1, 64, 4000
+CLOSE_GAP, FEWEST, MOST_PAIRS = 0.1, 64, 4000
 """Gaps that are small, relative to what the known states range over, pairs that are looked at if none is, and at most.
 """
 
-KEPT, APART, SHOWN = 4, 0.3, 21
+KEPT, SEPARATION, SHOWN = 4, 0.3, 21
 """Motions that are kept, how far they are from each other and from the known one, and at how many times that is looked
 at. A duration that is longer by that share is another motion as well."""
 
@@ -194,7 +194,7 @@ class _Field:
 
     def refined(self, size: float, rng: np.random.Generator) -> _Field:
         """With others about the cheapest pairs, and the closest as well, so far away relative to their costates."""
-        n, pairs = self.problem.states, self.cheapest(NEAR)
+        n, pairs = self.problem.states, self.cheapest(NEAR_GAP)
         pairs = pairs[:PARENTS]
         if not len(pairs):
             return self
@@ -251,7 +251,7 @@ class _Field:
 
     def different(self) -> list[Beside]:
         """The cheapest pairs that are not close to one before, nor to what is known."""
-        pairs, n = self.cheapest(CLOSE)[:MOST], self.problem.states
+        pairs, n = self.cheapest(CLOSE_GAP)[:MOST_PAIRS], self.problem.states
         motions, durations = self._motions(pairs, SHOWN)
         motions = motions[:, :n]
         shares = np.linspace(0.0, 1.0, self.known.states.shape[1])
@@ -259,8 +259,8 @@ class _Field:
         own = np.array([np.interp(shown, shares, row) for row in self.known.states])
 
         def apart(states: Array, duration: float) -> NDArray[np.bool_]:
-            far = np.abs((motions - states) / self.unit[:, None]).max(axis=(1, 2)) >= APART
-            return np.asarray(far | (np.abs(np.log(durations / duration)) >= APART))
+            far = np.abs((motions - states) / self.unit[:, None]).max(axis=(1, 2)) >= SEPARATION
+            return np.asarray(far | (np.abs(np.log(durations / duration)) >= SEPARATION))
 
         kept: list[Beside] = []
         left = apart(own, self.problem.duration)

@@ -19,7 +19,7 @@ from satsym.wording import counted
 
 State = TypeVar("State")
 
-MOST = 500
+MOST_ITERATIONS = 500
 """Iterations where an instance sets no limit."""
 
 
@@ -139,7 +139,9 @@ def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list
         if progress:
             progress(history[-1])
 
-    return Limits(instance.solver.max_iterations or MOST, deadline_of(instance), watch, instance.work), history
+    return Limits(
+        instance.solver.max_iterations or MOST_ITERATIONS, deadline_of(instance), watch, instance.work
+    ), history
 
 
 def history_of(passed: Sequence[tuple[float, float]]) -> tuple[Iteration, ...]:

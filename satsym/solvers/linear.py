@@ -31,7 +31,7 @@ from satsym.wording import counted
 PLACES = 8
 """Times at which derivatives are compared, at two random places each."""
 
-SAME = 1e-9
+EQUAL_DERIVATIVES = 1e-9
 """Relative difference of derivatives that may be rounding."""
 
 TURN = 2.0
@@ -144,14 +144,14 @@ def is_linear(problem: TwoPoint) -> bool:
     here, there = (problem.jacobian(tau, place, problem.theta) for place in places)
     if not np.isfinite(here).all() or not np.isfinite(there).all():
         return False
-    differs = ~(np.abs(here - there) <= SAME * np.abs(here).max()).all(axis=2)
+    differs = ~(np.abs(here - there) <= EQUAL_DERIVATIVES * np.abs(here).max()).all(axis=2)
     if differs.any():
         row, column = np.argwhere(differs)[0]
         symbols = [*names, *(f"the costate of {name}" for name in names)]
         raise _refusal(problem.instance, f"how the rate of {symbols[row]} follows {symbols[column]} depends on both")
     extra = rng.standard_normal((2, problem.unknowns))
     ends = [problem.boundary_slopes(place[:, -1], theta) for place, theta in zip(places, extra, strict=True)]
-    if not all(np.allclose(a, b, SAME, SAME) for a, b in zip(*ends, strict=True)):
+    if not all(np.allclose(a, b, EQUAL_DERIVATIVES, EQUAL_DERIVATIVES) for a, b in zip(*ends, strict=True)):
         raise _refusal(problem.instance, "its terminal cost is not quadratic, or a terminal constraint is not linear")
     return True
 

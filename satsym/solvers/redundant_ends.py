@@ -38,7 +38,7 @@ SEEN = 1e-5
 OFF = (0.3, 0.7)
 """By how much a final state that is free is off its start, relative to that."""
 
-SAME = 1e-4
+EQUAL_DIRECTIONS = 1e-4
 """Difference of the directions that two controls leave open, if it is one of the motion and none of these controls."""
 
 LARGE_ENOUGH = 0.1
@@ -116,9 +116,9 @@ def redundant(instance: Instance) -> Redundant | None:
         rng = np.random.default_rng(0)
         one = _still(instance, end, rng)
         other = None if one is None else _still(instance, end, rng)
-    if one is None or other is None or min(np.abs(one - other).max(), np.abs(one + other).max()) > SAME:
+    if one is None or other is None or min(np.abs(one - other).max(), np.abs(one + other).max()) > EQUAL_DIRECTIONS:
         return None
-    if np.abs(one[~fixed]).max(initial=0.0) > SAME:
+    if np.abs(one[~fixed]).max(initial=0.0) > EQUAL_DIRECTIONS:
         return None  # a state that is free makes up for it
     share = np.abs(one)
     most, *rest = (_without(instance, names[i]) for i in np.argsort(-share, kind="stable") if share[i] >= LARGE_ENOUGH)

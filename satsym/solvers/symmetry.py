@@ -36,10 +36,10 @@ PERTURBED = 1e-2
 
 TURN = 2.0 * np.pi
 
-CORRECTIONS, CLOSE = 20, 1e-6
+CORRECTIONS, CLOSE_ROTATION = 20, 1e-6
 """Corrections of a state until it rotates steadily, and how nearly it does then."""
 
-ALIKE = 0.88
+ALIKE_AXES = 0.88
 """Cosine of half a radian: rotations whose axes lie nearer to each other are one."""
 
 ANGLES = 720
@@ -108,7 +108,7 @@ def rotations(instance: Instance) -> Iterator[Rotation]:
         matrix = np.tensordot(weights, found, 1)
         unit = matrix / sizes * sizes.T
         unit /= max(float(np.linalg.norm(unit)), 1e-300)
-        if all(float((unit * other).sum()) < ALIKE for other in known):
+        if all(float((unit * other).sum()) < ALIKE_AXES for other in known):
             known.append(unit)
             around = _about_its_axis(matrix, vectors)
             yield from () if around is None else (around,)

@@ -65,14 +65,14 @@ def _certified(cases: Sequence[Any]) -> Table:
     from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
     from satsym.solvers.certificate.reintegration.segments import segments
     from satsym.solvers.certificate.verdict import certify
-    from satsym.solvers.iteration import MOST, Limits
+    from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 
     answers = [solve(case, examined=False) for case in cases]
     answers = [one for one in answers if one.status.answered]
     counts: dict[int, int] = {}
 
     def compared(answer: Any) -> None:
-        comparison = comparing.compared(answer, Limits(MOST, time.perf_counter() + 60.0))
+        comparison = comparing.compared(answer, Limits(MOST_ITERATIONS, time.perf_counter() + 60.0))
         counts[id(answer)] = sum(kind.summary.tried for kind in comparison.kinds)
 
     def examined(answer: Any) -> None:

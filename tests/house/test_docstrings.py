@@ -9,11 +9,8 @@ from pathlib import Path
 
 import pytest
 
-UNNAMED = {"proof", "solvers"}
+UNNAMED = {"proof"}
 """Rooms of satsym/ in which constants have such names. The list may only become shorter."""
-
-FINISHED = ("solvers/certificate",)
-"""Folders in unfinished rooms in which none is left. The list may only become longer."""
 
 DANGLING = re.compile(r"(The same|Of|That|Those|These)\b")
 """Beginnings of docstrings that speak of something which only their surroundings name."""
@@ -62,13 +59,6 @@ def test_names_of_constants_say_what_they_limit(repository: Path) -> None:
     left = {path: names for path, names in found.items() if names}
     assert [f"{path}: {name}" for path, names in left.items() if room(path) not in UNNAMED for name in names] == []
     assert {room(path) for path in left} == UNNAMED, "take the rooms from the list in which none is left"
-
-
-@pytest.mark.parametrize("folder", FINISHED)
-def test_what_is_finished_stays_so(repository: Path, folder: str) -> None:
-    texts = {path: path.read_text("utf-8") for path in sorted((repository / "satsym" / folder).rglob("*.py"))}
-    assert texts
-    assert {path: found for path, text in texts.items() if (found := [*dangling(text), *bare(text)])} == {}
 
 
 def test_a_bare_name_would_be_seen() -> None:

@@ -20,7 +20,7 @@ from satsym import solvers
 from satsym.instance import Instance
 from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
 from satsym.solvers.search import answer, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
@@ -41,7 +41,7 @@ SHIPPED = (
     "transfer-time",
     "ends-3-given-time",
 )
-LIMITS = Limits(MOST, np.inf)
+LIMITS = Limits(MOST_ITERATIONS, np.inf)
 
 
 def programme_of(case: Instance, intervals: int = 12) -> Programme:
@@ -391,7 +391,7 @@ def test_no_smoothing_takes_anything_from_the_largest_norm() -> None:
 
 def test_programmes_end_with_the_work_that_is_allowed() -> None:
     programme = programme_of(instances.load("reorientation"))
-    limits = Limits(MOST, np.inf, work=3.5 * programme.unknowns)
+    limits = Limits(MOST_ITERATIONS, np.inf, work=3.5 * programme.unknowns)
     with np.errstate(all="ignore"):
         start = starts.begun(programme, starts.Plan())
     found = nlp.solve(programme, start, limits)

@@ -14,7 +14,7 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
-from satsym.solvers.sweep.quasi_newton import CLOSE
+from satsym.solvers.sweep.quasi_newton import CLOSE_RESIDUAL
 from satsym.solvers.sweep.sweeps import SweepProblem, backward, forward
 from satsym.status import BadInput, Status
 from tests.support.canonical import Extremal, Orbit, collocation, shooting
@@ -112,7 +112,7 @@ def test_the_cost_never_increases_while_far_from_the_optimum(case):
     history = solve(instances[case]).history
     assert len(history) > 5
     for before, after in pairwise(history):
-        if before.residual >= CLOSE:
+        if before.residual >= CLOSE_RESIDUAL:
             assert after.objective < before.objective
     assert [entry.number for entry in history] == list(range(len(history)))
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from satsym.solvers.control.corners import enclosed
-from satsym.solvers.switching.newton import MOST, SETTLED, _too_slow
+from satsym.solvers.switching.newton import MOST_STEPS, SETTLED_CORRECTION, _too_slow
 
 
 def test_zeros_are_enclosed_to_the_last_digits_in_few_evaluations():
@@ -45,10 +45,10 @@ def test_fewer_evaluations_find_rougher_zeros():
 
 
 def test_corrections_that_shrink_too_slowly_to_settle_are_given_up_early_and_faster_ones_never():
-    slow = list(accumulate(repeat(0.6, MOST), lambda size, factor: size * factor, initial=8e-3))
+    slow = list(accumulate(repeat(0.6, MOST_STEPS), lambda size, factor: size * factor, initial=8e-3))
     assert any(_too_slow([np.inf, *slow[:k]]) for k in range(4, 7))
-    enough = (SETTLED / 8e-3) ** (1.0 / MOST) / 2.0
-    evenly = [8e-3 * enough**k for k in range(MOST)]
+    enough = (SETTLED_CORRECTION / 8e-3) ** (1.0 / MOST_STEPS) / 2.0
+    evenly = [8e-3 * enough**k for k in range(MOST_STEPS)]
     squared = [5e-3, 2.5e-3, 6e-4, 4e-5, 1.6e-7]
     for fast in (evenly, squared):
         assert not any(_too_slow([np.inf, *fast[:k]]) for k in range(1, len(fast) + 1))

@@ -136,7 +136,7 @@ def test_time_that_ends_between_two_looks_at_the_clock_is_no_excess_of_work(
 ) -> None:
     clock = iter([0.0] * looks + [2.0] * 100)
     monkeypatch.setattr(iteration, "computed", lambda: next(clock))
-    by = Integration(np.ones(2), iteration.Limits(iteration.MOST, deadline=1.0))
+    by = Integration(np.ones(2), iteration.Limits(iteration.MOST_ITERATIONS, deadline=1.0))
     with pytest.raises(OutOfTime):
         by.solved(lambda t, y: -y, SimpleNamespace(start=0.0, end=1.0, lasting=1.0), np.ones(1), np.ones(1))
 

@@ -23,19 +23,19 @@ INWARDS, NARROWEST, TRIALS = 0.5, 0.02, 12
 AIMS = (1e-3, 1e-6, 1e-9)
 """Errors that are aimed at while times at which bounds are met are not known well."""
 
-SETTLED = 1e-7
+SETTLED_TIMES = 1e-7
 """Share of the duration by which these times may move in the end: the motion changes by its square."""
 
 LOOKED_AT = (np.arange(8) + 0.5) / 8.0
 """Places within each segment at which controls are compared with their bounds."""
 
-MOST = 24
+MOST_TIMES = 24
 """Times at which an instance meets or leaves a bound, at most."""
 
 POLISHED = 3
 """Corrections of such a time along the motion."""
 
-SMALL = 1e-6
+DIFFERENCE = 1e-6
 """Share of the duration for a difference in time."""
 
 
@@ -84,7 +84,7 @@ def within_bounds(many: Many, z: Array) -> tuple[Many, Nodes, NDArray[np.intp]]:
         moved = np.zeros(count)
         for earlier, later in zip(before.times, met.times, strict=False):
             moved = np.maximum(moved, np.where(np.isfinite(earlier + later), np.abs(later - earlier), 0.0))
-        fine = same & (moved <= SETTLED * many.problem.duration) & _separate(laid, nodes.z)
+        fine = same & (moved <= SETTLED_TIMES * many.problem.duration) & _separate(laid, nodes.z)
         outcome[nodes.solved & ~fine] = Outcome.INACCURATE
     return laid, nodes, met.counts
 
@@ -147,15 +147,15 @@ def _met(many: Many, z: Array) -> Met:
     found = early + (late - early) * np.where(np.isfinite(before), before / (before - after), 0.5)
     found, there = _polished(many, z, which, row, found, early, late)
     count = np.bincount(which, minlength=many.count)
-    kept = np.full((min(int(count.max(initial=0)), MOST), many.count), np.inf)
+    kept = np.full((min(int(count.max(initial=0)), MOST_TIMES), many.count), np.inf)
     values = np.repeat(z[:, -1:], len(kept), axis=1)
     for k in np.flatnonzero(count):
         mine = np.flatnonzero(which == k)
         mine = mine[np.argsort(found[mine], kind="stable")][: len(kept)]
         kept[: len(mine), k], values[:, : len(mine), k] = found[mine], there[:, mine]
-    lasting = np.repeat(h.reshape(-1, many.count) > SMALL * many.problem.duration, len(LOOKED_AT), axis=0)
+    lasting = np.repeat(h.reshape(-1, many.count) > DIFFERENCE * many.problem.duration, len(LOOKED_AT), axis=0)
     grazing = [_grazing(room[:, 1:-1][:, own, k]) for k, own in enumerate(lasting.T)]
-    return Met(kept, values, (count <= MOST) & ~np.array(grazing, dtype=bool))
+    return Met(kept, values, (count <= MOST_TIMES) & ~np.array(grazing, dtype=bool))
 
 
 def _grazing(room: Array) -> bool:
@@ -173,7 +173,7 @@ def _polished(
     """Times at which the room within a bound vanishes, between two others, and states and costates there."""
     if not len(which):
         return t, np.zeros((len(z), 0))
-    own, step = many.only(which), SMALL * many.problem.duration
+    own, step = many.only(which), DIFFERENCE * many.problem.duration
     times = np.broadcast_to(many.times, (len(many.times), many.count))[:, which]
     every, model, n = np.arange(len(which)), many.instance.model, many.states
     own = replace(own, mesh=own.mesh[:1])

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from satsym.arrays import Array, distinct
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.matching import Matching, corrected
-from satsym.solvers.collocation.curve import SMALL
+from satsym.solvers.collocation.curve import SMALL_COSTATE
 from satsym.solvers.shooting.runge_kutta import ORDER
 
-NEAR = 1e-2
+NEAR_CORRECTION = 1e-2
 """Last correction of steps of low order from which those of high order are corrected quickly."""
 
-MOST, MOST_ACCURATE = 8, 12
+MOST_ROUGH, MOST_ACCURATE = 8, 12
 """Corrections of each kind."""
 
 SHRINK = 0.5
@@ -83,7 +83,7 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
     """
     z, outcome = start.copy(), np.full(many.count, Outcome.SOLVED, dtype=object)
     on, before = np.arange(many.count), np.full(many.count, np.inf)
-    for _ in range(MOST):
+    for _ in range(MOST_ROUGH):
         own, at = many.only(on), _columns(on, many.count)
         now = z[:, :, at]
         reached, transition = _rough(own, now, 1)
@@ -93,7 +93,7 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
         outcome[on[~positive]] = Outcome.LEFT_DOMAIN
         outcome[on[positive & ~(size < before[on])]] = Outcome.NO_CONVERGENCE
         before[on] = SHRINK * size
-        on = on[positive & (size >= NEAR) & (outcome[on] == Outcome.SOLVED)]
+        on = on[positive & (size >= NEAR_CORRECTION) & (outcome[on] == Outcome.SOLVED)]
         if not len(on):
             break
     outcome[on] = Outcome.NO_CONVERGENCE
@@ -172,7 +172,7 @@ def _size(many: Many, step: Array, z: Array) -> Array:
     n, units = many.states, many.units[:, None]
     moved, there = (np.abs(rows).max(axis=1) / units for rows in (step, z))
     states = moved[:n].max(axis=0) / np.maximum(there[:n].max(axis=0), 1.0)
-    costates = moved[n:].max(axis=0) / np.maximum(there[n:].max(axis=0), SMALL)
+    costates = moved[n:].max(axis=0) / np.maximum(there[n:].max(axis=0), SMALL_COSTATE)
     found = np.maximum(states, costates)
     return np.where(np.isfinite(found), found, np.inf)
 

@@ -12,7 +12,7 @@ from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
 from satsym.solvers.collocation.accuracy.refinement import AIM, FINEST
 
-APART = 8
+SEEDED_EVERY = 8
 """Every so many problems one starts from the straight line, the others from the nearest that is solved."""
 
 ROUNDS = 2
@@ -38,7 +38,7 @@ def solved_together(many: Many) -> Answers:
     What is solved, and from where, depends on the problems and on their order alone.
     """
     line, every = many.line, np.arange(many.count)
-    seeds = every % APART == 0
+    seeds = every % SEEDED_EVERY == 0
     found = _blank(many)
     _put(found, every[seeds], solved(many.only(every[seeds]), line[:, :, seeds]))
     neighbour, tried = np.zeros(many.count, dtype=bool), seeds.copy()

@@ -27,7 +27,7 @@ from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
-from satsym.solvers.iteration import MOST, Limits, deadline_of
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of
 
 
 def certify(solution: Solution, compared: bool = True) -> Certificate | None:
@@ -106,7 +106,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         if all(c.passed for c in first):
             second = _sufficient(solution, legendre, field)
             if compared:
-                others = comparing.compared(solution, Limits(MOST, deadline), seed)
+                others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed)
     certificate = concluded(
         first,
         second,

@@ -22,10 +22,10 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System, costs
 from satsym.solvers.iteration import Limits
 
-NEAR = 3e-2
+NEAR_CORRECTION = 3e-2
 """Last correction from which the corrections of the refinement converge, with the linearisation at hand."""
 
-FEW = 6
+FEW_CORRECTIONS = 6
 """Corrections from the straight line that still count as straight through."""
 
 ROUGH, FEWER = 2, 3
@@ -58,7 +58,7 @@ def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve,
     """The attempt without its cost; curves on the way, and the corrections that led to them, are put into a list."""
     curve, before = start.with_stages(FEWER), float("inf")
     system = System(problem, start.mesh, FEWER)
-    for steps in range(1, FEW + 1):
+    for steps in range(1, FEW_CORRECTIONS + 1):
         if steps == ROUGH + 1:
             curve, system = curve.with_stages(STAGES), System(problem, curve.mesh, STAGES)
         residual, jacobian = system.residual(curve), system.jacobian(curve)
@@ -71,7 +71,7 @@ def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve,
                 return None
             curve, before = moved, SHORTER * size
             passed.append((system, curve, size))
-            if not size < NEAR or steps <= ROUGH:
+            if not size < NEAR_CORRECTION or steps <= ROUGH:
                 continue
             if system.largest_turn(curve, jacobian) > meshes.COARSEST:
                 curve = curve.on(meshes.laid(problem, curve), STAGES)

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from satsym.solvers.collocation import mesh as meshes
-from satsym.solvers.collocation.curve import SMALL, Curve, Step
+from satsym.solvers.collocation.curve import SMALL_COSTATE, Curve, Step
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
@@ -28,10 +28,10 @@ Problems = Callable[[float], TwoPoint]
 FIRST, SHORTEST = 0.02, 1e-5
 """Lengths of a step, in shares of the way where only these change: the first one, and where it is given up."""
 
-CORRECTIONS, TRUSTED, SMALLEST = 7, 0.3, 1e-4
+CORRECTIONS, TRUSTED, SMALLEST_CORRECTION = 7, 0.3, 1e-4
 """Newton corrections of a step, the largest size of one, and the size at which they end."""
 
-FEW, MANY = 3, 5
+FEW_CORRECTIONS, MANY_CORRECTIONS = 3, 5
 """Corrections up to which the next step is longer, and from which it is shorter."""
 
 AHEAD = 1e-4
@@ -135,7 +135,7 @@ class Point:
         """The inner product of directions: the share, and the mean over the nodes by the sizes of the curve."""
         n = self.problem.states
         largest = np.abs(self.curve.nodes).reshape(2, -1).max(axis=1)
-        sizes = np.repeat(np.maximum(largest, (1.0, SMALL)), n)[:, None]
+        sizes = np.repeat(np.maximum(largest, (1.0, SMALL_COSTATE)), n)[:, None]
         return float((a.step.nodes * b.step.nodes / sizes**2).mean()) + a.fraction * b.fraction
 
     def tangent(self, before: Direction | None) -> Direction:
@@ -165,7 +165,7 @@ def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None,
         taken += needed
         if there is not None:
             there = replace(there, taken=taken)
-            return there, length * (1.7 if needed <= FEW else 0.7 if needed >= MANY else 1.0)
+            return there, length * (1.7 if needed <= FEW_CORRECTIONS else 0.7 if needed >= MANY_CORRECTIONS else 1.0)
         length /= 2.0
     return None, length
 
@@ -185,7 +185,7 @@ def _corrected(here: Point, tangent: Direction, step: Direction, arrives: bool) 
         if not size < min(TRUSTED, before / 2.0) or within_domain(there.problem, there.curve, correction.step) < 1.0:
             return None, needed
         there, before = there.moved(correction), size
-        if size < SMALLEST:
+        if size < SMALLEST_CORRECTION:
             return there, needed
     return None, CORRECTIONS
 

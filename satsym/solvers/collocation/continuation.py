@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array, distinct
 from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.curve import SMALL, Curve, Path
+from satsym.solvers.collocation.curve import SMALL_COSTATE, Curve, Path
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.corners import BEYOND, LAST_DIGITS, beyond, enclosed
+from satsym.solvers.control.corners import BEYOND_ZERO, LAST_DIGITS, beyond, enclosed
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
@@ -128,7 +128,7 @@ def _violation(problem: TwoPoint, curve: Path) -> float:
     tau, _ = _sampled(curve.mesh, lambda at: within.excess(_unbounded(problem, curve, at)))
     law = _unbounded(problem, curve, tau)
     found = within.violation(law)
-    return found if found > BEYOND * float(np.abs(law).max()) else min(found, 0.0)
+    return found if found > BEYOND_ZERO * float(np.abs(law).max()) else min(found, 0.0)
 
 
 def _unbounded(problem: TwoPoint, curve: Path, tau: Array) -> Array:
@@ -174,7 +174,7 @@ def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
 def apart(problem: TwoPoint, curve: Path, rates: Array, late: Array) -> float:
     """What a difference of rates (2n, M) comes to in so much of the time (M,), relative to the size of a curve."""
     size = np.abs(curve.nodes).reshape(2, -1).max(axis=1)
-    jump = np.abs(rates).reshape(2, problem.states, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
+    jump = np.abs(rates).reshape(2, problem.states, -1).max(axis=1) / np.maximum(size, (1.0, SMALL_COSTATE))[:, None]
     return float((jump.max(axis=0) * np.abs(late)).max()) * problem.elapsed(curve.theta) / 2.0
 
 

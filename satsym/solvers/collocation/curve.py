@@ -11,7 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.collocation.gauss import barycentric, interpolation, scheme
 
-SMALL = 1e-4
+SMALL_COSTATE = 1e-4
 """Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
 
 
@@ -110,7 +110,7 @@ class Step:
     stages: Array
     theta: Array
 
-    def size(self, curve: Curve, small: float = SMALL) -> float:
+    def size(self, curve: Curve, small: float = SMALL_COSTATE) -> float:
         """Largest change: states relative to their size (at least one), costates relative to theirs (``small``)."""
         sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, small))
         found = (_largest(self.nodes, self.stages) / sizes).max()

@@ -15,7 +15,7 @@ collocation equations have solutions of their own."""
 COARSEST = 2.5 * TURN
 """Angle in one interval beyond which the mesh is laid anew."""
 
-FEWEST, MOST = 6, 400
+FEWEST, MOST_INTERVALS = 6, 400
 
 
 def laid(problem: TwoPoint, curve: Curve) -> Array:
@@ -45,7 +45,7 @@ def along(problem: TwoPoint, tau: Array, x: Array, theta: Array) -> Array:
     speed[1:-1] = np.maximum(speed[1:-1], np.maximum(speed[:-2], speed[2:]))
     angle = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0 * np.diff(tau))])
     wanted = angle[-1] * problem.elapsed(theta) / TURN
-    count = int(min(max(FEWEST, np.ceil(wanted)), MOST)) if np.isfinite(wanted) else FEWEST
+    count = int(min(max(FEWEST, np.ceil(wanted)), MOST_INTERVALS)) if np.isfinite(wanted) else FEWEST
     mesh = (
         np.interp(np.linspace(0.0, angle[-1], count + 1), angle, tau) if angle[-1] > 0 else np.linspace(0, 1, count + 1)
     )

@@ -23,7 +23,7 @@ from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_
 ROUNDING = 1e-10
 """Share of a control by which rounding may seem to move it beyond a bound."""
 
-PLACES, SAME = 8, 1e-9
+PLACES, EQUAL_DERIVATIVES = 8, 1e-9
 """Times at which derivatives are compared, and the relative difference of numbers that may be rounding."""
 
 
@@ -208,7 +208,7 @@ class TwoPoint:
         end, theta = np.concatenate([self.initial, np.zeros(self.states)]), np.zeros(self.unknowns)
         constrained = np.ones(self.unknowns - self.free_time, dtype=bool)
         missed = self.boundary(end, theta)[: self.unknowns - self.free_time + self.states]
-        if (np.abs(missed[np.concatenate([self.fixed, constrained])]) > SAME).any():
+        if (np.abs(missed[np.concatenate([self.fixed, constrained])]) > EQUAL_DERIVATIVES).any():
             return float("inf")
         return self.terminal_cost(end, theta) * self.scale.cost
 
@@ -250,7 +250,7 @@ class TwoPoint:
         here, there = (self.jacobian(tau, place, self.theta) for place in places)
         ends = [self.boundary_slopes(place[:, -1], self.theta + k) for k, place in enumerate(places)]
         pairs = [(here, there), *zip(*ends, strict=True)]
-        return all((np.abs(a - b) <= SAME * np.abs(a).max(initial=0.0)).all() for a, b in pairs)
+        return all((np.abs(a - b) <= EQUAL_DERIVATIVES * np.abs(a).max(initial=0.0)).all() for a, b in pairs)
 
     def boundary(self, end: Array, theta: Array) -> Array:
         """Residuals at the right end, scaled, shape (n + e,).

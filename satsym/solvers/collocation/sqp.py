@@ -26,7 +26,7 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 
-CLOSE = 1e-3
+CLOSE_STEP = 1e-3
 """Below this size of a full Newton step, Newton's convergence needs no guarding."""
 
 CUT = 0.2
@@ -100,7 +100,7 @@ def minimise(
             curve, known = curve.moved(step, 1.0), linearised if newton else None
             reason, known = kind(system, curve, known, sure=newton and not close)
             return Attempt(curve, reason, iteration + 1, system.cost(curve), hard, known)
-        close = newton and size < CLOSE and fraction == 1.0
+        close = newton and size < CLOSE_STEP and fraction == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
         at = _Merit(system, curve, cost, violated, penalty, linearised, step)
         found = _searched(at, within_domain(problem, curve, step), whole=close)

@@ -16,7 +16,7 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.structure import Active
 
-STEPS, ENOUGH = 30, 1e-13
+STEPS, LAST_STEP = 30, 1e-13
 """Newton's steps at most, and the size of one after which another is the last, relative to one plus the control's."""
 
 
@@ -45,7 +45,7 @@ def by_newton(
         slopes = _slopes(instance, active, times, places, w)
         step = _solved(slopes, _conditions(instance, active, times, places, w))
         w = w - step
-        if not (np.abs(step[:m]) > ENOUGH * (1.0 + np.abs(w[:m]))).any():
+        if not (np.abs(step[:m]) > LAST_STEP * (1.0 + np.abs(w[:m]))).any():
             break
     if np.iscomplexobj(t) or np.iscomplexobj(z):
         w = w - _solved(slopes, _conditions(instance, active, t, z, w))

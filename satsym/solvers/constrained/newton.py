@@ -20,10 +20,10 @@ from satsym.solvers.iteration import Limits
 ACCURATE = 1e-12
 """Size of Newton's step at which it ends, relative to the sizes of what is unknown."""
 
-SETTLED = 1e-10
+SETTLED_SOLUTION = 1e-10
 """Change of times, cost and initial costates from one mesh to the next that is none."""
 
-ONCE, APART = 1e-4, 5e-3
+ONCE, SEPARATION = 1e-4, 5e-3
 """Shares of the duration: below which junctions come at once in a guess, and by which they are moved apart then."""
 
 ITERATIONS, HALVINGS = 25, 6
@@ -64,7 +64,7 @@ def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
         if found is None:
             return None
         finer = converged(_refined(found), limits)
-        if finer is not None and _distance(found, finer) < SETTLED:
+        if finer is not None and _distance(found, finer) < SETTLED_SOLUTION:
             return finer
         found = finer
     return None
@@ -96,7 +96,9 @@ def _apart(times: list[float], lasting: float) -> list[float]:
         else:
             groups.append([time])
     return [
-        time + APART * lasting * (place - (len(group) - 1) / 2) for group in groups for place, time in enumerate(group)
+        time + SEPARATION * lasting * (place - (len(group) - 1) / 2)
+        for group in groups
+        for place, time in enumerate(group)
     ]
 
 

@@ -18,7 +18,7 @@ from satsym.solvers.switching.trajectory import runs
 SLACK = 1e-9
 """Violation of a constraint, relative to its size along the way, and negative share of a multiplier, that are none."""
 
-STEEP = 1e-7
+ZERO_CURVATURE = 1e-7
 """Second rate of a constraint at a touch point, times the square of the duration and over its size, that is none."""
 
 DENSE = 8
@@ -228,7 +228,7 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         for z in (arcs.node(k, -1)[:, None], arcs.node(k + 1, 0)[:, None]):
             u = control(instance, junction.after, t, z)
             rates = np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
-            if rates[one.constraint, 1] * lasting**2 > STEEP * room[one.constraint]:
+            if rates[one.constraint, 1] * lasting**2 > ZERO_CURVATURE * room[one.constraint]:
                 half = 0.5 * np.sqrt(float(rates[one.constraint, 1]) * lasting**2 / room[one.constraint])
                 half = min(half * lasting, 0.25 * lasting, one.start - arcs.times[0], arcs.times[-1] - one.start)
                 longer = Contact(one.constraint, one.start - half, one.start + half, (one.jumps[0] / 2,) * 2)

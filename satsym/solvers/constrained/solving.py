@@ -26,7 +26,7 @@ from satsym.solvers.iteration import Limits, history_of
 from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
-REVISED, AGAIN = 12, 2
+REVISED, REPEATED = 12, 2
 """Structures that are tried at most from one path, and times that one of them is, from other junctions."""
 
 
@@ -58,7 +58,7 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
     reason = "the equations of its arcs are not solved"
     while waiting and seen.total() < REVISED and not limits.expired:
         structure, before = waiting.pop(0)
-        if seen[structure.key] >= AGAIN:
+        if seen[structure.key] >= REPEATED:
             continue
         seen[structure.key] += 1
         begun = fresh(structure) if before is None else from_arcs(before, structure)

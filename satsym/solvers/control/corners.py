@@ -18,7 +18,7 @@ TURNS, TOWARDS = 8, 0.5
 """Parabolas that are laid through three points at most, and the share of the least value below which one has to lead
 for the function to have zeros nearby."""
 
-BEYOND = 1e-11
+BEYOND_ZERO = 1e-11
 """Share of the largest value by which a function is beyond zero; less than that is rounding."""
 
 
@@ -56,7 +56,7 @@ def beyond(function: Callable[[float], float], times: Array, values: Array) -> l
     """
     sign, size = np.sign(values), np.abs(values)
     known = size[np.isfinite(size)]
-    floor = BEYOND * float(known.max(initial=0.0))
+    floor = BEYOND_ZERO * float(known.max(initial=0.0))
     alike = (sign[:-2] == sign[1:-1]) & (sign[2:] == sign[1:-1]) & (size[1:-1] <= np.minimum(size[:-2], size[2:]))
     found = []
     for k in np.flatnonzero(alike & np.isfinite(size[:-2]) & np.isfinite(size[2:])) + 1:

@@ -23,7 +23,7 @@ HALVINGS = 48
 MOVED = 1e-6
 """Share of the largest control by which one moves that may have jumped."""
 
-WHOLE, FAINT = 8, 0.1
+WHOLE, FAINT_JUMP = 8, 0.1
 """Halvings until which that holds, and afterwards the share of a jump that must be left, for the rest is none."""
 
 POLISHED = 8
@@ -89,7 +89,7 @@ def jumps(law: Callable[[Array], Array], times: Array, left: float) -> list[Jump
     low, high, first, last = times[:-1], times[1:], values[:, :-1], values[:, 1:]
     largest = max(float(np.abs(values).max(initial=0.0)), 1e-300)
     for k in range(HALVINGS):
-        still = min(MOVED, left) if k < WHOLE else FAINT * left
+        still = min(MOVED, left) if k < WHOLE else FAINT_JUMP * left
         kept = np.abs(last - first).max(axis=0, initial=0.0) > still * largest
         low, high, first, last = low[kept], high[kept], first[:, kept], last[:, kept]
         if not low.size:

@@ -17,7 +17,7 @@ from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
-TINY = 1e-60
+TINY_COSTATE = 1e-60
 """A costate that does nothing, and yet has a sign."""
 
 
@@ -39,7 +39,7 @@ def sloping(instance: Instance, lam: Array) -> Array:
     """Costates without zeros, shape (n, N): where a switching function vanishes, a law with |u| shows no slope."""
     if not instance.model.spec.regularising or lam.all():
         return lam
-    tiny = TINY * np.arange(1.0, len(lam) + 1.0)[:, None]
+    tiny = TINY_COSTATE * np.arange(1.0, len(lam) + 1.0)[:, None]
     return np.where(lam == 0.0, tiny, lam)
 
 

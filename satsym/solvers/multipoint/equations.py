@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 STEP = 1e-30
 """Imaginary step with which derivatives are taken."""
 
-APART, FACTORS = 1e-3, {1: 3.0 / 4.0, 2: -3.0 / 20.0, 3: 1.0 / 60.0}
+DIFFERENCE, FACTORS = 1e-3, {1: 3.0 / 4.0, 2: -3.0 / 20.0, 3: 1.0 / 60.0}
 """Step of central differences of the sixth order by free parameters, as a share of their sizes, and their factors."""
 
 
@@ -329,9 +329,9 @@ def _differences(problem: Problem, p: Parameters, function: Callable[[Parameters
         for apart, factor in FACTORS.items():
             for sign in (1.0, -1.0):
                 moved = list(p)
-                moved[place] = p[place] + sign * apart * APART * size
+                moved[place] = p[place] + sign * apart * DIFFERENCE * size
                 total = total + sign * factor * np.asarray(function(tuple(moved)))
-        rows.append(np.ravel(total) / (APART * size))
+        rows.append(np.ravel(total) / (DIFFERENCE * size))
     return np.array(rows)
 
 

@@ -19,10 +19,10 @@ from satsym.solvers.multipoint.equations import Problem, between, cost, system
 SOLVED = 1e-11
 """Size of the last step, relative to the sizes of what is unknown."""
 
-SHORTEST, MOST = 1e-3, 40
+SHORTEST, MOST_STEPS = 1e-3, 40
 """Shortest damped step, as a share of the whole one, and the largest number of steps."""
 
-SETTLED = 1e-11
+SETTLED_SOLUTION = 1e-11
 """Change of cost, times and initial costates from one mesh to the next that is none, relative to their sizes."""
 
 FINEST = 2000
@@ -55,7 +55,7 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
     from scipy.sparse.linalg import splu
 
     units = problem.units()
-    for iteration in range(1, MOST + 1):
+    for iteration in range(1, MOST_STEPS + 1):
         if limits.expired:
             return None
         try:
@@ -92,7 +92,7 @@ def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
             return None
         change = _change(found, finer)
         found = replace(finer, iterations=found.iterations + finer.iterations, step=max(finer.step, change))
-        if change < SETTLED:
+        if change < SETTLED_SOLUTION:
             return found
     return None
 

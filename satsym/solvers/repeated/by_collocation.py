@@ -12,7 +12,7 @@ from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.collocation import mesh as meshes
-from satsym.solvers.collocation.accuracy.refinement import NEAR
+from satsym.solvers.collocation.accuracy.refinement import NEAR_CORRECTION
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
@@ -41,7 +41,7 @@ class ByCollocation:
         problem, curve = replace(self._good[0], instance=case), self._good[1]
         free = problem.relaxed(float("inf"))
         system = System(free, curve.mesh, STAGES)
-        outcome = newton(system, curve, tolerance=NEAR)
+        outcome = newton(system, curve, tolerance=NEAR_CORRECTION)
         if outcome is None or not outcome.solved or not outcome.curve.in_domain(free.positive):
             return None
         assert outcome.linearised is not None

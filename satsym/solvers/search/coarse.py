@@ -21,7 +21,7 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import Plan
-from satsym.solvers.search.transcription import LONGEST, SHORTEST
+from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
 """Starts that are tried at most."""
@@ -29,7 +29,7 @@ STARTS = 48
 ITERATIONS = 300
 """Iterations of the interior-point code for a start."""
 
-WEAK, NEARLY = 7, 1.5
+WEAK, NEARLY_WITHIN = 7, 1.5
 """Starts after which those come that begin without bounds of controls, and the largest controls of such a motion,
 relative to their bounds, from which one within these is looked for."""
 
@@ -117,7 +117,7 @@ def _less_smoothed(
     if plan.loosened and (endless := programmes[0].controls.loosened) is not None:
         free = nlp.solve(replace(programmes[0], controls=endless, kinds={}), start, limits, most)
         _, v, *_ = free.programme.unpacked(free.unknown)
-        if not free.solved or programmes[0].controls.excess(v) > NEARLY:
+        if not free.solved or programmes[0].controls.excess(v) > NEARLY_WITHIN:
             return replace(free, solved=False)
         start = free.unknown
     first = found = nlp.solve(
@@ -180,7 +180,7 @@ def at_edge(found: Found) -> bool:
     if programme.instance.tf is not None or programme.phases > 1:
         return False
     share = float(found.unknown[programme.first_duration])
-    return share < SHORTEST * (1.0 + EDGE) or share > LONGEST * (1.0 - EDGE)
+    return share < SHORTEST_DURATION * (1.0 + EDGE) or share > LONGEST_DURATION * (1.0 - EDGE)
 
 
 def same(one: float, other: float) -> bool:

@@ -18,7 +18,7 @@ from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
-DRAWN, SAME = 6, 1e-9
+DRAWN, EQUAL_RATES = 6, 1e-9
 """Random controls at which rates by nodes are compared with rates, and the share by which they may differ."""
 
 Node = tuple[float, ...]
@@ -246,7 +246,7 @@ def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
         ahead = rates(instance, t, x, u, instance.parameters)
         back = rates(instance, t, x, -u, instance.parameters)
     bent = np.abs(ahead + back - 2.0 * still)
-    return bool(np.nanmax(bent) > SAME * max(np.nanmax(np.abs(ahead - still)), 1e-300))
+    return bool(np.nanmax(bent) > EQUAL_RATES * max(np.nanmax(np.abs(ahead - still)), 1e-300))
 
 
 def _reproduces(instance: Instance, controls: Controls) -> bool:
@@ -264,4 +264,4 @@ def _reproduces(instance: Instance, controls: Controls) -> bool:
         size = np.sum(np.abs(each), axis=0)
         error = np.abs(np.sum(each, axis=0) - direct)
     known = np.isfinite(direct)
-    return bool(known.any() and (error[known] <= SAME * np.maximum(size[known], 1e-300)).all())
+    return bool(known.any() and (error[known] <= EQUAL_RATES * np.maximum(size[known], 1e-300)).all())

@@ -14,11 +14,11 @@ from satsym.solvers.search.sizes import flows, resting, wanted
 STEPS = 400
 """In which each constant control is followed."""
 
-FIRST, LONGEST, SHORTER = 0.01, 0.1, 0.3
+FIRST, LONGEST_STEP, SHORTER = 0.01, 0.1, 0.3
 """Share of the time of the quickest state that the first step takes, share of a state's way that a step goes at most,
 and by how much a step is shortened that goes further."""
 
-FAR, SMALLEST, LARGEST = 0.9, 1e-3, 1e-2
+FAR_ENOUGH, SMALLEST_ERROR, LARGEST_ERROR = 0.9, 1e-3, 1e-2
 """Share of the way that is far enough; between which errors of a step it keeps its length."""
 
 SCALES = 10.0 ** np.arange(-12.0, 7.0)
@@ -93,12 +93,12 @@ def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goa
         d = flows(instance, controls, t + h, x + h * c, v)[:-1]
         after = x + h / 6 * (a + 2 * (b + c) + d)
         left = ~np.isfinite(after).all(axis=0) | (after[positive] <= 0.0).any(axis=0)
-        far = (np.abs(after - x) > LONGEST * way).any(axis=0)
+        far = (np.abs(after - x) > LONGEST_STEP * way).any(axis=0)
         error = np.abs(after - x - h * b).max(axis=0) / np.maximum(np.abs(after).max(axis=0), 1e-300)
         x, t = np.where(far, x, after), np.where(far, t, t + h)
-        arrived = (np.abs(x - start[:, None]) >= FAR * goal[:, None]) & (goal[:, None] > 0.0) & ~far & ~left
+        arrived = (np.abs(x - start[:, None]) >= FAR_ENOUGH * goal[:, None]) & (goal[:, None] > 0.0) & ~far & ~left
         first = np.minimum(first, np.where(arrived, t - instance.t0, np.inf).min(axis=1))
-        grown = np.where(error < SMALLEST, 1.3, np.where(error > LARGEST, 0.7, 1.0))
+        grown = np.where(error < SMALLEST_ERROR, 1.3, np.where(error > LARGEST_ERROR, 0.7, 1.0))
         h = h * np.where(far, SHORTER, grown)
         kept = ~left
         x, t, h, v = x[:, kept], t[kept], h[kept], v[:, kept]

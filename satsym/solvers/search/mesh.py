@@ -11,7 +11,7 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.transcription import DEGREE, NODES, RADAU, basis
 
-TOLERANCE, MOST = 1e-5, 6
+TOLERANCE, MOST_PIECES = 1e-5, 6
 """Residual that is small enough, relative to the sizes of states; pieces into which an interval is cut at most."""
 
 JUMP, PIECES = 0.15, 4
@@ -48,7 +48,7 @@ def refined(found: Found) -> tuple[list[Array], float]:
     """Edges of finer intervals, phase by phase, and the largest residual that was found."""
     programme = found.programme
     errors, jumps = _residuals(found), _jumps(found)
-    pieces = np.clip(np.ceil((errors / TOLERANCE) ** (1.0 / (DEGREE + 1))), 1, MOST).astype(int)
+    pieces = np.clip(np.ceil((errors / TOLERANCE) ** (1.0 / (DEGREE + 1))), 1, MOST_PIECES).astype(int)
     pieces = np.where(jumps, np.maximum(pieces, PIECES), pieces)
     meshes, k = [], 0
     for mesh in programme.meshes:

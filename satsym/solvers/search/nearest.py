@@ -37,7 +37,7 @@ PLANS = (
 )
 """Starts from which the miss is minimised."""
 
-CLOSE = 5e-3
+CLOSE_MISS = 5e-3
 """Relative miss below which nobody can tell: controls that switch within an interval may do better."""
 
 SIMILAR, AGREEING = 0.1, 0.5
@@ -83,7 +83,7 @@ class Nearest:
     @property
     def undecided(self) -> bool:
         """Whether it may be no miss, or that of others is none."""
-        return self.distance <= CLOSE or self.agreeing < AGREEING * self.starts
+        return self.distance <= CLOSE_MISS or self.agreeing < AGREEING * self.starts
 
     @property
     def message(self) -> str:

@@ -45,16 +45,16 @@ PROBE, AROUND = 160_000, 600_000
 """Unknowns times iterations after which they end that all came to one cost, two at least, and where there are path
 constraints."""
 
-BESIDE, AGAIN = 120, 200
+BESIDE, ON_FINER_MESH = 120, 200
 """Iterations of the interior-point code for a start beside an answer, and for a finer mesh."""
 
-MESHES, SETTLED, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
+MESHES, SETTLED_COST, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
 """Finer meshes at most, the change of cost from one to the next that is none, and smoothings of norms on each."""
 
 CHEAPER = 1e-9
 """Relative difference of exact costs that is one."""
 
-OTHERS, SHOWN, ALIKE = 3, 41, 0.05
+OTHERS, SHOWN, ALIKE_WAYS = 3, 41, 0.05
 """Motions at the cost of an answer that are made exact at most, the times at which ways are looked at, and the share of
 the range of a state by which those differ that are another way."""
 
@@ -210,7 +210,7 @@ def _another_way(found: Found, cost: float, shapes: list[Array]) -> bool:
         return False
     at = motion(found)
     shape = _shape(at.times, at.x)
-    if any(np.abs(shape - other).max() < ALIKE for other in shapes):
+    if any(np.abs(shape - other).max() < ALIKE_WAYS for other in shapes):
         return False
     shapes.append(shape)
     return True
@@ -253,7 +253,7 @@ def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
             one = _again(found, meshes, SMOOTHINGS[number], limits)
         if not one.solved:
             return
-        settled = abs(one.objective - found.objective) <= SETTLED * abs(one.objective)
+        settled = abs(one.objective - found.objective) <= SETTLED_COST * abs(one.objective)
         found = one
         yield motion(found)
         if settled:
@@ -281,5 +281,5 @@ def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits
     old = found.programme
     programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
     start = starts.carried(programme, old, found.unknown)
-    one = nlp.solve(programme, start, limits, AGAIN, near=True)
+    one = nlp.solve(programme, start, limits, ON_FINER_MESH, near=True)
     return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)

@@ -16,7 +16,7 @@ from satsym.solvers.search.transcription import Sizes
 STEPS = 200
 """In which the motion at rest is followed."""
 
-FAR = 30.0
+FAR_STATE = 30.0
 """Multiple of the largest given number beyond which it is not followed."""
 
 ROUNDING = 1e-12
@@ -109,7 +109,7 @@ def _rest(instance: Instance, controls: Controls, duration: float) -> Rest:
     v = np.zeros(controls.count)
     v[bounded] = 0.5 * (low + high)[bounded]
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
-    far = FAR * max(1.0, np.abs(start).max(), np.nanmax(np.abs(end), initial=0.0))
+    far = FAR_STATE * max(1.0, np.abs(start).max(), np.nanmax(np.abs(end), initial=0.0))
     times = instance.t0 + duration * np.linspace(0.0, 1.0, STEPS + 1)
     states = followed(instance, controls, times, start, v, far)
     return Rest(v, states, len(states) == STEPS + 1)

@@ -26,7 +26,7 @@ WITHIN = 1e2
 WAVES = 3
 """Waves of which drawn starts are made."""
 
-SAME = 1e-9
+EQUAL_RATE = 1e-9
 """Relative difference of a rate and a state that are one but for rounding."""
 
 FREELY, DRAWS = 1.0, 40
@@ -194,7 +194,7 @@ def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
     v = resting(controls)
     with np.errstate(all="ignore"):
         f = flow(instance, controls, instance.t0, x, v)
-    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and abs(f[i] - x[j]) <= SAME * abs(x[j])]
+    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and abs(f[i] - x[j]) <= EQUAL_RATE * abs(x[j])]
     polar = any(instance.model.spec.states[i].positive for i, _ in pairs)
     return pairs if 2 <= len(pairs) <= 3 and not polar else []
 

@@ -28,7 +28,7 @@ DEGREE = 3
 RADAU = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0])
 """Their places within it."""
 
-SHORTEST, LONGEST = 1e-3, 100.0
+SHORTEST_DURATION, LONGEST_DURATION = 1e-3, 100.0
 """Shares of the first guess between which a free duration is looked for."""
 
 ROUGHLY = 0.5
@@ -257,8 +257,8 @@ class Transcription:
         given = instance.tf is not None and self.phases == 1 and not self.starts
         scale = self.sizes.duration
         exact = 0.0 if instance.tf is None else instance.tf - instance.t0
-        shortest = exact if given else SHORTEST * scale / self.phases
-        longest = exact if given else LONGEST * scale
+        shortest = exact if given else SHORTEST_DURATION * scale / self.phases
+        longest = exact if given else LONGEST_DURATION * scale
         unlimited = np.full(len(self.free), FREE)
         units = self.sizes.free[: len(self.free)]
         positive = np.array(

@@ -15,7 +15,7 @@ from satsym.solvers.shooting.runge_kutta import ORDER, advance
 MOST_STEPS = 32
 """Steps of one arc at most; where more are needed, more arcs are better."""
 
-FAINT = 1e-2
+FAINT_COSTATE = 1e-2
 """Costates whose scaled size is below this are compared at this size: a return from so near feels the rounding of the
 states as a larger share of its costates."""
 
@@ -59,7 +59,7 @@ class Arcs:
         """Largest change: of states, relative to their size (at least one), of costates and a free duration."""
         state, costate = np.abs(self.nodes).reshape(2, -1).max(axis=1).tolist()
         change = np.abs(nodes).max(axis=0).reshape(2, -1).max(axis=1)
-        changes = change / (max(1.0, state), max(FAINT, costate))
+        changes = change / (max(1.0, state), max(FAINT_COSTATE, costate))
         found = float(changes.max())  # no number where one is none
         return max(found, abs(float(theta[-1] / self.theta[-1]))) if self.problem.free_time else found
 

@@ -31,7 +31,7 @@ KEEP = 0.3
 """Share of a positive state, and of a free duration, that a correction must leave."""
 
 SHORTEST = 1e-3
-MOST = 30
+MOST_STEPS = 30
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
 def newton(arcs: Arcs, limits: Limits) -> Outcome:
     """Newton from arcs with enough steps."""
     before = float("inf")
-    for iteration in range(1, MOST + 1):
+    for iteration in range(1, MOST_STEPS + 1):
         try:
             matching, wrong = linearised(arcs)
             correction = _correction(matching, wrong)

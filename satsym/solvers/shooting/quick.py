@@ -19,17 +19,17 @@ from satsym.solvers.shooting.compiled import Compiled, Numbers, integrator, njit
 from satsym.solvers.shooting.newton import within_domain
 from satsym.solvers.shooting.runge_kutta import ORDER
 
-MOST = 12
+MOST_CORRECTIONS = 12
 LOST = 30.0
 """Size of a correction that leads nowhere."""
 
-NEAR = 1e-2
+NEAR_CORRECTION = 1e-2
 """Size of a correction down to which few steps do: their error is below what is left to correct."""
 
 FEWER = 4
 """Times as few steps they are."""
 
-CLOSE = 3e-5
+CLOSE_CORRECTION = 3e-5
 """Size of a correction after which twice as many steps show the error: what is left to correct is about its square."""
 
 
@@ -50,7 +50,7 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
     """
     enough, shown, transition = arcs.steps, False, None
     arcs = arcs.with_steps(max(enough // FEWER, 1))
-    for iteration in range(1, MOST + 1):
+    for iteration in range(1, MOST_CORRECTIONS + 1):
         try:
             # what twice as many steps would say of the arcs' derivatives changes a correction that is next to nothing
             nodes, theta, transition = _correction(arcs, transition if shown else None)
@@ -63,10 +63,10 @@ def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
             break
         if shown and error <= tolerance:
             return arcs, error, iteration
-        if arcs.steps < enough and size < NEAR:
+        if arcs.steps < enough and size < NEAR_CORRECTION:
             arcs = arcs.with_steps(enough)
             continue
-        shown = arcs.steps >= enough and size < CLOSE
+        shown = arcs.steps >= enough and size < CLOSE_CORRECTION
         if shown:
             arcs = arcs.with_steps(2 * arcs.steps)
     return arcs, float("inf"), iteration

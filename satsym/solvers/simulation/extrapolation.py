@@ -22,7 +22,7 @@ Rates = Callable[[float, Array], Array]
 SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
 """Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
 
-SAFETY, SMALLEST_CHANGE, MOST = 0.7, 0.1, 4.0
+SAFETY, SMALLEST_CHANGE, LARGEST_CHANGE = 0.7, 0.1, 4.0
 """Bounds of the next step: share of what the error allows, and the least and the largest change."""
 
 MOST_STEPS = 100_000
@@ -221,7 +221,7 @@ def _piece(
             values.append(reached)
             most = max(most, column + 1)
         factor = SAFETY * (1.0 / max(error, 1e-10)) ** (1.0 / (2 * column + 1))
-        grown = h * min(MOST, max(SMALLEST_CHANGE, factor))
+        grown = h * min(LARGEST_CHANGE, max(SMALLEST_CHANGE, factor))
         step = grown if not last or error > 1.0 else np.copysign(max(abs(grown), abs(step)), h)
         if abs(step) < 1e-14 * max(abs(at), abs(end - begin)):
             break

@@ -28,7 +28,7 @@ SUFFICIENT = 1e-4
 SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-20
 """Step length below which the direction is given up, far from the optimum and close to it."""
 
-CLOSE = 1e-2
+CLOSE_RESIDUAL = 1e-2
 """Residual below which a step may be accepted because it reduces the residual. Gradient and J are both
 fourth-order approximations but not of each other; near the optimum J can no longer tell which step is better."""
 
@@ -38,7 +38,7 @@ NOTICEABLE = 1e-9
 ROUNDING = 30.0
 """A residual within this factor of what a change of the last digit causes cannot be reduced."""
 
-TINY = 1e-9
+TINY_RESIDUAL = 1e-9
 """Residual below which rounding is looked at before each step, lest many steps be spent on the last digits."""
 
 SURE = 3.0
@@ -78,7 +78,7 @@ class QuasiNewton:
         residual = state.sweep.residual
         if residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
-        factor = ROUNDING if state.stalled else SURE if residual <= TINY else 0.0
+        factor = ROUNDING if state.stalled else SURE if residual <= TINY_RESIDUAL else 0.0
         if factor and residual <= factor * _rounding(self.problem, state.sweep):
             return Status.CONVERGED, f"control and control law agree to {residual:.0e}, as far as rounding allows"
         if not state.stalled:
@@ -114,7 +114,7 @@ class QuasiNewton:
         direction, gradient = self._direction(sweep, pairs)
         if not np.sum(gradient * direction) < 0.0:
             return None
-        length, shortest = 1.0, SHORTEST_CLOSE if sweep.residual < CLOSE else SHORTEST
+        length, shortest = 1.0, SHORTEST_CLOSE if sweep.residual < CLOSE_RESIDUAL else SHORTEST
         while length > shortest:
             u = self.problem.instance.control_set.project(sweep.u + length * direction)
             predicted = float(np.sum(gradient * (u - sweep.u)))
@@ -123,7 +123,7 @@ class QuasiNewton:
                 decrease = sweep.objective - motion.objective
                 if decrease >= -SUFFICIENT * predicted and decrease > NOTICEABLE * abs(sweep.objective):
                     return backward(self.problem, motion)
-                if sweep.residual < CLOSE:
+                if sweep.residual < CLOSE_RESIDUAL:
                     trial = backward(self.problem, motion)
                     if trial.residual <= (1.0 - 0.1 * length) * sweep.residual:
                         return trial

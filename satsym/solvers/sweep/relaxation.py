@@ -30,7 +30,7 @@ PROBE = 1e-6
 PROBES = 30
 """Power iterations at the most, to find the largest response."""
 
-ASIDE = 100, 5.0
+FALLBACK = 100, 5.0
 """Iterations and seconds that finding the extremal may take when relaxation has failed."""
 
 
@@ -92,7 +92,7 @@ class Relaxation:
         )
 
     def _near_extremal(self) -> Forward:
-        iterations, seconds = ASIDE
+        iterations, seconds = FALLBACK
         limits = Limits(iterations, computed() + seconds)
         return iterate(QuasiNewton(self.problem, self.start, self.tolerance), limits, None).state.sweep.forward
 

@@ -25,7 +25,7 @@ from satsym.status import Status
 ROUNDS = 6
 """Times that nodes are moved to the corners, at the most."""
 
-SETTLED = 1e-9
+SETTLED_CORNERS = 1e-9
 """Corners that move by less than this share of the horizon stay."""
 
 WORTH_COMPILING = 20_000
@@ -145,7 +145,7 @@ def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Ar
 
 def _settled(before: tuple[tuple[float, ...], ...], after: tuple[tuple[float, ...], ...], horizon: float) -> bool:
     return all(
-        len(old) == len(new) and np.allclose(old, new, rtol=0.0, atol=SETTLED * horizon)
+        len(old) == len(new) and np.allclose(old, new, rtol=0.0, atol=SETTLED_CORNERS * horizon)
         for old, new in zip(before, after, strict=True)
     )
 

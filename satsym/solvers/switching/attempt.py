@@ -31,7 +31,7 @@ SOLVED = 1e-10
 SIZED = 1e-6
 """Share of its size in a guess that a state has at least in the extremal."""
 
-FAINT = 1e-40
+FAINT_COSTATE = 1e-40
 """Share of the largest size below which another is none: what moves only because costates have no exact zeros."""
 
 EVALUATED = 250
@@ -203,7 +203,7 @@ def sizes(instance: Instance, at: Guess) -> Array:
 
 def _sized(states: Array, costates: Array) -> Array:
     """Sizes of both, none of them zero."""
-    states = np.where(states > FAINT * states.max(), states, 1.0)
+    states = np.where(states > FAINT_COSTATE * states.max(), states, 1.0)
     cost = float((states * costates).max())
     return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.control_set import Row
 from satsym.instance import Instance
-from satsym.solvers.switching.field import BEYOND, NUDGE, Field
+from satsym.solvers.switching.field import BEYOND_RANGE, NUDGE, Field
 from satsym.solvers.switching.structure import BOUNDARY, constraint_of
 
 
@@ -28,7 +28,7 @@ class BoundaryField(Field):
         self.constraint = constraint_of(levels[self.acting])
         self.order = instance.model.spec.path_constraints[self.constraint].order
         low, high = instance.lower[self.acting], instance.upper[self.acting]
-        self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
+        self.middle, self.beyond = (low + high) / 2.0, BEYOND_RANGE * (high - low)
 
     def kept_at(self, t: float, z: list[float]) -> Row:
         return self.instance.control_set.saturated(self.control(t, z)).arguments

@@ -28,7 +28,7 @@ from satsym.solvers.control.regularised import smoothed_law
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.homotopy import Smoothed
-from satsym.solvers.switching.cold_start.recognition import FAINT, Sample
+from satsym.solvers.switching.cold_start.recognition import FAINT_FUNCTION, Sample
 from satsym.solvers.switching.throttled import signs
 from satsym.solvers.switching.trajectory import runs
 from satsym.status import Status
@@ -138,7 +138,7 @@ def at_rest(solution: Solution) -> bool:
     model, p = solution.instance.model, solution.instance.parameters
     t, x, u, lam = solution.times, solution.x, solution.u, solution.lam
     terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
-    return bool(abs(np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)[-1]) <= FAINT * terms)
+    return bool(abs(np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)[-1]) <= FAINT_FUNCTION * terms)
 
 
 def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
@@ -172,7 +172,7 @@ def _corners(problem: TwoPoint, curve: Curve) -> Array:
 
     sigma = values(tau)
     size = np.abs(sigma)
-    seen = np.maximum(size[:, :-1], size[:, 1:]) > FAINT * size.max(axis=1, keepdims=True)
+    seen = np.maximum(size[:, :-1], size[:, 1:]) > FAINT_FUNCTION * size.max(axis=1, keepdims=True)
     rows, at = np.nonzero(seen & (np.sign(sigma[:, :-1]) * np.sign(sigma[:, 1:]) < 0))
     own = np.arange(len(rows))
     ends = tau[at], tau[at + 1], sigma[rows, at], sigma[rows, at + 1]

@@ -16,7 +16,7 @@ from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""
 
-BEYOND = 10.0
+BEYOND_RANGE = 10.0
 """Times the width of its range by which a singular control is off its middle where nothing brings it back."""
 
 PLACES, WEIGHTS = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
@@ -47,7 +47,7 @@ class Field:
             raise ArithmeticError("no law is known on singular arcs of a control whose magnitude stands in the motion")
         if self.singular is not None:
             low, high = instance.lower[self.singular], instance.upper[self.singular]
-            self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
+            self.middle, self.beyond = (low + high) / 2.0, BEYOND_RANGE * (high - low)
 
     def _at(self, control: int, level: int) -> float:
         """The value of a control at a level."""

@@ -18,11 +18,11 @@ from satsym.solvers.switching.extremal_arcs import ROUGH, TOLERANCE, Accuracy, A
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure, constraint_of, jumps
 
-MOST = 20
-NEAR = 1e-2
+MOST_STEPS = 20
+NEAR_CORRECTION = 1e-2
 """Arcs need no more than rough accuracy until a correction is smaller than that."""
 
-SETTLED = 1e-7
+SETTLED_CORRECTION = 1e-7
 """The first correction below this is the last."""
 
 LOST = 1e4
@@ -285,10 +285,10 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
         Told the size of each correction, and NaN for the cost, which is not known on the way.
     """
     at, seen = start, [float("inf")]
-    for iteration in range(1, MOST + 1):
+    for iteration in range(1, MOST_STEPS + 1):
         before = seen[-1]
         try:
-            close = before < NEAR
+            close = before < NEAR_CORRECTION
             arcs = equations.arcs(at, tolerance=TOLERANCE if close else ROUGH)
             residual, slopes = equations.residual(at, arcs)
             step = _least_squares(slopes, -residual)
@@ -300,7 +300,7 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
         seen.append(size)
         if not size < LOST or (iteration > FREE and size > GROWN * before) or _too_slow(seen):
             return None
-        if close and size < SETTLED:  # what is left to correct is about its square
+        if close and size < SETTLED_CORRECTION:  # what is left to correct is about its square
             at = equations.moved(at, step)
             arcs = equations.arcs(at, slopes=False)
             values, _ = equations.residual(at, arcs)
@@ -318,11 +318,11 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
 
 def _too_slow(seen: list[float]) -> bool:
     """Whether corrections shrink evenly, as where an arc vanishes, and cannot settle in those that are left."""
-    if len(seen) < STEADY + 2 or not SETTLED <= seen[-1] < NEAR:  # none came before the first
+    if len(seen) < STEADY + 2 or not SETTLED_CORRECTION <= seen[-1] < NEAR_CORRECTION:  # none came before the first
         return False
     factors = [after / before for before, after in pairwise(seen[-STEADY - 1 :])]
     even = all(after > EVEN * before for before, after in pairwise(factors))
-    return even and seen[-1] * factors[-1] ** (MOST + 1 - len(seen)) > SETTLED
+    return even and seen[-1] * factors[-1] ** (MOST_STEPS + 1 - len(seen)) > SETTLED_CORRECTION
 
 
 def _least_squares(matrix: Array, right: Array) -> Array:

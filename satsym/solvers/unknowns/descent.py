@@ -17,7 +17,7 @@ from satsym.solvers.improving import without_minimiser
 from satsym.solvers.unknowns.trials import Trial, Trials
 from satsym.status import BadInput
 
-SETTLED = 1e-11
+SETTLED_SLOPE = 1e-11
 """Slope, relative, at which nothing is left to be gained."""
 
 ITERATIONS, POLISHING, DEPARTURES = 60, 4, 3
@@ -26,13 +26,13 @@ ITERATIONS, POLISHING, DEPARTURES = 60, 4, 3
 FIRST = 0.05
 """Share of the unit of each unknown by which it is changed first, to see how much depends on it."""
 
-NEAR = 1e-3
+NEAR_UNITS = 1e-3
 """Units by which they are changed to measure the curvature."""
 
-FAR = 1e5
+FAR_UNITS = 1e5
 """Units beyond which a cost that falls still is taken to fall without end."""
 
-SMALLEST = 1e-10
+SMALLEST_RADIUS = 1e-10
 """Radius of the trust region, in units, below which nothing moves."""
 
 IDLE = 1e-9
@@ -75,7 +75,7 @@ def _descended(trials: Trials, here: Trial, form: Array) -> Trial | Solution:
     """The trust region's way down."""
     radius, start = 1.0, here.at
     for _ in range(ITERATIONS):
-        if here.residual <= SETTLED or radius < SMALLEST:
+        if here.residual <= SETTLED_SLOPE or radius < SMALLEST_RADIUS:
             break
         step = _step(form, here.slope, radius)
         new = trials(here.at + step)
@@ -90,7 +90,7 @@ def _descended(trials: Trials, here: Trial, form: Array) -> Trial | Solution:
             if not drowned and length > 0.8 * radius and change < 0.5 * expected:
                 radius *= 2.5
             here = new
-            if float(np.abs(here.at - start).max()) > FAR:
+            if float(np.abs(here.at - start).max()) > FAR_UNITS:
                 message = f"the cost falls without end, to {here.cost:.4g} with {trials.values(here.at)}"
                 return without_minimiser(here.solution, f"{message}; give numbers, or weigh them in the cost")
         elif drowned:
@@ -124,13 +124,13 @@ def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
     count = len(here.at)
     form, by_costs = np.zeros((count, count)), np.zeros(count)
     for k, axis in enumerate(np.eye(count)):
-        ahead, behind = trials(here.at + NEAR * axis), trials(here.at - NEAR * axis)
+        ahead, behind = trials(here.at + NEAR_UNITS * axis), trials(here.at - NEAR_UNITS * axis)
         if ahead is None or behind is None:
             return np.eye(count), False
-        form[:, k] = (ahead.slope - behind.slope) / (2.0 * NEAR)
-        by_costs[k] = (ahead.cost - 2.0 * here.cost + behind.cost) / NEAR**2
+        form[:, k] = (ahead.slope - behind.slope) / (2.0 * NEAR_UNITS)
+        by_costs[k] = (ahead.cost - 2.0 * here.cost + behind.cost) / NEAR_UNITS**2
     own = np.diag(form)
-    blurred = 4.0 * NOISE * here.size / NEAR**2
+    blurred = 4.0 * NOISE * here.size / NEAR_UNITS**2
     believed = bool((np.abs(by_costs - own) <= AGREEMENT * np.abs(own) + blurred).all())
     return (form + form.T) / 2.0, believed
 
@@ -138,7 +138,7 @@ def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
 def _polished(trials: Trials, here: Trial, form: Array) -> Trial:
     """Newton's method with the form that was measured."""
     for _ in range(POLISHING):
-        if here.residual <= SETTLED or _softest(form, STILL * here.size)[0] <= FLAT:
+        if here.residual <= SETTLED_SLOPE or _softest(form, STILL * here.size)[0] <= FLAT:
             break
         new = trials(here.at - np.linalg.solve(form, here.slope))
         if new is None or not new.residual < here.residual:
@@ -189,7 +189,7 @@ def _updated(form: Array, step: Array, change: Array) -> Array:
 def met_beside(trials: Trials, here: Trial) -> str | None:
     """What is met where the slope of the minimum cost does not vanish and no step down is found; ``None``: nothing."""
     length = max(float(np.linalg.norm(here.slope)), 1e-300)
-    beside = [trials(here.at + sign * NEAR * here.slope / length) for sign in (1.0, -1.0)]
+    beside = [trials(here.at + sign * NEAR_UNITS * here.slope / length) for sign in (1.0, -1.0)]
     if beside[1] is None:
         return "falls towards the edge of what has an answer,"
     if all(one is None or one.cost > here.cost for one in beside):

@@ -8,7 +8,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.search import nearest
 from satsym.solvers.unknowns.trials import Trials
 
@@ -24,7 +24,7 @@ def reaching(trials: Trials) -> Array | None:
     instance = trials.instance
     if not instance.final or any(isinstance(value, str) for value in instance.final.values()):
         return None
-    found = nearest.reaching(_with_slack(instance), Limits(MOST, trials.deadline, work=WORK))
+    found = nearest.reaching(_with_slack(instance), Limits(MOST_ITERATIONS, trials.deadline, work=WORK))
     if found is None:
         return None
     return np.array([one.of(found) - one.of(instance) for one in trials.unknowns]) / trials.unit

@@ -28,7 +28,7 @@ from satsym.wording import counted
 ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
 """Units by which unknowns are changed, one after the other, where the first guess has no answer."""
 
-SAME = 1e-9
+EQUAL_COST = 1e-9
 """Relative margin by which another choice may seem cheaper: its own error."""
 
 
@@ -91,7 +91,7 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
         return final
     others = Competitors(Kind.UNKNOWNS, trials.tried, len(trials.costs), min(trials.costs))
     less = float(max(0.0, final.objective - others.cheapest) / here.size)
-    cheaper_by = Check(f"cheaper by: {others.kind.value}", less, SAME)
+    cheaper_by = Check(f"cheaper by: {others.kind.value}", less, EQUAL_COST)
     certificate = with_scope(with_start(final.certificate, final, [*curvature.checks, cheaper_by]), final)
     return replace(final, certificate=replace(certificate, competitors=(*certificate.competitors, others)))
 

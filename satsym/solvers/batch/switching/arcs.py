@@ -16,10 +16,10 @@ Places = NDArray[np.int64]
 
 CORRECTIONS = 30
 
-TINY = 1e-3
+FIRST_LENGTH = 1e-3
 """Share of the duration that an arc has at first where one more is needed than signs show."""
 
-SETTLED, FAR = 1e-11, 1e6
+SETTLED_STEP, DIVERGED_STEP = 1e-11, 1e6
 """Relative size of a correction after which one more makes arcs exact, and of one that leads nowhere."""
 
 
@@ -84,9 +84,9 @@ def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Ar
     if outermost(costate, rates, powers[0]) < outermost(costate, rates, whole):
         for s in range(count, 0, -1):
             times[s] = times[s - 1]
-        times[0], final[0] = TINY, -1.0
+        times[0], final[0] = FIRST_LENGTH, -1.0
     else:
-        times[count] = 1.0 - TINY
+        times[count] = 1.0 - FIRST_LENGTH
     return count + 1
 
 
@@ -245,7 +245,7 @@ def exact(
         if not solved(matrix, right):
             return -1, duration
         size = magnitude(right)
-        if not size <= FAR:
+        if not size <= DIVERGED_STEP:
             return -1, duration
         for s in range(count):
             change[s] = right[s] * duration
@@ -258,7 +258,7 @@ def exact(
             return -1, duration
         if settled:
             break
-        settled = share == 1.0 and size <= SETTLED
+        settled = share == 1.0 and size <= SETTLED_STEP
     falling = product(costate, begun(rates, end, final))
     if not settled or not falling < 0.0:  # else it is the last moment at which the end is reached, not the first
         return -1, duration

@@ -21,7 +21,7 @@ from satsym.solvers.collocation.scaling import final_argument
 DRAWN = 3
 """Places at which coefficients of each motion are compared."""
 
-SAME = 1e-12
+EQUAL_COEFFICIENTS = 1e-12
 """Relative difference of coefficients that is rounding."""
 
 FOLLOWED = 1e-7
@@ -187,7 +187,7 @@ def _coefficients(instances: Sequence[Instance]) -> tuple[Array, Array, NDArray[
 def _same(drawn: list[Array]) -> NDArray[np.bool_]:
     """Whether values do not depend on where they are taken, shape (M,)."""
     spread, size = np.ptp(drawn, axis=0).max(axis=0), np.abs(drawn).max(axis=(0, 1))
-    return np.asarray(np.isfinite(size) & (spread <= SAME * size))
+    return np.asarray(np.isfinite(size) & (spread <= EQUAL_COEFFICIENTS * size))
 
 
 def _ends(

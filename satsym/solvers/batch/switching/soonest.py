@@ -17,10 +17,10 @@ from satsym.solvers.batch.switching.planes import THERE, at, nearest, passed, po
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
-FEWEST, SHOWN, MOST = 16, 64, 4096
+FEWEST, SHOWN, MOST_STEPS = 16, 64, 4096
 """Steps in which a duration shows at least, as planned, and at most."""
 
-SHORT = 0.125
+SHORT_STEP = 0.125
 """Largest product of a step and the motion's rates."""
 
 ROUNDS = 40
@@ -65,15 +65,15 @@ def first_arrival(
         for j in range(n):
             row += abs(rates[i, j])
         fastest = max(fastest, row)
-    length = min(scale / SHOWN, SHORT / max(fastest, 1e-300))
+    length = min(scale / SHOWN, SHORT_STEP / max(fastest, 1e-300))
     powers = powers_of(rates, length, 3 * SHOWN)
     plane, trial = np.zeros(n), np.zeros(n)
     put(plane, costate)
     for _ in range(ROUNDS):
         later = passed(plane, rates, powers, length, x, end, box, since)
         if later < 0.0:
-            coarse = 4.0 * length * fastest <= SHORT
-            if not coarse and len(powers) > MOST:
+            coarse = 4.0 * length * fastest <= SHORT_STEP
+            if not coarse and len(powers) > MOST_STEPS:
                 return -1, since
             length *= 4.0 if coarse else 1.0
             powers = powers_of(rates, length, 3 * SHOWN if coarse else 4 * (len(powers) - 1))
@@ -83,8 +83,8 @@ def first_arrival(
             powers = powers_of(rates, length, 3 * SHOWN)
             continue
         since = max(since, later)
-        steps = max(SHOWN, int(np.ceil(since * fastest / SHORT)))
-        if not since > 0.0 or steps > MOST:
+        steps = max(SHOWN, int(np.ceil(since * fastest / SHORT_STEP)))
+        if not since > 0.0 or steps > MOST_STEPS:
             return -1, since
         length = since / steps
         powers = powers_of(rates, length, 2 * steps)

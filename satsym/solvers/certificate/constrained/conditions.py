@@ -32,7 +32,7 @@ from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
-from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 
 NAMES = {OF_FLOW: OF_SEGMENTS}
 """What is called otherwise where it is measured part by part."""
@@ -67,7 +67,7 @@ def certify(
             elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
-                    others = comparing.compared(solution, Limits(MOST, deadline), seed)
+                    others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed)
                     if again.meets_a_boundary(solution):
                         others = others.joined(_of_other_structures(solution, deadline))
     return concluded(first, second, curved, others, compared=compared), others.better

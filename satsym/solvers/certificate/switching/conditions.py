@@ -23,7 +23,7 @@ from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, rep
 from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
 from satsym.solvers.certificate.switching.variation import curvature
 from satsym.solvers.failures import tried
-from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.structure import SINGULAR
 from satsym.solvers.switching.throttled import shown_by, signs
@@ -50,7 +50,7 @@ def certify(
     solution: Solution, deadline: float, compare: bool = True, seed: int = 0
 ) -> tuple[Certificate, Solution | None]:
     """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`. And an extremal that costs less, if any."""
-    limits = Limits(MOST, deadline)
+    limits = Limits(MOST_ITERATIONS, deadline)
     try:
         again, failed = replay(solution, limits), "flow from the initial costates is finite"
     except TooMuchWork:
@@ -153,7 +153,7 @@ def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
 
     It is next to nothing shortly before an end at which several of its rates vanish, but beyond these errors.
     """
-    by = Integration(np.concatenate(typical(solution)), Limits(MOST, float("inf")))
+    by = Integration(np.concatenate(typical(solution)), Limits(MOST_ITERATIONS, float("inf")))
     lasting = float(again.times[-1] - again.times[0])
     sizes, marks = _along(again)
     for control, (times, margin) in enumerate(marks):

@@ -14,7 +14,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.accuracy.jumping import found
-from satsym.solvers.collocation.curve import SMALL, Curve, Step
+from satsym.solvers.collocation.curve import SMALL_COSTATE, Curve, Step
 from satsym.solvers.collocation.gauss import interpolation, scheme
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
@@ -24,17 +24,17 @@ from satsym.solvers.collocation.system import System
 POINTS, MORE = 16, 24
 """Points of each interval, at first and where polynomials through so many leave out too little for a finer mesh."""
 
-MOST = 6
+MOST_CORRECTIONS = 6
 CONTRACTION = 0.1
 """Corrections that shrink less are not worth another."""
 
 ROUNDING = 3e-15
 """Corrections of this size show nothing any more, and residuals of this size are none."""
 
-SETTLED = 1e-14
+ROUNDED_ERROR = 1e-14
 """What is said of the error where Newton's method has brought its corrections down to rounding."""
 
-FAINT = 1e-5
+FAINT_COSTATE = 1e-5
 """Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
 """
 
@@ -80,8 +80,8 @@ def correct_defects(curve: Curve, linearised: Linearised, tolerance: float, poin
     fundamental = linearised.fundamental(onto)
     inverse = _inverted(fundamental)
     fine, before = curve.with_stages(points), float("inf")
-    small = _faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
-    for _ in range(MOST):
+    small = _faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL_COSTATE
+    for _ in range(MOST_CORRECTIONS):
         step = _correction(system, fine, linearised, onto, fundamental, inverse)
         size = step.size(fine, small)
         if not size < before:
@@ -118,11 +118,11 @@ def resolved(problem: TwoPoint, curve: Curve, rough: float) -> Corrected | None:
     if outcome is None or not outcome.solved:
         return None
     omitted = left_out(outcome.curve)
-    return Corrected(_without_rounding(system, outcome.curve), max(SETTLED, float(omitted.max())), omitted)
+    return Corrected(_without_rounding(system, outcome.curve), max(ROUNDED_ERROR, float(omitted.max())), omitted)
 
 
 def _faint(linearised: Linearised) -> float:
-    """The size at which smaller scaled costates count: that which moves the states by :data:`FAINT` of their size.
+    """The size at which smaller scaled costates count: it moves the states by :data:`FAINT_COSTATE` of theirs.
 
     What the ends of the states ask of the costates, and how the rounding of states shows in these, is the same
     response.
@@ -134,7 +134,7 @@ def _faint(linearised: Linearised) -> float:
     ends = [(np.zeros(n), unit) for unit in np.eye(n, n + e)[problem.fixed]]
     asked = [linearised.matching.correction(met, start, end)[0][:, n:] for start, end in starts + ends]
     largest = float(np.abs(asked).max())
-    return max(SMALL, FAINT * largest) if np.isfinite(largest) else SMALL
+    return max(SMALL_COSTATE, FAINT_COSTATE * largest) if np.isfinite(largest) else SMALL_COSTATE
 
 
 def _without_rounding(system: System, curve: Curve) -> Curve:
@@ -179,7 +179,7 @@ def _inverted(matrices: Array) -> Array:
     return found
 
 
-def left_out(curve: Curve, small: float = SMALL) -> Array:
+def left_out(curve: Curve, small: float = SMALL_COSTATE) -> Array:
     """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
     n = len(curve.nodes) // 2
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)

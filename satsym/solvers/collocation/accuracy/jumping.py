@@ -16,19 +16,19 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.jumps import Jump, jumps
 
-SAMPLES, CLEAR = 12, 1e-3
+SAMPLES, CLEAR_JUMP = 12, 1e-3
 """Points in each interval between which jumps are looked for, and what is one, as a share of the largest control."""
 
-STILL, MOST = 1e-12, 25
+STILL, MOST_MOVES = 1e-12, 25
 """Share of the horizon by which jumps still move that stand still, and times that nodes follow them."""
 
 ROUGHLY = 1e-4
 """Change of a curve from which on Newton's method brings it to its end."""
 
-LARGEST = 0.5
+LARGEST_CHANGE = 0.5
 """Relative change of a curve in one step."""
 
-CLOSE = 1e-6
+CLOSE_JUMPS = 1e-6
 """Share of the horizon within which two jumps leave nothing between them."""
 
 
@@ -41,9 +41,9 @@ def found(problem: TwoPoint, curve: Path) -> list[Jump]:
 
     def joins(jump: Jump) -> bool:  # and not only because the curve itself is torn at a node
         apart = problem.between(jump.time, curve(np.array([jump.time]))[:, 0], curve.theta, jump)
-        return apart > CLEAR * max(float(np.abs(jump.before).max()), float(np.abs(jump.after).max()))
+        return apart > CLEAR_JUMP * max(float(np.abs(jump.before).max()), float(np.abs(jump.after).max()))
 
-    return [one for one in jumps(lambda at: problem.control(at, curve(at), curve.theta), tau, CLEAR) if joins(one)]
+    return [one for one in jumps(lambda at: problem.control(at, curve(at), curve.theta), tau, CLEAR_JUMP) if joins(one)]
 
 
 def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt | None:
@@ -59,7 +59,7 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
         Intervals, about.
     """
     met, before, size = found(problem, curve), np.zeros(0), float("inf")
-    for _ in range(MOST):
+    for _ in range(MOST_MOVES):
         met = _merged(met)
         times = np.array([jump.time for jump in met])
         mesh = through(np.union1d(corners(problem, curve), times), count)
@@ -77,17 +77,17 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
                 return None
             curve, size = stepped
         before, met = times, found(problem, curve)
-    return Attempt(curve, Reason.UNSETTLED, MOST)
+    return Attempt(curve, Reason.UNSETTLED, MOST_MOVES)
 
 
 def _merged(met: list[Jump]) -> list[Jump]:
     """Without jumps that leave nothing between them: where a curve is torn at a node, its law may jump to and fro."""
     left: list[Jump] = []
     for jump in met:
-        if left and jump.time - left[-1].time < CLOSE:
+        if left and jump.time - left[-1].time < CLOSE_JUMPS:
             last = left.pop()
             apart = float(np.abs(jump.after - last.before).max())
-            if apart > CLEAR * max(float(np.abs(jump.after).max()), float(np.abs(last.before).max())):
+            if apart > CLEAR_JUMP * max(float(np.abs(jump.after).max()), float(np.abs(last.before).max())):
                 left.append(replace(last, after=jump.after))
         else:
             left.append(jump)
@@ -104,4 +104,6 @@ def _stepped(system: System, curve: Curve) -> tuple[Curve, float] | None:
     size = step.size(curve)
     if not np.isfinite(size):
         return None
-    return curve.moved(step, min(within_domain(system.problem, curve, step), LARGEST / max(size, LARGEST))), size
+    return curve.moved(
+        step, min(within_domain(system.problem, curve, step), LARGEST_CHANGE / max(size, LARGEST_CHANGE))
+    ), size

@@ -20,7 +20,7 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.control.breaks import find_breaks
 from satsym.solvers.control.jumps import Jump
 
-NEAR = 1e-3
+NEAR_CORRECTION = 1e-3
 """Last correction of Newton's method from which defect corrections converge quickly."""
 
 AIM = 1e-3
@@ -67,7 +67,7 @@ def refine(
     for _ in range(ROUNDS):
         if known is None:
             system = System(problem, curve.mesh, STAGES, found(problem, curve))
-            outcome = newton(system, curve.on(curve.mesh, STAGES), tolerance=NEAR)
+            outcome = newton(system, curve.on(curve.mesh, STAGES), tolerance=NEAR_CORRECTION)
             total += outcome.iterations if outcome else 0
             if outcome and outcome.solved:
                 curve, known = outcome.curve, outcome.linearised

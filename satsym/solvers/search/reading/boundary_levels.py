@@ -26,10 +26,10 @@ from satsym.solvers.switching.structure import (
 )
 from satsym.solvers.switching.trajectory import runs
 
-SHORT, OFF = 0.5, 1e-6
+SHORT_ARC, OFF = 0.5, 1e-6
 """Length of an arc at an end that no interval shows, in intervals; and share of its size that a boundary may be off."""
 
-NEAR = 1e-2
+NEAR_BOUNDARY = 1e-2
 """Share of a constraint's terms that its slacks are measured by where none is larger."""
 
 
@@ -60,7 +60,7 @@ def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[in
     """With a brief arc to a boundary that the start is not on, and one away from a boundary that the end is not on."""
     instance, x, end = held.instance, held.at.x, float(held.times[-1])
     for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
-        level, brief = row[place], SHORT * float(held.reaches[place])
+        level, brief = row[place], SHORT_ARC * float(held.reaches[place])
         if level < BOUNDARY:
             continue
         which, state = constraint_of(level), x[:, place]
@@ -115,7 +115,7 @@ def _levels(held: Along, control: int) -> NDArray[np.int64]:
 def _active(held: Along) -> NDArray[np.bool_]:
     """Whether each constraint is active, shape (h, N)."""
     s, z, steps = held.slacks, held.pushes, held.at.steps / held.at.steps.sum()
-    room = np.maximum(s.max(axis=1, keepdims=True), NEAR * held.rooms[:, None])
+    room = np.maximum(s.max(axis=1, keepdims=True), NEAR_BOUNDARY * held.rooms[:, None])
     unit = max(abs(held.at.cost), 1e-12) * steps
     return np.asarray(z * room / unit > s / room)
 

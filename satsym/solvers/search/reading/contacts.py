@@ -21,10 +21,10 @@ from satsym.solvers.constrained.structure import Contact, Passage, Structure, or
 from satsym.solvers.search.motion import Motion
 from satsym.solvers.switching.trajectory import runs
 
-CLOSE = 1e-3
+CLOSE_SLACK = 1e-3
 """A slack of this share of the largest is small: points meet a boundary only nearly."""
 
-SMALL = 1e-2
+SMALL_SLACK = 1e-2
 """Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
 
 NOTHING = 1e-6
@@ -106,8 +106,8 @@ def read(at: Motion, resting: bool = False) -> Structure:
     by_x, costates = held.slopes[0], np.abs(at.lam).max(axis=1)[:, None]
     for k, one in enumerate(held.instance.model.spec.path_constraints):
         s, z = held.slacks[k], held.pushes[k]
-        room = max(float(s.max()), SMALL * float(held.rooms[k]))
-        near = (s < CLOSE * room) & (held.kept[k] > 0.0)
+        room = max(float(s.max()), SMALL_SLACK * float(held.rooms[k]))
+        near = (s < CLOSE_SLACK * room) & (held.kept[k] > 0.0)
         pushing = (np.abs(by_x[k]) * z / np.maximum(costates, NOTHING * costates.max() + 1e-300)).max(axis=0)
         counts = near & (z / max(float(z.max()), 1e-300) > s / room)
         for first, last in _spans(near, counts) if resting else runs(_bridged(counts)):

@@ -24,7 +24,7 @@ from satsym.solvers.multipoint.equations import between
 from satsym.solvers.multipoint.laws import Junction, Parameters, Vanishing
 from satsym.solvers.multipoint.newton import Extremal
 
-MOST = 40
+MOST_CORNERS = 40
 """Corners of an extremal. More are the noise of a control that stays next to a bound."""
 
 SAMPLES, INSIDE = 200, 1e-6
@@ -160,7 +160,7 @@ def read(bounds: list[Junction], along: Callable[[Array], Array], times: Array, 
             at = [time for time in at if bound.met(time, along(np.array([time])), p)]
         found += [(time, number) for time in at]
     found.sort()
-    if len(found) > MOST:
+    if len(found) > MOST_CORNERS:
         return None
     return Read(np.array([time for time, _ in found]), tuple(number for _, number in found))
 

@@ -32,10 +32,10 @@ LOOKED = 50
 ROUNDS = 3
 """How often corners are read anew."""
 
-SMALLEST = 1e-100
+SMALLEST_NORM = 1e-100
 """Norm in place of none, of which laws have no direction."""
 
-SMALL = 1e-3
+SMALL_SIZE = 1e-3
 """Share of the largest size that the size of a state or a costate is, at least."""
 
 
@@ -90,7 +90,7 @@ def _solved(instance: Instance, at: Motion, arcs: Arcs, limits: Limits) -> Extre
     size = np.abs(z).max(axis=1)
     n = len(at.x)
     for half in (size[:n], size[n:]):
-        half[:] = np.maximum(half, SMALL * half.max() or 1.0)
+        half[:] = np.maximum(half, SMALL_SIZE * half.max() or 1.0)
     own = replace(instance, initial=at.instance.initial, parameters=at.instance.parameters, t0=at.instance.t0)
     free = np.array([one.of(own) for one in own.free if one.place.value == "parameters"])
     problem = Problem(own, laws, junctions, intervals, (size, span, np.abs(free)))
@@ -161,14 +161,14 @@ def _throttled(at: Motion) -> Arcs | None:
 
 
 def _kept(instance: Instance, norm: float, label: int) -> Law:
-    within: ControlSet = instance.control_set.saturated((norm or SMALLEST,))
+    within: ControlSet = instance.control_set.saturated((norm or SMALLEST_NORM,))
     law = derived(instance, within.arguments, "+" if label else "0")
     if norm:
         return law
 
     def none(t: Array, z: Array, p: Parameters) -> Array:
         u = law.control(t, z, p)
-        return np.where(np.abs(u) <= SMALLEST, 0.0, u)
+        return np.where(np.abs(u) <= SMALLEST_NORM, 0.0, u)
 
     return replace(law, control=none)
 

@@ -20,7 +20,7 @@ from satsym.solvers.search.reading.extremals import read_norm
 from satsym.solvers.search.transcription import DEGREE
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start.recognition import LONG, Sample, guess
+from satsym.solvers.switching.cold_start.recognition import LONG_ARC, Sample, guess
 from satsym.solvers.switching.magnitudes import moving
 from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs, switched
@@ -28,14 +28,14 @@ from satsym.solvers.switching.throttled import signs, switched
 WORK = 4_000_000
 """Unknowns times iterations that all starts together may take."""
 
-POINTS, NEAR, FAINT = 401, 1e-3, 1e-9
+POINTS, NEAR_END, FAINT_COSTATE = 401, 1e-3, 1e-9
 """Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
 of ends that it meets, relative to sizes."""
 
 AT_BOUND = 0.02
 """Share of the width of its range by which a programme's control is off a bound at which it is."""
 
-CLOSE = 0.02
+CLOSE_SWITCHES = 0.02
 """Share of the time between the first and the last switch by which switching times of guesses differ that are one."""
 
 
@@ -80,12 +80,14 @@ def _at_rest(instance: Instance, limits: Limits) -> Exact | None:
     x, middle, _ = model.forward(times, instance.initial, none, none[:, 1:], p)
     fixed = [(i, instance.final[name]) for i, name in enumerate(model.spec.state_names) if name in instance.final]
     size = np.abs(x).max(axis=1)
-    size = np.where(size > NEAR * size.max(), size, size.max())
-    if any(isinstance(end, float) and not abs(x[i, -1] - end) <= NEAR * size[i] for i, end in fixed):
+    size = np.where(size > NEAR_END * size.max(), size, size.max())
+    if any(isinstance(end, float) and not abs(x[i, -1] - end) <= NEAR_END * size[i] for i, end in fixed):
         return None
     given = np.array([name in instance.final for name in model.spec.state_names])
     slope = np.array(model.terminal_gradient(instance.tf, tuple(x[:, -1].tolist()), p))
-    end = np.where(given, FAINT / size, slope)  # any that are small enough do, but where all vanish nothing has a slope
+    end = np.where(
+        given, FAINT_COSTATE / size, slope
+    )  # any that are small enough do, but where all vanish nothing has a slope
     lam, _ = model.backward(times, tuple(end.tolist()), x, middle, none, none[:, 1:], p)
     costates = lam[:, 0] if np.isfinite(lam).all() else np.zeros(n)
     return attempt(instance, Guess(Structure(((LOWER,),) * len(least)), np.zeros(0), costates, instance.tf), limits)
@@ -94,7 +96,7 @@ def _at_rest(instance: Instance, limits: Limits) -> Exact | None:
 def _apart(one: Guess, other: Guess) -> bool:
     """Whether two guesses of one structure have other switching times."""
     lasting = float(np.ptp(one.times)) if len(one.times) else 0.0
-    return bool(np.abs(one.times - other.times).max(initial=0.0) > CLOSE * lasting)
+    return bool(np.abs(one.times - other.times).max(initial=0.0) > CLOSE_SWITCHES * lasting)
 
 
 def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
@@ -140,13 +142,13 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
     for row, labels in enumerate(at):
         for first, last, label in _stretches(labels):
             outer = last - first >= DEGREE and (first == 0 or last == len(labels) - 1)
-            if label and (outer or seen.times[last] - seen.times[first] >= LONG * lasting):
+            if label and (outer or seen.times[last] - seen.times[first] >= LONG_ARC * lasting):
                 sigma[row, first : last + 1] = -label * np.maximum(np.abs(sigma[row, first : last + 1]), 1e-300)
             else:
                 off[row, first : last + 1] = True
         off[row] &= plain[row]
         for first, last, label in _stretches(off[row]):
-            if label and seen.times[last] - seen.times[first] < LONG * lasting:
+            if label and seen.times[last] - seen.times[first] < LONG_ARC * lasting:
                 off[row, first : last + 1] = False
     return off, replace(seen, sigma=sigma)
 
@@ -168,7 +170,7 @@ def _paused(first: Guess, seen: Sample) -> Guess:
 
     Where there is hardly any time to spare, the controls of a programme do not show such an arc.
     """
-    middle, half = float(seen.times[int(np.argmax(seen.sigma[0]))]), CLOSE / 2.0 * float(np.ptp(seen.times))
+    middle, half = float(seen.times[int(np.argmax(seen.sigma[0]))]), CLOSE_SWITCHES / 2.0 * float(np.ptp(seen.times))
     middle = min(max(middle, seen.times[0] + 2.0 * half), seen.times[-1] - 2.0 * half)
     structure = first.structure.with_levels(0, (UPPER, LOWER, UPPER))
     return replace(first, structure=structure, times=np.array([middle - half, middle + half]))

@@ -18,7 +18,7 @@ from satsym.status import BadInput
 BEYOND_LIMIT = 1e-9
 """Largest distance beyond a limit, relative to what is limited, that is none."""
 
-NEAR = 1e-6
+NEAR_LIMIT = 1e-6
 """Distance before a limit, relative to what is limited, within which the interior-point code meets it."""
 
 
@@ -50,7 +50,7 @@ def beyond(instance: Instance, times: Array, x: Array) -> dict[tuple[str, Side],
 
 def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
     """At which of its limits the end of a motion is, by name."""
-    return {name: side for (name, side), by in beyond(instance.meeting({}), at.times, at.x).items() if by > -NEAR}
+    return {name: side for (name, side), by in beyond(instance.meeting({}), at.times, at.x).items() if by > -NEAR_LIMIT}
 
 
 def exact_within(instance: Instance, at: Motion, exact: Callable[[Instance], Solution | None]) -> Solution | None:

@@ -22,10 +22,10 @@ INSIDE = 1e-6
 """Share of the width of its range by which a control is off both bounds, where it may be singular: bounds are met
 exactly, and on its way to an equilibrium a singular control may come as near to one as it likes."""
 
-FAINT = 1e-9
+FAINT_FUNCTION = 1e-9
 """Share of its size at which a switching function is as good as none."""
 
-LONG = 0.02
+LONG_ARC = 0.02
 """Share of the duration that a singular arc has at least; shorter ones are switches that are smoothed."""
 
 
@@ -95,13 +95,13 @@ def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
     off = INSIDE * (high - low)
     plain = ~np.array(moving(instance))[:, None] & (seen.weight == 0.0)
     free = (seen.u > low + off) & (seen.u < high - off) & plain
-    least = LONG * (seen.times[-1] - seen.times[0])
+    least = LONG_ARC * (seen.times[-1] - seen.times[0])
     for row, sigma in zip(free, seen.sigma, strict=True):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(int), [0]])))
         for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
             if seen.times[last] - seen.times[first] < least:
                 row[first : last + 1] = False
-            elif seen.times[-1] - seen.times[last] < least and abs(sigma[-1]) <= FAINT * np.abs(sigma).max():
+            elif seen.times[-1] - seen.times[last] < least and abs(sigma[-1]) <= FAINT_FUNCTION * np.abs(sigma).max():
                 row[last:] = True  # at free ends costates vanish, and smoothing alone makes an arc of that
     return np.asarray(free)
 

@@ -21,7 +21,7 @@ from satsym.solvers.switching.structure import Guess
 LATER = 1e-2
 """Share of a bound from below by which an exact arrival may be later and still be the first."""
 
-STEP, MOST = 1.1, 120
+STEP, MOST_DURATIONS = 1.1, 120
 """Ratio of durations of which one is chosen, and how many are looked at."""
 
 TRIED = 4
@@ -122,7 +122,7 @@ def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list
         return []
     found: list[tuple[float, Reach, Priced | None]] = []
     duration, cheapest = first.duration * (1.0 + LATER), float("inf")
-    while motion.rate * duration < cheapest and len(found) < MOST and not limits.expired:
+    while motion.rate * duration < cheapest and len(found) < MOST_DURATIONS and not limits.expired:
         reach = Reach(instance, motion, duration)
         limits.spend(reach.count)
         priced = reach.minimum_cost() if reach.separation()[0] <= THERE else None

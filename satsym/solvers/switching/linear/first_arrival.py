@@ -31,7 +31,7 @@ BEFORE = (3e-3, 3e-4, 3e-2)
 PRECISE = 1e-8
 """Share of its distance by which that hyperplane may be nearer than the set; its direction is as good as the root."""
 
-BEYOND = 1e-3
+BEYOND_ARRIVAL = 1e-3
 """Share of a duration by which the search goes on beyond it, where nothing exact came of it."""
 
 FARTHER = 1.5
@@ -62,7 +62,7 @@ def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterat
     costate: Array = np.zeros(n)
     costate[rows] = apart / np.where(size > 0.0, size, 1.0) ** 2
     duration = _beyond(instance, motion, costate, 0.0, _scale(instance, motion))
-    further, tired = BEYOND, 0
+    further, tired = BEYOND_ARRIVAL, 0
     for _ in range(PLANES):
         if duration is None or limits.expired or tired > TIRED:
             return

@@ -15,7 +15,7 @@ from satsym.instance import Instance
 DRAWN = 24
 """Points at which coefficients are compared."""
 
-SAME = 1e-12
+EQUAL_COEFFICIENTS = 1e-12
 """Relative difference of coefficients that is rounding."""
 
 TERMS = 18
@@ -115,4 +115,4 @@ def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Arra
 def _constant(values: Array) -> bool:
     """Whether values do not vary along the last axis."""
     spread = np.abs(values - values[..., :1]).max(initial=0.0)
-    return bool(np.isfinite(values).all() and spread <= SAME * np.abs(values).max(initial=0.0))
+    return bool(np.isfinite(values).all() and spread <= EQUAL_COEFFICIENTS * np.abs(values).max(initial=0.0))

@@ -14,7 +14,7 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.linear.linear_motion import LinearMotion
 from satsym.solvers.switching.linear.nearest_point import nearest_point
 
-FEWEST, MOST, PER_RADIAN = 160, 1600, 16.0
+FEWEST, MOST_STEPS, PER_RADIAN = 160, 1600, 16.0
 """Steps of a duration, and how many for each unit of the motion's quickest rate times the duration."""
 
 FLAT = 1e-9
@@ -223,7 +223,7 @@ def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple
 def steps(motion: LinearMotion, duration: float) -> int:
     """How many steps show a duration well."""
     quickest = float(np.abs(np.linalg.eigvals(motion.states)).max(initial=0.0))
-    return int(min(max(FEWEST, np.ceil(PER_RADIAN * quickest * duration)), MOST))
+    return int(min(max(FEWEST, np.ceil(PER_RADIAN * quickest * duration)), MOST_STEPS))
 
 
 def given_rows(instance: Instance) -> NDArray[np.intp]:

@@ -13,10 +13,10 @@ from satsym.solvers.switching.linear.reach import given_rows, goal
 
 TOLERANCE = 1e-11
 
-CLEAR = 1e-8
+CLEAR_DISTANCE = 1e-8
 """Distance from the plane, relative to the terms that it is the sum of, that no error of integration explains."""
 
-LONGEST = 1.0 / 64.0
+LONGEST_STEP = 1.0 / 64.0
 """Share of the duration that a step may be: a control could switch unseen in a longer one."""
 
 
@@ -50,7 +50,9 @@ class Plane:
             terms = self.moved + (self.up - self.down) @ np.maximum(np.abs(lower), np.abs(upper))
             begun = self.first[:, None] * initial
             margin = begun.sum(axis=0) + least - wanted.sum(axis=0)
-            return np.asarray(margin > CLEAR * (np.abs(begun).sum(axis=0) + np.abs(wanted).sum(axis=0) + terms))
+            return np.asarray(
+                margin > CLEAR_DISTANCE * (np.abs(begun).sum(axis=0) + np.abs(wanted).sum(axis=0) + terms)
+            )
 
 
 def plane(instance: Instance, costate: Array) -> Plane | None:
@@ -73,7 +75,7 @@ def plane(instance: Instance, costate: Array) -> Plane | None:
 
     largest = costate / max(float(np.abs(costate).max()), 1e-300)
     start = np.concatenate([largest, np.zeros(2 * m + 2)])
-    longest = LONGEST * (instance.tf - instance.t0)
+    longest = LONGEST_STEP * (instance.tf - instance.t0)
     found = solve_ivp(
         backwards, (instance.tf, instance.t0), start, method="DOP853", rtol=TOLERANCE, atol=1e-14, max_step=longest
     )
