@@ -139,7 +139,7 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if np.isnan(end).all() and len(_ranged(controls)):
         found[1:1] = [Plan(at_bound=share) for share in (NEXT_TO_BOUND, -NEXT_TO_BOUND)]
     found[1:1] = [Plan(parts=parts) for parts in _parts(len(instance.model.spec.interior) + 1)]
-    if np.isfinite(end).any():
+    if np.isfinite(end).any() and _limited(instance, controls):
         found[1:1] = [Plan(arriving=True), Plan(arriving=True, noise=0.3, seed=2)]
     if controls.angles:
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
@@ -153,6 +153,12 @@ def weak(instance: Instance, controls: Controls) -> list[Plan]:
     if instance.tf is None or instance.model.spec.switching or controls.loosened is None:
         return []
     return [Plan(noise=WIDER[seed % len(WIDER)], seed=seed, loosened=True) for seed in range(LOOSENED)]
+
+
+def _limited(instance: Instance, controls: Controls) -> bool:
+    """Whether anything limits what controls do: where nothing does, an end is reached in any time, without a swing."""
+    bounded = np.isfinite(controls.lower).any() or np.isfinite(controls.upper).any()
+    return bool(bounded or controls.norms or controls.angles or instance.model.spec.path_constraints)
 
 
 def _time_alone(instance: Instance, duration: float) -> bool:
