@@ -19,14 +19,18 @@ _MOST_FILES = 200
 _MARKDOWN = (".md", ".markdown", ".qmd", ".rmd", ".txt")
 _COMMENT = re.compile(r"(?<!\\)%[^\n]*")
 _VERBATIM = re.compile(r"\\begin\{(verbatim\*?|lstlisting|comment|minted)\}.*?\\end\{\1\}", re.DOTALL)
-_CODE = re.compile(r"^(```|~~~)(?!\s*\{?math).*?^\1[^\n]*$|(?<![`}])`[^`\n]+`(?!`)", re.DOTALL | re.MULTILINE)
+_CODE = re.compile(
+    r"^[ \t]*(?P<rail>```+|~~~+)(?P<kept> *\{?math\b)?.*?^[ \t]*(?P=rail)[^\n]*$|(?<![`}])`[^`\n]+`(?!`)",
+    re.DOTALL | re.MULTILINE,
+)
+"""Code in Markdown; a block of mathematics is matched too, so that its end is not taken for a beginning."""
 _INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
 _NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
 _DISPLAY = re.compile(
     rf"\\begin\{{(?P<env>(?:{_NUMBERED})\*?|displaymath|math)\}}(?P<body>.*?)\\end\{{(?P=env)\}}"
     r"|\\\[(?P<brackets>.*?)\\\]|(?<!\\)\$\$(?P<dollars>.*?)(?<!\\)\$\$"
-    r"|^(?P<rail>```+|:::+) *\{?math\}?[^\n]*\n(?P<options>(?:[ \t]*:[a-z-]+:[^\n]*\n)*)(?P<fence>.*?)"
-    r"^(?P=rail)[ \t]*$",
+    r"|^[ \t]*(?P<rail>```+|:::+) *\{?math\}?[^\n]*\n(?P<options>(?:[ \t]*:[a-z-]+:[^\n]*\n)*)(?P<fence>.*?)"
+    r"^[ \t]*(?P=rail)[ \t]*$",
     re.DOTALL | re.MULTILINE,
 )
 _SECTION = re.compile(
@@ -190,7 +194,11 @@ def _blank_out(source: Source) -> None:
     """Put spaces in the place of comments, and of what is printed as it stands."""
     patterns = (_CODE,) if source.path.suffix.lower() in _MARKDOWN else (_VERBATIM, _COMMENT)
     for pattern in patterns:
-        source.text = pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
+        source.text = pattern.sub(_blank, source.text)
+
+
+def _blank(match: re.Match[str]) -> str:
+    return match[0] if match.groupdict().get("kept") else re.sub(r"[^\n]", " ", match[0])
 
 
 def _enter_macros(source: Source) -> None:
