@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 from satsym.auditing.check import remedies
 from satsym.auditing.check.answers import Answer, Fit, Verdict
 from satsym.auditing.check.derived import Derived, Target, is_plain, says_nothing, solved, vanishes
+from satsym.auditing.check.ends import AtOneTime, at_one_time
 from satsym.auditing.check.matrices import matrix_answer
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.nearest import likeness
 from satsym.auditing.latex.grammar import CONSTANT, Reading, read
 from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
-from satsym.auditing.latex.words import FUNCTIONS
+from satsym.auditing.latex.words import FUNCTIONS, RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
 from satsym.formula.cells import cells, names_in
-from satsym.formula.tree import ZERO, Equality, Grid, Node, Sym, substituted, symbols, walk
+from satsym.formula.tree import ZERO, Call, Equality, Grid, Node, Sym, substituted, symbols, walk
 from satsym.records import shelf
 from satsym.status import BadInput
 
@@ -112,6 +113,10 @@ class Subject:
     def answer(self, statement: Node | Equality) -> Answer:
         """Judge one statement."""
         try:
+            if isinstance(statement, Call) and statement.function in RELATIONS.values():
+                return self.answered(statement, "undecided", "it is no equation, and is held against none")
+            if (there := at_one_time(statement)) is not None:
+                return self._at_one_time(statement, there)
             if any(isinstance(part, Grid) for side in cells(statement) for _, part in walk(side)):
                 return self._of_matrix(statement)
             return self._of_equation(statement)
@@ -156,6 +161,15 @@ class Subject:
             self.writer(False, plain)(shown),
             fit,
         )
+
+    def _at_one_time(self, statement: Node | Equality, there: AtOneTime) -> Answer:
+        """Judge what is said of the beginning or the end alone: against what holds there, or always."""
+        found = self.answer(there.equation)
+        target = found.fit.target if found.fit else None
+        meant = found.verdict == "right" or (target is not None and there.is_condition(target))
+        if found.verdict != "undecided" and meant and there.holds_at_this_end(target, self.derived.states):
+            return replace(found, formula=self.writer(self.latex)(statement))
+        return self.answered(statement, "undecided", "no condition of the model is one at this time", fit=found.fit)
 
     def _of_matrix(self, statement: Node | Equality) -> Answer:
         inside = self._inside(statement)

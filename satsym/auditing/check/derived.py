@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
+from satsym.auditing.latex.words import NOT_COMPARED, NOT_NUMBERS
 from satsym.formula.calculus import derivative, difference, product, total
 from satsym.formula.field import BY_TERMS, NoValue, Nowhere, Point, Undecided, points_for
+from satsym.formula.reading import FUNCTIONS
 from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls, mapped, substituted, symbols
 from satsym.records import record
 from satsym.records.record import Record
@@ -18,7 +20,7 @@ _GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations",
 """Steps that state what holds somewhere, not everywhere."""
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps that are named first where several state the same."""
-_NOT_PLAIN = ("transpose", "det", "norm", "sat", "diff", "d", "cross", "dot", "sum", "integral")
+_NOT_PLAIN = {*NOT_COMPARED, "transpose", "det", "norm", "sat", "diff", "d"}
 _COST = ("L", "S")
 _DEEPEST = 12
 
@@ -283,4 +285,6 @@ def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
 
 def is_plain(tree: Node) -> bool:
     """Whether a tree is made of arithmetic and elementary functions alone."""
-    return all(call.function not in _NOT_PLAIN for call in calls(tree))
+    return symbols(tree).isdisjoint(NOT_NUMBERS) and all(
+        call.function in FUNCTIONS and call.function not in _NOT_PLAIN for call in calls(tree)
+    )

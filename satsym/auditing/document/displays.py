@@ -46,6 +46,12 @@ _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100}
 _OPTION = re.compile(r":(?:label|name):[ \t]*(\S{1,100})")
 _UNNUMBERED = re.compile(r"\\(?:nonumber|notag)\b")
 _CONTINUES = re.compile(r"[\s&{}]*(?:[-+=]|\\(?:quad|qquad|times|cdot|equiv)\b)")
+_OPEN_END = re.compile(
+    r"(?:[-+=]|\\(?:quad|times|cdot)|\\sum(?:[_^](?:\{[^{}]*\}|\\?\w+))*)(?:[\s&]|\\nonumber|\\notag|\\qquad)*\Z"
+)
+"""A line that asks for more."""
+_RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
+_GROUP = re.compile(r"\{[^{}]*\}")
 _NEAR_CHARACTERS = 400
 """Characters before a display in which what it refers to is looked for."""
 
@@ -106,7 +112,10 @@ def displays(source: Source) -> Iterator[Display]:
     chapters = bool(re.search(r"\\documentclass[^{]*\{(?:report|book)\}", text))
     counted, heading = 0, ""
     seen: set[str] = set()
+    markdown = source.path.suffix.lower() in _MARKDOWN
     for found, match in enumerate(_DISPLAY.finditer(text)):
+        if markdown and match["brackets"] is not None and text[: match.start()].rpartition("\n")[2].strip():
+            continue  # brackets that are escaped
         if found >= MOST_DISPLAYS:
             raise BadInput(f"{source.place(match.start())}: more than {MOST_DISPLAYS} displays; split the document")
         kind = match.lastgroup if match["env"] is None else "body"
@@ -136,7 +145,14 @@ def displays(source: Source) -> Iterator[Display]:
             seen.add(item)
             section = f"section {number} {title}".replace("  ", " ").strip() if title or number else ""
             yield Display(
-                row, start + row_start, line, item, label[1] if label else "", section, refers, _columns(match["env"])
+                row,
+                start + row_start,
+                line,
+                item,
+                label[1] if label else "",
+                section,
+                refers,
+                _columns(match["env"]) or ("split" if kind == "fence" and "&" in row else ""),
             )
 
 
@@ -264,11 +280,21 @@ def _equations(body: str, environment: str) -> Iterator[tuple[int, str]]:
             rows.append((start, begin + match.start()))
             start = begin + match.end()
     rows.append((start, len(body)))
-    kept = [(a, b) for a, b in rows if body[a:b].strip()]
     joined: list[tuple[int, int]] = []
-    for a, b in kept:
-        if joined and _CONTINUES.match(body[a:b]):
+    for a, b in rows:
+        if joined and _belongs(body[slice(*joined[-1])], body[a:b]):
             joined[-1] = joined[-1][0], b
-        else:
+        elif body[a:b].strip():
             joined.append((a, b))
     yield from ((a, body[a:b]) for a, b in joined)
+
+
+def _belongs(before: str, row: str) -> bool:
+    """Whether a line of a display goes on with the one before it."""
+    if not row.strip() or _OPEN_END.search(before):
+        return bool(row.strip())
+    relation = _RELATION.search(_GROUP.sub("", row))
+    if _CONTINUES.match(row):
+        begins = re.match(r"[\s&{}]*(?:=|\\equiv)", row)
+        return relation is None or bool(begins) or not before.lstrip().startswith("&")
+    return relation is None and row.lstrip().startswith("&") and _RELATION.search(before) is not None

@@ -21,12 +21,12 @@ class Reading:
     statements: list[Node | Equality]
     letters: dict[str, Letter] = field(default_factory=dict)
     """Name -> the letter that it stands for."""
-    taken_at: dict[str, str] = field(default_factory=dict)
-    """Name -> the letter of which it is printed as a function."""
+    places: dict[str, set[str]] = field(default_factory=dict)
+    """Name -> where it is printed as taken, time apart: letters that it is a function of, or places."""
+    known: dict[str, set[str]] = field(default_factory=dict)
+    """Names and places that were found when the formula was read a first time."""
     constants: bool = False
     """Whether something is said to be constant."""
-    times: dict[str, str] = field(default_factory=dict)
-    """Name without dots -> the time at which it is taken; empty for any."""
     products: list[str] = field(default_factory=list)
     """Capitals side by side that are read as products, and could be names."""
 
@@ -79,7 +79,7 @@ class Cursor(ABC):
         if token.kind == "macro" and token.text in REFUSED:
             raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not read", token.at)
         if token.text in RELATIONS:
-            raise Unread("a relation other than an equality is not read", token.at)
+            raise Unread("a relation inside of something is not read", token.at)
         sign = "\\" if token.kind == "macro" else ""
         raise Unread(f'"{sign}{printable(token.text)}" is not read here', token.at)
 

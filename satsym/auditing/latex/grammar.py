@@ -13,14 +13,17 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
-from satsym.auditing.latex.letters import GREEK, Letter, cleaned, of_word
+from satsym.auditing.latex.enclosed import EnclosedCursor
+from satsym.auditing.latex.letters import GREEK, Letter, of_word
 from satsym.auditing.latex.names import capitals, refuse_spelled_name, with_names
-from satsym.auditing.latex.refusals import RefusalCursor, product_of
-from satsym.auditing.latex.rows import lines, without_remarks
+from satsym.auditing.latex.operators import product_of
+from satsym.auditing.latex.packages import put_in
+from satsym.auditing.latex.remarks import without_remarks
+from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
 from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -48,23 +51,35 @@ def read(
     Unread
         At the first thing that is not in the grammar.
     """
-    reading = Reading([])
-    kept = with_names(without_remarks(found), names)
+    kept = with_names(without_remarks(put_in(found)), names)
+    reading = _read(kept, Reading([]), start, plain)
+    if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
+        reading = _read(kept, Reading([], known=reading.places), start, plain)
     reading.products = capitals(kept)
-    for line in lines(kept):
-        refuse_spelled_name(line)
-        reading.times.clear()
-        sides = [Parser(part, reading, start, plain).whole() for part in line]
-        if len(sides) == 1:
-            reading.statements.append(sides[0])
-        reading.statements += [Equality(one, other) for one, other in pairwise(sides)]
     if not reading.statements:
         raise Unread("no formula", start)
     return reading
 
 
-class Parser(RefusalCursor):
+def _read(kept: Sequence[Token], reading: Reading, start: int, plain: bool) -> Reading:
+    for line in lines(kept):
+        refuse_spelled_name(line.sides)
+        sides = [Parser(part, reading, start, plain).side() for part in line.sides]
+        reading.statements += sides if line.bare else []
+        for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
+            reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
+    return reading
+
+
+class Parser(EnclosedCursor):
     """Reads one side of an equation."""
+
+    def side(self) -> Node:
+        """The whole side, which may be a list."""
+        parts = split(self._found, lambda token: token.kind == "sign" and token.text == ",")
+        if len(parts) < 2 or self._plain:
+            return self.whole()
+        return Call("list", tuple(self._inner(part, self._start) for part in parts))
 
     def whole(self) -> Node:
         """The whole side."""
@@ -107,12 +122,19 @@ class Parser(RefusalCursor):
                     break
                 self._i += 1
                 if (product := words.OF_VECTORS.get(token.text)) and self._is_vector(chain[-1]):
-                    if product == "cross" == crossed:
-                        raise Unread("cross products one after the other, without brackets", token.at)
+                    if crossed and "cross" in (product, crossed):
+                        raise Unread("products of vectors one after the other, without brackets", token.at)
                     crossed = product
                     chain[-1] = self._of_vectors(product, chain[-1], token)
                 else:
+                    before = chain[-1]
                     chain.append(self._signed_factor())
+                    scalar = self._plain or any(constant(side) is not None for side in (before, chain[-1]))
+                    if token.text == "times" and not scalar and not isinstance(before, Grid):
+                        raise Unread("a product, or one of vectors; set vectors bold, or write \\cdot", token.at)
+            elif token.kind == "macro" and token.text == "otimes" and not argument:
+                self._i += 1
+                chain[-1] = Call("tensor", (chain[-1], self._signed_factor()))
             elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
                 if argument and not self._plain:
                     break
@@ -130,33 +152,12 @@ class Parser(RefusalCursor):
                 break
             elif self._begins_factor(token):
                 self._refuse_behind(chain[-1], token)
+                if token.text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
+                    raise Unread("an ellipsis between factors is not read", token.at)
                 chain.append(self._factor())
             else:
                 break
         return product_of(chain)
-
-    def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
-        r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
-        right = [self._signed_factor()]
-        while not self._is_vector(right[-1]):
-            token = self._peek()
-            if token is None or not self._begins_factor(token):
-                if product == "cross":
-                    raise Unread("a product of a vector and what is none", sign.at)
-                return product_of([left, *right])
-            right.append(self._factor())
-        return Call(product, (left, product_of(right)))
-
-    def _is_vector(self, node: Node) -> bool:
-        """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
-        if isinstance(node, Call):
-            return node.function in ("cross", "transpose")
-        letters = self._reading.letters
-        return any(
-            isinstance(part, Grid)
-            or (isinstance(part, Sym) and part.name in letters and letters[part.name].style == "vector")
-            for _, part in walk(node)
-        )
 
     def _is_function(self, token: Token) -> bool:
         return token.kind in ("macro", "word") and token.text in FUNCTIONS and token.text != "d"
@@ -186,6 +187,8 @@ class Parser(RefusalCursor):
         if token is None:
             self._take()
         assert token is not None
+        if not self._plain and (self._is("^") or self._is("_")):
+            return self._powers(self._in_a_frame())
         found = self._derivative(token)
         base = found if found is not None else self._atom()
         return self._powers(base)
@@ -194,10 +197,13 @@ class Parser(RefusalCursor):
         while True:
             if self._is("^"):
                 at = self._take().at
-                letter = self._reading.letters.get(base.name) if isinstance(base, Sym) else None
+                known = isinstance(base, Sym) and base.name in self._reading.letters
                 base = self._raised(base, self._script(), at)
-                if letter is not None and self._is("(") and isinstance(base, Pow) and not self._plain:
-                    self._timed_behind_power(letter)
+                if known and self._is("(") and isinstance(base, Pow) and not self._plain:
+                    self._timed_behind_power()
+            elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
+                self._i += 2
+                base = self._taken(base, self._script(), bar.at)
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
             elif self._is("!"):
@@ -205,13 +211,15 @@ class Parser(RefusalCursor):
             else:
                 return base
 
-    def _timed_behind_power(self, letter: Letter) -> None:
+    def _timed_behind_power(self) -> None:
         """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
         begin = self._i
-        inside = self._untimed(letter)
-        if inside is None:
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        words_inside = "".join(t.text for t in inside)
+        if words_inside in words.TIMES_OF_ANGLES:
             return
-        if self._letter_in(inside) is not None:
+        if words_inside in words.AT_A_TIME or self._place(inside) is not None:
             raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
         self._i = begin
 
@@ -221,16 +229,23 @@ class Parser(RefusalCursor):
         if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
             return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
         upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
+        if len(script) == 1 and script[0].text in ("wedge", "times"):
+            return Call("skew", (base,))
         if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
             return Call("transpose", (base,))
         exponent = self._inner(script, at)
         value = constant(exponent)
+        number = isinstance(base, Num | Add | Mul | Div | Neg) or base == Sym("pi")
+        if value is None and number and not self._plain:
+            return Call("power", (base, exponent))
         if base == Sym("e") and not self._plain and len(script) == 1 and script[0].text in "ijklmn":
             raise Unread("a power of e may be one of a number, or an exponential", at)
         if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:
             raise Unread("an exponent that is not a number is not read", at)
+        if value == 0:
+            raise Unread("a power of zero may be an index", at)
         if abs(value) > MAX_EXPONENT:
             raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
         return Pow(base, exponent)
@@ -243,14 +258,16 @@ class Parser(RefusalCursor):
     def _atom(self) -> Node:
         token = self._take()
         if token.kind == "number":
+            if token.text == "0" and self._is("_") and not self._plain:  # the size of a zero matrix
+                self._i += 1
+                self._script()
             return Num(Fraction(token.text))
         if token.kind == "open":
             self._i -= 1
             at = token.at
             inner = self._group()
             if not inner and self._is("^") and not self._plain:
-                self._i += 1
-                return self._in_a_frame(cleaned(self._said(self._script())))
+                return self._in_a_frame()
             if not inner:
                 return self._factor()
             if letter := self._letter_in(inner):
@@ -286,17 +303,16 @@ class Parser(RefusalCursor):
         self._refuse()
         raise AssertionError
 
-    def _in_a_frame(self, frame: str) -> Node:
-        """What a label of the frame in front is about: components in that frame."""
-        tree = self._factor()
-        if isinstance(tree, Sym) and (letter := self._reading.letters.get(tree.name)) and frame:
-            return self._symbol(replace(letter, marks=(*letter.marks, f"in_{frame}")), self._start)
-        return tree
-
     def _macro(self, token: Token) -> Node:
         name = token.text
         if name in words.ROOTS:
             return self._root()
+        if name in words.ELLIPSES or name == "infty":
+            return Sym("infinity" if name == "infty" else "ellipsis")
+        if name == "nabla":
+            return self._gradient(token)
+        if name == "lim" or (name in words.OPTIMA and self._is("_")):
+            return self._optimum(token)
         if name == "sum":
             return self._sum_over(token)
         if name == "int":
@@ -323,12 +339,20 @@ class Parser(RefusalCursor):
             self._i -= 1
             group = self._peek_group()
             word = "".join(t.text for t in group)
-            self._refuse_word(name, word.strip(), token.at)
+            if (found := self._named(name, word, len(group))) is not None:
+                return found
+            if word != "constantvector":
+                self._refuse_word(name, word.strip(), token.at)
+            if word in FUNCTIONS or word in words.OPTIMA:
+                behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
+                if word in words.OPTIMA and behind < len(self._found) and self._found[behind].text == "_":
+                    self._i = behind
+                    return self._optimum(replace(token, text=word))
             if word in FUNCTIONS and len(word) > 1:
                 self._i += 1
                 self._group()
                 return self._function(FUNCTIONS[word], token)
-            if word.strip(". ") in ("const", "constant", "konstan", "konst", "tetap"):
+            if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
                 self._i += 1
                 self._group()
                 if self._is("."):
@@ -349,39 +373,6 @@ class Parser(RefusalCursor):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
 
-    def _braces(self, token: Token) -> Node:
-        """What stands in printed braces."""
-        begin, depth = self._i, 1
-        while depth:
-            inside = self._take()
-            depth += (inside.text in ("{", "lbrace", "lbrack") and inside.kind == "macro") - (
-                inside.text in ("}", "rbrace", "rbrack") and inside.kind == "macro"
-            )
-        return self._inner(self._found[begin : self._i - 1], token.at)
-
-    def _size(self, token: Token) -> Node:
-        """Between bars: the size of a number, or of a vector."""
-        closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
-        begin, groups = self._i, 0
-        while True:
-            if self._peek() is None:
-                raise Unread("a bar that nothing closes, as behind what is taken at a place, is not read", token.at)
-            inside = self._take()
-            groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
-            if groups == 0 and inside.text == closing and inside.kind == token.kind:
-                break
-        inner = self._inner(self._found[begin : self._i - 1], token.at)
-        if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
-            return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
-        single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
-        if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
-            return Call("det", (inner,))
-        if single and isinstance(inner, Add) and "I" in symbols(inner):
-            raise Unread("bars around a matrix are a determinant, or a size; write \\det", token.at)
-        if single and isinstance(inner, Grid):
-            return Call("det", (inner,))
-        return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))
-
     def _word(self, token: Token) -> Node:
         """A name in plain notation, or a function."""
         text = token.text
@@ -396,5 +387,13 @@ class Parser(RefusalCursor):
             if dotted is None:
                 raise Unread("too many primes", token.at)
             letter = dotted
-        self._timed()
-        return self._symbol(letter, token.at)
+        symbol, begin = self._symbol(letter, token.at), self._i
+        if self._is("("):
+            end = self._bracket_end()
+            time = "".join(t.text for t in self._found[begin + 1 : end])
+            if time in words.TIMES_OF_ANGLES:
+                return symbol
+            if time in words.AT_A_TIME:
+                return Call("value", (symbol, self._inner(self._found[begin + 1 : end], token.at)))
+            self._i = begin
+        return symbol

@@ -32,6 +32,8 @@ def capitals(found: Sequence[Token]) -> list[str]:
     """Capitals side by side none of which stands by itself elsewhere: products, unless they are names."""
     runs: dict[str, None] = {}
     for begin, end in _runs(found):
+        if begin and found[begin - 1].text in ("^", "_"):  # the first one is an index in front of the others
+            continue
         upright = begin > 1 and found[begin - 1].kind == "open" and found[begin - 2].kind == "macro"
         letters = [t.text for t in found[begin:end]]
         if not upright and all(letter.isupper() for letter in letters):

@@ -8,10 +8,10 @@ from fractions import Fraction
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
-from satsym.auditing.latex.rows import split
-from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import MATRICES
-from satsym.formula.tree import Call, Div, Grid, Mul, Node, Num, Pow, Sym, constant
+from satsym.auditing.latex.rows import relation_in, split
+from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.words import MATRICES, OPTIMA
+from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
 from satsym.wording import printable
 
 
@@ -27,8 +27,12 @@ class OperatorCursor(QuotientCursor):
         """Read the factor that is next."""
 
     @abstractmethod
-    def _is_vector(self, node: Node) -> bool:
-        """Tell whether a term is a vector."""
+    def _signed_factor(self) -> Node:
+        """Read the factor that is next, which may have a sign."""
+
+    @abstractmethod
+    def _begins_factor(self, token: Token) -> bool:
+        """Tell whether a factor begins with a token."""
 
     @abstractmethod
     def _inner(self, part: Sequence[Token], at: int) -> Node:
@@ -42,17 +46,65 @@ class OperatorCursor(QuotientCursor):
         begin, found = self._i, self._found
         inside = self._group() if self._peek() else []
         if len(inside) == 1 and inside[0].kind == "number":
+            if inside[0].text == "0" and self._is("_"):
+                self._i += 1
+                self._script()
             return Num(Fraction(inside[0].text))
         self._i, self._found = begin, found
         return None
+
+    @abstractmethod
+    def _sum(self) -> Node:
+        """Read the sum that is next."""
+
+    @abstractmethod
+    def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
+        """Read values with their conditions."""
+
+    def _gradient(self, token: Token) -> Node:
+        """A gradient: what it is of, and by which letter, where that is printed."""
+        by: list[Node] = []
+        if self._is("_"):
+            self._i += 1
+            by = [self._inner(self._script(), token.at)]
+        following = self._peek()
+        if following is None or self._is("^") or following.text in ("cdot", "times"):
+            raise Unread("a divergence, a curl or a second gradient is not read", token.at)
+        return Call("gradient", (self._factor(), *by))
+
+    def _optimum(self, token: Token) -> Node:
+        """A limit, or what is least or greatest: of what follows, over what stands below."""
+        below = self._limits().get("_", [])
+        while below and below[0].kind == "open" and group_end(below, 0) == len(below):
+            below = below[1:-1]
+        if token.text == "lim":
+            sides = relation_in(below).sides
+            if len(sides) != 2:
+                raise Unread("a limit without an arrow below is not read", token.at)
+            ends = [self._limit(side, token.at) for side in sides]
+            return Call("limit", (self._product(), *ends))
+        line = relation_in(below)
+        over = [self._inner(part, token.at) for part in split(line.sides[0], lambda t: t.text == ",")]
+        if line.signs not in ([], ["element"]):
+            raise Unread("what stands below is not read", token.at)
+        if line.signs:
+            over = [
+                Call(
+                    "element",
+                    (over[0] if len(over) == 1 else Call("list", tuple(over)), self._inner(line.sides[1], token.at)),
+                )
+            ]
+        return Call(OPTIMA[token.text], (self._sum(), *over))
 
     def _sum_over(self, token: Token) -> Node:
         """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
         limits = self._limits()
         parts: list[Node] = [self._product()]
         if below := limits.get("_"):
-            equation = split(below, lambda t: t.kind == "sign" and t.text == "=")
-            parts += [self._inner(side, token.at) for side in equation[:2]]
+            first, *start = split(below, lambda t: t.kind == "sign" and t.text == "=")
+            indices = split(first, lambda t: t.text == ",")
+            parts += [self._inner(index, token.at) for index in indices]
+            parts += [self._inner(side, token.at) for side in start[:1]]
         if "^" in limits:
             parts.append(self._limit(limits["^"], token.at))
         return Call("sum", tuple(parts))
@@ -134,6 +186,8 @@ class OperatorCursor(QuotientCursor):
         if name == "exp" and len(arguments) == 1 and power is None:
             return Call("exp", (arguments[0],))
         wanted = {"min": 2, "max": 2, "atan2": 2, "diff": 2}.get(name, 1)
+        if name in ("min", "max") and len(arguments) == 1 and power is None:
+            return Call(OPTIMA[name], (arguments[0],))
         if len(arguments) != wanted:
             raise Unread(f"{name} of {len(arguments)} things is not read", token.at)
         found = Call(name, tuple(arguments))
@@ -164,6 +218,12 @@ class OperatorCursor(QuotientCursor):
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
             raise Unread("an empty bracket", at)
+        if (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
+            script = self._peek_group() if crossed.kind == "open" else [crossed]
+            if [t.text for t in script] == ["times"]:
+                self._i += 1
+                self._script()
+                return Call("skew", (arguments[0],))
         return arguments[0]
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
@@ -179,7 +239,7 @@ class OperatorCursor(QuotientCursor):
         return letters and isinstance(inner.factors[0], Sym) and not self._is_vector(inner)
 
     def _environment(self, token: Token) -> Node:
-        if token.text not in MATRICES:
+        if token.text not in MATRICES and not token.text.endswith("cases"):
             raise Unread(f"the environment {printable(token.text)} is not read here", token.at)
         if token.text == "array" and self._is("{", kind="open"):
             self._group()
@@ -189,6 +249,8 @@ class OperatorCursor(QuotientCursor):
             depth += (inside.kind == "begin") - (inside.kind == "end")
         body = self._found[begin : self._i - 1]
         rows = [r for r in split(body, lambda t: t.kind == "macro" and t.text in ("\\", "cr")) if r]
+        if token.text.endswith("cases"):
+            return self._cases(rows, token.at)
         entries = []
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
@@ -200,3 +262,37 @@ class OperatorCursor(QuotientCursor):
         if token.text == "vmatrix":
             return Call("det", (Grid(tuple(entries)),))
         return Grid(tuple(entries))
+
+    def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
+        r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
+        right = [self._signed_factor()]
+        while not self._is_vector(right[-1]):
+            token = self._peek()
+            if token is None or not self._begins_factor(token):
+                if product == "cross":
+                    raise Unread("a product of a vector and what is none", sign.at)
+                return product_of([left, *right])
+            right.append(self._factor())
+        return Call(product, (left, product_of(right)))
+
+    def _is_vector(self, node: Node) -> bool:
+        """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
+        if isinstance(node, Call) and node.function in ("d", "diff", "value"):
+            return self._is_vector(node.arguments[0])
+        if isinstance(node, Call):
+            return node.function in ("cross", "transpose", "gradient")
+        letters = self._reading.letters
+        return any(
+            isinstance(part, Grid)
+            or (isinstance(part, Sym) and part.name in letters and letters[part.name].style == "vector")
+            for _, part in walk(node)
+        )
+
+
+def product_of(factors: Sequence[Node]) -> Node:
+    """A product, written as it is; a sign in front of the first factor is one of the product."""
+    if len(factors) == 1:
+        return factors[0]
+    if isinstance(factors[0], Neg):
+        return Neg(product_of([factors[0].operand, *factors[1:]]))
+    return Mul(tuple(factors))

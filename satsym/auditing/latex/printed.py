@@ -9,8 +9,19 @@ from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
 from satsym.auditing.latex.rows import split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import ACCENTS, AT_A_TIME, INDICES, MARKS, SHIFTED, STARS, STYLES, TRANSPOSED, UPRIGHT
-from satsym.formula.tree import Node, Sym
+from satsym.auditing.latex.words import (
+    ACCENTS,
+    AT_A_TIME,
+    COUNTERS,
+    INDICES,
+    MARKS,
+    SHIFTED,
+    STARS,
+    STYLES,
+    TRANSPOSED,
+    UPRIGHT,
+)
+from satsym.formula.tree import Call, Node, Sym
 
 
 class LetterCursor(Cursor):
@@ -84,6 +95,8 @@ class LetterCursor(Cursor):
             if self._is("_") and not self._plain:
                 at = self._take().at
                 script = self._script()
+                if not script:
+                    continue
                 index = cleaned(self._said(script))
                 if not index:
                     raise Unread("this index is not read", at)
@@ -136,14 +149,16 @@ class LetterCursor(Cursor):
         )
         if len(script) == 1 and script[0].text in STARS:
             return "star"
+        if len(script) == 1 and script[0].text == "circ":
+            return "circ"
         if word and set(word.replace("prime", "'")) == {"'"}:
-            return "prime"
+            return "_".join(["prime"] * len(word.replace("prime", "'")))
         if len(script) == 1 and script[0].kind == "sign" and script[0].text in "+-":
             return "plus" if script[0].text == "+" else "minus"
         if word in ("max", "min", "opt", "ref") or (upright and word not in ("T", "d") and cleaned(word)):
             return cleaned(word)
         if word.startswith("(") and word.endswith(")") and cleaned(word):
-            return cleaned(word)
+            return f"upper_{cleaned(word)}"
         if self._bold and not word.isdigit() and word not in TRANSPOSED and (said := cleaned(self._said(script))):
             return said  # a vector has no powers
         self._i, self._found = begin, found
@@ -172,68 +187,99 @@ class LetterCursor(Cursor):
 
     def _symbol(self, letter: Letter, at: int) -> Node:
         name = letter.name
-        if self._plain is False:
-            self._timed(letter)
         if letter.base == "pi" and letter == Letter("pi"):
+            if self._plain is False and self._is("(") and self._is_place_next():
+                raise Unread("pi may be a function here, or a number", at)
             return Sym("pi")
         if not is_name(name):
             raise Unread("this letter is not read", at)
+        places = self._taken_at(letter) if self._plain is False else ()
         self._reading.letters.setdefault(name, letter)
-        return Sym(name)
+        return Call("value", (Sym(name), *places)) if places else Sym(name)
 
-    def _timed(self, letter: Letter | None = None) -> None:
-        """Go past ``(t)`` behind a letter, or the letters that it depends on; they must be the same everywhere."""
+    def _taken_at(self, letter: Letter) -> tuple[Node, ...]:
+        """Where a letter is taken, in brackets behind it, which are gone past; nothing for a factor in brackets.
+
+        Nothing, too, for ``(t)`` and for the letters that it is a function of, the first ones that it is printed with.
+        """
+        begin = self._i
+        if self._is("["):
+            return self._member(letter)
         if not self._is("("):
-            self._at_time(letter, "", self._i)
-            return
-        begin = self._i
-        inside = self._untimed(letter)
-        if inside is None:
-            return
-        places = split(inside, lambda t: t.text == ",")
-        letters = [self._place(place) for place in places]
-        several = len(places) > 1
-        bare = [at for at in letters if at and (several or (not at.dots and (not at.index or at.base == "t")))]
-        if not self._plain and len(bare) == len(letters):
-            words = ",".join(at.name for at in bare)
-            if self._reading.taken_at.setdefault(letter.name if letter else "", words) == words:
-                return
-            raise Unread("what it is taken at differs from place to place, and is not read", self._found[begin].at)
-        if several or (not self._plain and (self._is_product(inside) or self._is_shift(letter, inside))):
-            raise Unread("what it is taken at is not read", self._found[begin].at)
-        self._i = begin
-        self._at_time(letter, "", begin)
-
-    def _untimed(self, letter: Letter | None) -> list[Token] | None:
-        """Go past the bracket that is next; what stands in it, or nothing where that is a time, which is entered."""
-        begin = self._i
+            return ()
         end = self._bracket_end()
         inside = list(self._found[begin + 1 : end])
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        if words not in AT_A_TIME:
-            return inside
-        self._at_time(letter, "" if words in ("t", "tau") else words, begin)
-        return None
+        timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
+        if timed or words in (".", "cdot"):
+            return ()
+        places = split(inside, lambda t: t.text in ",;")
+        letters = [self._place(place) for place in places]
+        bare = [at for at in letters if at and (len(places) > 1 or not at.dots)]
+        fixed = words in AT_A_TIME or (len(places) == 1 and bool(bare) and bool(bare[0].index))
+        number = len(inside) == 1 and inside[0].kind == "number"
+        known = self._reading.known.get(letter.name, set())
+        sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
+        if not sure and not self._is_shift(letter, inside):
+            if self._is_product(inside) and not self._is_factor(letter, inside):
+                raise Unread("what it is taken at is not read", self._found[begin].at)
+            self._i = begin
+            return ()
+        said = words if len(bare) < len(letters) or fixed else ",".join(at.name for at in bare)
+        self._reading.places.setdefault(letter.name, set()).add(said)
+        if len(bare) == len(letters) and not fixed and known <= {said}:
+            return ()
+        return tuple(self._inner(place, self._found[begin].at) for place in places)
 
-    def _at_time(self, letter: Letter | None, time: str, place: int) -> None:
-        """Enter when a letter is taken; one formula may not have it at a fixed time and at another one."""
-        if letter is not None and self._reading.times.setdefault(letter.still.name, time) != time:
-            at = self._found[min(place, len(self._found) - 1)].at
-            raise Unread(f"{letter.still.name} is taken at two times, which is not read", at)
+    def _is_place_next(self) -> bool:
+        """Whether a single letter stands in the bracket that is next."""
+        begin = self._i
+        end = self._bracket_end()
+        self._i = begin
+        return self._letter_in(self._found[begin + 1 : end]) is not None
+
+    def _member(self, letter: Letter) -> tuple[Node, ...]:
+        """The place of a member of a sequence, in square brackets: ``x[k + 1]``."""
+        begin = self._i
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        counts = all(t.kind == "number" or t.text in COUNTERS or t.text in "+-" for t in inside)
+        if inside and counts and letter.base not in ("E", "P"):
+            return (self._inner(inside, self._found[begin].at),)
+        self._i = begin
+        return ()
 
     def _place(self, part: Sequence[Token]) -> Letter | None:
         """The letter at one place of a function, which may be a function of time itself."""
         inner = self._of(part)
         letter = inner._letter()
         rest = "".join(t.text for t in part[inner._i :])
-        return letter if rest == "" or (rest[0] == "(" and rest[1:-1] in AT_A_TIME) else None
+        return letter if rest in ("", "(t)", "(tau)") else None
 
-    def _is_shift(self, letter: Letter | None, part: Sequence[Token]) -> bool:
-        """Whether what stands in brackets behind a letter is a place, and no factor: f(x + h), u(t - T)."""
-        if letter is None or letter.dots or letter.base not in SHIFTED:
+    def _is_shift(self, letter: Letter, part: Sequence[Token]) -> bool:
+        """Whether what stands in brackets behind a letter is a place, and no factor: u(t - T)."""
+        if letter.dots or letter.base not in SHIFTED:
             return False
         letters = [t.text for t in part if t.kind == "letter" or t.text in GREEK]
-        return bool(letters) if letter.base in "fF" else "t" in letters
+        simple = all(t.kind in ("letter", "number") or t.text in GREEK or t.text in "+-_" for t in part)
+        if letter.base in "fF" and letters:
+            raise Unread("what it is taken at is not read", part[0].at)
+        return simple and "t" in letters and any(t.text in "+-" for t in part)
+
+    def _is_taken(self, part: Sequence[Token]) -> bool:
+        """Whether what stands in brackets is a letter that is taken somewhere itself: f(x(T))."""
+        inner = self._of(part)
+        letter = inner._letter()
+        return letter is not None and inner._is("(") and inner._bracket_end() == len(part) - 1
+
+    def _is_factor(self, letter: Letter, part: Sequence[Token]) -> bool:
+        """Whether a product in brackets behind a letter is a factor: of a matrix, products of matrices or vectors."""
+        crossed = any(t.text in ("times", "cdot") for t in part) and letter.base not in SHIFTED
+        bold = [t for t in part if t.kind == "macro" and t.text in STYLES]
+        plain = [
+            t for k, t in enumerate(part) if t.kind == "letter" and not (k and part[k - 1].kind in ("open", "macro"))
+        ]
+        return crossed or (letter.style == "vector" and letter.base.isupper() and bool(bold) and not plain)
 
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""

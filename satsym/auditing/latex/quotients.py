@@ -158,6 +158,10 @@ class QuotientCursor(LetterCursor):
             if letter is None:
                 return None
             times = 1
+            if inner._is("(") and inner._is("t", 1, "letter") and inner._is(")", 2):
+                inner._i += 3
+            if inner._is("("):
+                raise Unread("a derivative by what is taken at a time is not read", below[inner._i].at)
             if inner._is("^"):
                 inner._i += 1
                 digits = "".join(t.text for t in inner._script() if t.kind == "number")

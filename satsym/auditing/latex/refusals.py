@@ -8,19 +8,15 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.operators import OperatorCursor
+from satsym.auditing.latex.operators import OperatorCursor, product_of
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FREQUENCIES, FUNCTIONS, MARKS
-from satsym.formula.tree import Mul, Neg, Node, Num, Sym, constant
+from satsym.formula.tree import Node, Num, Sym, constant
 from satsym.wording import printable
 
 
 class RefusalCursor(OperatorCursor):
     """Refuses at its place what the grammar does not read."""
-
-    @abstractmethod
-    def _begins_factor(self, token: Token) -> bool:
-        """Tell whether a factor begins with a token."""
 
     @abstractmethod
     def _is_function(self, token: Token) -> bool:
@@ -112,12 +108,3 @@ class RefusalCursor(OperatorCursor):
             raise Unread("a differential is not read", at)
         if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
             raise Unread(f"the function {printable(word)} is not known", at)
-
-
-def product_of(factors: Sequence[Node]) -> Node:
-    """A product, written as it is; a sign in front of the first factor is one of the product."""
-    if len(factors) == 1:
-        return factors[0]
-    if isinstance(factors[0], Neg):
-        return Neg(product_of([factors[0].operand, *factors[1:]]))
-    return Mul(tuple(factors))

@@ -1,88 +1,122 @@
-"""A formula as its lines, and these as the sides of equations: before any of it is read."""
+"""A formula as its lines, and these as the sides of equations and other relations: before any of it is read."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import EQUALS, RELATIONS, SKIPPED_GROUPS, SPACES, SYSTEMS, TIMES, UPRIGHT
+from satsym.auditing.latex.words import (
+    ELLIPSES,
+    EQUALS,
+    OPTIMA,
+    RELATIONS,
+    SYSTEMS,
+    TIMES,
+    UPRIGHT,
+)
+
+_OPENING, _CLOSING = ("{", "lbrace"), ("}", "rbrace")
 
 
-def without_remarks(found: Sequence[Token]) -> list[Token]:
-    """The tokens without spaces, labels and alignment."""
-    kept: list[Token] = []
-    i = 0
-    while i < len(found):
-        token = found[i]
-        i += 1
-        if token.kind == "macro" and token.text == "boxed" and i < len(found) and found[i].kind == "open":
-            end = group_end(found, i)
-            found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
-            i -= 1
-        elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
-            if token.text == "hspace":  # parts equations, as a wide space does
-                kept.append(replace(token, text="quad"))
-            i += 1 if i < len(found) and found[i].text == "*" else 0
-            i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
-        elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
-            if found[i].text == ".":  # no bracket on this side
-                i += 1
-        elif (token.kind == "macro" and token.text in SPACES - {"quad", "qquad", " "}) or token.text in ("~", "$"):
-            continue
-        else:
-            kept.append(token)
-    return kept
+@dataclass
+class Line:
+    """A relation, or several in a row: what stands between the signs, and which these are."""
+
+    sides: list[list[Token]]
+    signs: list[str]
+
+    @property
+    def bare(self) -> bool:
+        """Whether it is an expression alone."""
+        return not self.signs
 
 
-def lines(found: Sequence[Token]) -> list[list[list[Token]]]:
-    """Equations, each as its sides: split at ends of lines, wide spaces and commas between equations."""
-    pieces = [piece for row in _rows(found) for part in _equations(row) for piece in _at_commas(part)]
-    done: list[list[list[Token]]] = []
-    for piece in pieces:
-        sides = _sides(piece)
-        if not any(sides):
-            continue
-        first = sides[0][0] if sides[0] else None
-        signed = first is not None and first.kind == "sign" and first.text in "+-"
-        if done and not sides[0]:  # a line that begins with the equality sign goes on with the one before
-            done[-1] += sides[1:]
-        elif done and signed and (len(sides) == 1 or len(done[-1]) == 1):
-            done[-1][-1] += sides[0]
-            done[-1] += sides[1:]
-        else:
-            done.append(sides)
-    with_sides = [line for line in done if len(line) > 1]
-    if with_sides and (
-        asked := next((t for line in done if len(line) == 1 for t in line[0] if t.text in RELATIONS), None)
-    ):
-        raise Unread("a condition beside the equations is not read", asked.at)
-    return with_sides or done
+def lines(found: Sequence[Token]) -> list[Line]:
+    """Relations, each as its sides: split at ends of lines, wide spaces, words and commas between them."""
+    done: list[Line] = []
+    begun: dict[int, Line] = {}
+    for place, row in _rows(found):
+        for piece in (piece for part in _equations(row) for piece in _at_commas(part)):
+            line = _sides(piece)
+            if not any(line.sides):
+                continue
+            if not line.sides[0] and line.signs[0] == "tends":  # an arrow in front says that something follows
+                del line.sides[0], line.signs[0]
+            before = begun.get(place) or (begun[max(begun)] if begun else None)
+            if done and place in begun:
+                before = done[-1]
+            first = line.sides[0][0] if line.sides[0] else None
+            signed = first is not None and first.kind == "sign" and first.text in "+-"
+            if before is not None and not line.sides[0]:  # a line that begins with a sign of relation
+                before.sides += line.sides[1:]
+                before.signs += line.signs
+            elif before is not None and signed and (line.bare or before.bare):
+                before.sides[-1] += line.sides[0]
+                before.sides += line.sides[1:]
+                before.signs += line.signs
+            else:
+                done += _parted(line)
+                before = done[-1]
+            begun.setdefault(place, before)
+    for line in done:
+        _refuse_arrow(line)
+    related = any(not line.bare for line in done)
+    return [line for line in done if not (related and line.bare and _is_label(line.sides[0]))]
 
 
-def _rows(found: Sequence[Token]) -> list[list[Token]]:
-    """Lines outside of brackets and matrices, and those of a system of equations."""
+def _is_label(side: Sequence[Token]) -> bool:
+    """Whether what stands by itself is a number in brackets, or only names what words were said of."""
+    inside = [token for token in side if token.text not in "()."]
+    return len(inside) <= 1 and len(side) <= 3
+
+
+def _parted(line: Line) -> list[Line]:
+    """The equations of which an arrow says that one follows from the other; other lines as they are."""
+    for k, sign in enumerate(line.signs):
+        if sign == "tends" and "=" in line.signs[:k] and "=" in line.signs[k + 1 :]:
+            first = Line(line.sides[: k + 1], line.signs[:k])
+            return [first, *_parted(Line(line.sides[k + 1 :], line.signs[k + 1 :]))]
+    return [line]
+
+
+def _refuse_arrow(line: Line) -> None:
+    """Refuse an arrow that may say what tends to something, what follows from something, or what a map is between."""
+    for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
+        if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
+            raise Unread("an arrow between more than two things is not read", (after or before)[0].at)
+
+
+def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
+    """What stands in a line between wide spaces, with the number of the line; matrices and brackets stay together."""
     rows: list[list[Token]] = [[]]
+    places = [0]
+    line = 0
     depth, bracket, i = 0, 0, 0
     systems: list[bool] = []
+    broken = False
     while i < len(found):
         token = found[i]
         i += 1
         if token.kind == "begin":
-            system = token.text in SYSTEMS or (token.text == "array" and _is_system(found, i))
+            system = _is_system(found, i, token.text, rows[-1])
             systems.append(system)
             if system:
                 if token.text in ("array", "alignedat") and i < len(found) and found[i].kind == "open":
                     i = group_end(found, i)
-                rows[-1] = [] if all(t.text in ("{", "\\{", ".") for t in rows[-1]) else rows[-1]
+                rows[-1] = [] if _is_brace(rows[-1]) else rows[-1]
                 continue
+        places += [line] * (len(rows) - len(places))
         if token.kind == "end" and systems and systems.pop():
             continue
         inside = not all(systems)
         if token.kind == "macro" and token.text in ("\\", "cr") and not inside:
-            if depth <= 0:  # else a bracket goes on in the next line
+            if depth <= 0 and not _goes_on(rows[-1]):  # else a bracket or a sum goes on in the next line
+                line += 1
                 rows.append([])
+            broken = depth > 0
             if i < len(found) and found[i].text == "[":
                 while i < len(found) and found[i].text != "]":
                     i += 1
@@ -90,45 +124,85 @@ def _rows(found: Sequence[Token]) -> list[list[Token]]:
         elif token.kind == "sign" and token.text == "&" and not inside:
             if not systems:
                 raise Unread('a "&" outside of lines that are aligned', token.at)
-            rows[-1].append(token)
+            if depth <= 0 and not _goes_on(rows[-1]) and not _asks(rows[-1]):
+                rows[-1].append(token)
+        elif token.kind == "macro" and token.text == REMARK and not inside:
+            if rows[-1] and depth == 0:
+                empty = all(t.text == "&" for t in rows[-1])
+                if not empty and (not _has_relation(rows[-1]) or _goes_on(rows[-1])):
+                    raise Unread("words between formulas are not read", token.at)
+                rows.append([])
         elif token.kind == "macro" and token.text in ("quad", "qquad", " "):
             if not inside and bracket:
+                if broken or (i < len(found) and found[i].text == "+"):
+                    continue
                 rows[-1].append(replace(token, text="quad"))  # parts the entries of a row
-            elif not inside and depth == 0 and token.text != " ":
+            elif not inside and depth == 0 and token.text != " " and not _asks(rows[-1]):
                 rows.append([])
         else:
+            broken = False
             depth += (token.kind == "open" or token.text in "([") - (token.kind == "close" or token.text in ")]")
             bracket = max(0, bracket + (token.text in "([") - (token.text in ")]")) if token.kind == "sign" else bracket
             rows[-1].append(token)
-    return [row for row in rows if row]
+        places += [line] * (len(rows) - len(places))
+    return [(place, row) for place, row in zip(places, rows, strict=True) if row]
+
+
+def _is_brace(row: Sequence[Token]) -> bool:
+    return all(t.text in ("{", "\\{", ".") for t in row)
+
+
+def _goes_on(row: Sequence[Token]) -> bool:
+    """Whether a line ends with a sign that asks for more."""
+    last = row[-1] if row else None
+    if last is None:
+        return False
+    if (last.kind == "sign" and last.text in "+-") or bool(_sign(last)):
+        return True
+    k = max((k for k, token in enumerate(row) if token.kind == "macro" and token.text in ("sum", "int")), default=-1)
+    end = k + 1
+    while 0 < end < len(row) and row[end].text in ("_", "^"):
+        end = group_end(row, end + 1) if end + 1 < len(row) and row[end + 1].kind == "open" else end + 2
+    return k >= 0 and end >= len(row)
+
+
+def _asks(row: Sequence[Token]) -> bool:
+    """Whether a line ends with what is sought, as in a problem of least cost, whose cost comes behind a space."""
+    for k in range(len(row) - 1, -1, -1):
+        if row[k].kind == "macro" and row[k].text in OPTIMA:
+            end = group_end(row, k + 2) if k + 2 < len(row) and row[k + 2].kind == "open" else k + 3
+            return end >= len(row)
+    return False
 
 
 def _equations(row: Sequence[Token]) -> list[list[Token]]:
-    """The equations that stand side by side in a line whose columns are aligned."""
+    """The relations that stand side by side in a line whose columns are aligned."""
     pieces: list[list[Token]] = [[]]
     cells = split(row, lambda token: token.kind == "sign" and token.text == "&")
-    for place, cell in enumerate(cells):
-        after = cells[place + 1] if place + 1 < len(cells) else []
+    for cell, after in zip(cells, [*cells[1:], []], strict=True):
         before, first = pieces[-1], cell[0] if cell else None
-        begun = first is None or _is_equals(first) or first.text in RELATIONS or first.text in TIMES | {"+", "-", ","}
-        complete = _has_equality(before) and not _is_equals(before[-1])
-        begins = bool(cell) and bool(after) and _is_equals(after[0])
-        if complete and (begins or _has_equality(cell) or _is_remark(cell)):
+        begun = first is None or bool(_sign(first)) or first.text in TIMES | {"+", "-", ","}
+        complete = _has_relation(before) and not _sign(before[-1])
+        if (
+            complete
+            and not (first is None or _sign(first))
+            and (_has_relation(cell) or _is_remark(cell) or (after and _sign(after[0])))
+        ):
             pieces.append(list(cell))
-        elif begun or not before or _is_equals(before[-1]):
+        elif begun or not before or _sign(before[-1]):
             pieces[-1] += cell
         else:
             assert first is not None
             raise Unread("what stands in this column is no part of an equation", first.at)
-    equations = [piece for piece in pieces if _has_equality(piece)]
-    said = [token for piece in pieces if piece not in equations for token in piece if token.text in RELATIONS]
-    if equations and said:
-        raise Unread("a condition beside the equations is not read", said[0].at)
-    return equations if len(pieces) > 1 else pieces
+    return pieces
 
 
-def _is_system(found: Sequence[Token], i: int) -> bool:
-    """Whether the lines of an array are equations."""
+def _is_system(found: Sequence[Token], i: int, name: str, before: Sequence[Token]) -> bool:
+    """Whether the lines of an environment are equations, not entries of a matrix or cases of one side."""
+    if name in SYSTEMS:
+        return not name.endswith("cases") or _is_brace([t for t in before if t.text not in ("&", ".")])
+    if name != "array":
+        return False
     depth = 0
     for token in found[i:]:
         depth += (token.kind == "begin") - (token.kind == "end")
@@ -140,20 +214,45 @@ def _is_system(found: Sequence[Token], i: int) -> bool:
 
 
 def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
-    """Equations between which commas stand; ends of sentences are left out."""
+    """Relations between which commas stand; ends of sentences are left out, lists stay together."""
     parts = split(found, lambda token: token.kind == "sign" and token.text in ",;")
     for before, after in pairwise(part for part in parts if part):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
             raise Unread("a comma in a number may part thousands or decimals", after[0].at - 1)
     kept = [part for part in (_without_stop(part) for part in parts) if part]
-    if len(kept) > 1 and not all(_has_equality(part) for part in kept[:2]):
-        equations = [part for part in kept if _has_equality(part)]
-        said = [part for part in kept if not _has_equality(part)]
-        if len(equations) == 1 and kept[0] is equations[0] and all(_is_remark(part) for part in said):
-            return equations
-        raise Unread("a comma has no meaning here", _between(found, kept))
-    return kept
+    if not any(_has_relation(part) for part in kept):
+        return kept
+    done: list[list[Token]] = []
+    listed: list[Token] = []
+    for place, part in enumerate(kept):
+        if _has_relation(part):
+            first = next(name for token in part if (name := _sign(token)))
+            if listed and first != "element":
+                raise Unread("a comma has no meaning here", _between(found, kept))
+            done.append([*listed, *part])
+            listed = []
+        elif done and _goes_on_as_list(done[-1], kept[place:]):
+            done[-1] += [Token("sign", ",", part[0].at), *part]
+        elif done and _is_remark(part):
+            continue
+        elif any(_has_relation(later) for later in kept[place:]):
+            listed += [*part, Token("sign", ",", part[-1].at)]
+        else:
+            raise Unread("a comma has no meaning here", _between(found, kept))
+    return done
+
+
+def _goes_on_as_list(relation: Sequence[Token], later: Sequence[Sequence[Token]]) -> bool:
+    """Whether numbers, or what an ellipsis stands among, follow a relation as the rest of a list: i = 0, ..., N."""
+    rest = [relation[-1:]]
+    for part in later:
+        if _has_relation(part):
+            break
+        rest.append(part)
+    if any(token.kind == "macro" and token.text in ELLIPSES for part in rest for token in part):
+        return True
+    return relation[-1].text in ELLIPSES or all(len(part) == 1 and part[0].kind == "number" for part in rest)
 
 
 def _between(found: Sequence[Token], kept: Sequence[Sequence[Token]]) -> int:
@@ -161,8 +260,8 @@ def _between(found: Sequence[Token], kept: Sequence[Sequence[Token]]) -> int:
 
 
 def _is_remark(part: Sequence[Token]) -> bool:
-    """Whether what follows an equation is a condition, in words or as a relation."""
-    return any(t.text in RELATIONS or t.text in UPRIGHT for t in part)
+    """Whether what follows an equation is words."""
+    return any(t.text in UPRIGHT for t in part)
 
 
 def _without_stop(part: list[Token]) -> list[Token]:
@@ -171,26 +270,51 @@ def _without_stop(part: list[Token]) -> list[Token]:
     return part
 
 
-def _has_equality(part: Sequence[Token]) -> bool:
-    return any(_is_equals(token) for token in part)
+def _has_relation(part: Sequence[Token]) -> bool:
+    return any(_sign(token) for token in part)
 
 
-def _is_equals(token: Token) -> bool:
-    return (token.kind == "sign" and token.text == "=") or (token.kind == "macro" and token.text in EQUALS)
+def _sign(token: Token) -> str:
+    """Which relation a token is the sign of; empty where of none."""
+    if (token.kind == "sign" and token.text == "=") or (token.kind == "macro" and token.text in EQUALS):
+        return "="
+    return RELATIONS.get(token.text, "") if token.kind in ("macro", "sign") else ""
 
 
-def _sides(found: Sequence[Token]) -> list[list[Token]]:
-    sides = split(found, _is_equals)
-    return [part[:-1] if part and part[-1].text == ":" else part for part in sides]
+def _sides(found: Sequence[Token]) -> Line:
+    """What stands between the signs of relation."""
+    signs: list[str] = []
+
+    def divides(token: Token) -> bool:
+        if sign := _sign(token):
+            signs.append(sign)
+        return bool(sign)
+
+    sides = split(found, divides)
+    for k, part in enumerate(sides):  # := and =:
+        sides[k] = part[part[:1] != [] and part[0].text == ":" : len(part) - (part[-1:] != [] and part[-1].text == ":")]
+    for k in range(len(signs) - 1, 0, -1):  # a sign at the end of a line that is printed again in the next one
+        if not sides[k] and signs[k] == signs[k - 1]:
+            del sides[k], signs[k]
+    return Line(sides, signs)
+
+
+def relation_in(part: Sequence[Token]) -> Line:
+    """The sides of a relation that stands inside of something, such as the condition of a case."""
+    return _sides(_without_stop([token for token in part if token.text not in (REMARK, "quad", "qquad", " ")]))
 
 
 def split(found: Sequence[Token], divides: Callable[[Token], bool]) -> list[list[Token]]:
     """The tokens between those that divide, outside of all brackets and environments."""
     parts: list[list[Token]] = [[]]
     depth = 0
-    for token in found:
+    closing = max((k for k, token in enumerate(found) if token.kind == "macro" and token.text in _CLOSING), default=-1)
+    for k, token in enumerate(found):
+        brace = k <= closing and token.kind == "macro"
         depth += token.kind in ("open", "begin") or (token.kind == "sign" and token.text in "([")
+        depth += brace and token.text in _OPENING
         depth -= token.kind in ("close", "end") or (token.kind == "sign" and token.text in ")]")
+        depth -= brace and token.text in _CLOSING
         if depth == 0 and divides(token):
             parts.append([])
         else:

@@ -30,35 +30,67 @@ UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox m
 SPACES = frozenset(
     ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
-    "allowbreak nobreak negthinspace > space hline vphantom boldmath unboldmath noindent medspace thickspace".split()
+    "allowbreak nobreak negthinspace > space hline vphantom boldmath unboldmath noindent medspace thickspace "
+    "vcentcolon IEEEyessubnumber IEEEyesnumber".split()
 ) | {" "}
 SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom color eqno cite".split())
-KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel ensuremath smash".split())
+KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel smash".split())
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
+SIGNS = TIMES | frozenset(("+", "-", "=", "otimes"))
 OF_VECTORS = {"times": "cross", "cdot": "dot", "bullet": "dot"}
 """Signs that are products of another kind between vectors, and what these are called."""
-RELATIONS = {"<", ">", "le", "ge", "leq", "geq", "ll", "gg", "neq", "ne", "approx", "sim", "simeq", "propto", "in"}
-RELATIONS |= {"to", "rightarrow", "Rightarrow", "implies", "iff", "leqslant", "geqslant", "mapsto", "cong", "prec"}
+RELATIONS = {
+    **dict.fromkeys(("<", "lt"), "less"),
+    **dict.fromkeys((">", "gt"), "greater"),
+    **dict.fromkeys(("le", "leq", "leqslant"), "at_most"),
+    **dict.fromkeys(("ge", "geq", "geqslant"), "at_least"),
+    **dict.fromkeys(("ne", "neq"), "unequal"),
+    **dict.fromkeys(("approx", "simeq", "cong"), "near"),
+    **dict.fromkeys(("to", "rightarrow", "longrightarrow", "mapsto"), "tends"),
+    **dict.fromkeys(("subset", "subseteq"), "subset"),
+    **dict.fromkeys(("prec", "preceq"), "precedes"),
+    **dict.fromkeys(("succ", "succeq"), "follows"),
+    "ll": "much_less",
+    "gg": "much_greater",
+    "sim": "similar",
+    "propto": "proportional",
+    "in": "element",
+    "notin": "not_element",
+}
+"""Signs of relations other than equality, and what these are called."""
+CONNECTIVES = frozenset(
+    "implies iff Rightarrow Leftrightarrow Longrightarrow Longleftrightarrow therefore because forall".split()
+)
+"""Signs that stand between relations, as words do."""
+ELLIPSES = frozenset("ldots dots cdots vdots ddots dotsc dotsb".split())
+OPTIMA = {
+    **dict.fromkeys(("min", "minimize", "minimise"), "minimum"),
+    **dict.fromkeys(("max", "maximize", "maximise"), "maximum"),
+    "argmin": "argmin",
+    "argmax": "argmax",
+    "inf": "infimum",
+    "sup": "supremum",
+}
+"""What is sought over what stands below, and what it is called."""
+NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
+NOT_COMPARED |= frozenset("value cases list braces power limit gradient sum integral cross dot tensor skew".split())
+"""Functions in a tree that are read, and held against nothing."""
+NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise"))
+"""Names in a tree that stand for no number."""
 REFUSED = {
     "iint": "an integral",
     "oint": "an integral",
+    "iiint": "an integral",
+    "not": "a negation",
     "prod": "a product over an index",
-    "lim": "a limit",
     "pm": "two signs at once",
     "mp": "two signs at once",
-    "infty": "infinity",
-    "nabla": "a gradient",
-    "ldots": "an ellipsis",
-    "dots": "an ellipsis",
-    "cdots": "an ellipsis",
-    "vdots": "an ellipsis",
-    "ddots": "an ellipsis",
-    "otimes": "a tensor product",
-    "forall": "a quantifier",
     "exists": "a quantifier",
 }
-MATRICES = frozenset("pmatrix bmatrix matrix Bmatrix vmatrix Vmatrix smallmatrix array".split())
+MATRICES = frozenset(
+    "pmatrix bmatrix matrix Bmatrix vmatrix Vmatrix smallmatrix psmallmatrix bsmallmatrix array".split()
+)
 SYSTEMS = frozenset(
     "aligned split gathered alignedat cases dcases rcases align align* gather gather* alignat alignat* flalign "
     "flalign* eqnarray eqnarray* IEEEeqnarray equation equation* multline multline*".split()
@@ -71,16 +103,22 @@ FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
 """Macros that are read as words where they stand in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
-ATOMS = frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack".split())
+ATOMS = (
+    frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack lim nabla infty".split())
+    | ELLIPSES
+)
 ROOTS = frozenset(("sqrt",))
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that are misread as products of letters where their backslash is lost, longer names first."""
 UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf arg sup inf grad div rot curl cov var mod".split())
 """Functions that are printed upright and are not in the grammar."""
 SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
+SAID |= frozenset(("subject to", "such that", "s.t.", "s.t", "i.e.", "i.e", "since", "while", "as", "etc"))
 """Words between formulas."""
 UNITS = frozenset("m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s Nm".split())
-SHIFTED = frozenset("f F x y z u w q s h p r X Y U delta theta phi varphi psi xi eta".split())
+COUNTERS = frozenset("i j k l m n N M K".split())
+"""Letters of which the number of a member of a sequence is made."""
+SHIFTED = frozenset("f F x y z u w q X Y U".split())
 """Letters for which a bracket behind them is no factor where time and something else stand in it."""
 ANGLES = frozenset("theta vartheta phi varphi psi E M".split())
 """Letters of angles, of which time is no factor."""

@@ -7,14 +7,37 @@ from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
+from satsym.auditing.latex.words import COUNTERS
 from satsym.formula.cells import each
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, substituted
+from satsym.formula.tree import (
+    Add,
+    Call,
+    Div,
+    Equality,
+    Grid,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    constant,
+    substituted,
+    symbols,
+)
 from satsym.formula.writing import written
 
 Writer = Callable[["Node | Equality"], str]
 _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
-_WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty"}
+_WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty", "ellipsis": r"\ldots"}
+_WORDS |= {"otherwise": r"\text{otherwise}"}
+_SIGNS = {"less": "<", "greater": ">", "at_most": r"\le", "at_least": r"\ge", "unequal": r"\ne", "near": r"\approx"}
+_SIGNS |= {"tends": r"\to", "subset": r"\subset", "precedes": r"\prec", "follows": r"\succ", "much_less": r"\ll"}
+_SIGNS |= {"much_greater": r"\gg", "similar": r"\sim", "proportional": r"\propto", "element": r"\in", "equal": "="}
+_SIGNS |= {"not_element": r"\notin"}
+_OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argmax": r"\arg\max"}
+_OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
 _RUNS_ON = re.compile(
@@ -85,6 +108,8 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
         return rf"\frac{{{whole(node.numerator)}}}{{{whole(node.denominator)}}}", _ATOM
     if isinstance(node, Pow):
         return _power(node, letters), _PRODUCT
+    if isinstance(node, Grid) and not any(isinstance(entry, Grid) for entry in node.entries):
+        return rf"\left[{', '.join(map(whole, node.entries))}\right]", _ATOM
     if isinstance(node, Grid):
         return rf"\begin{{pmatrix}} {_rows(node, letters)} \end{{pmatrix}}", _ATOM
     if not isinstance(node, Call):
@@ -96,7 +121,10 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
         "abs": f"|{arguments}|",
         "norm": rf"\|{arguments}\|",
         "d": rf"\frac{{d}}{{dt}}\left({arguments}\right)",
-        "transpose": rf"{arguments}^{{\mathsf T}}",
+        "transpose": rf"{bound(node.arguments[0], _ATOM)}^{{\mathsf T}}" if node.arguments else "",
+        "skew": rf"\left[{arguments}\right]_{{\times}}",
+        "list": arguments,
+        "braces": rf"\left\{{{arguments}\right\}}",
     }
     if node.function == "diff" and len(node.arguments) == 2:
         by = whole(node.arguments[1])
@@ -113,12 +141,55 @@ def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
         inside, by, *limits = map(whole, node.arguments)
         ends = "".join(f"{sign}{{{end}}}" for sign, end in zip("_^", limits, strict=False))
         return rf"\int{ends} {inside} \, d{by}", _SUM
+    if (found := _read_only(node, whole, bound)) is not None:
+        return found
     if node.function in special:
         return special[node.function], _ATOM
     name = _NAMES.get(node.function) or (rf"\{node.function}" if node.function in _KNOWN else "")
     name = name or rf"\operatorname{{{node.function}}}"
-    simple = len(node.arguments) == 1 and isinstance(node.arguments[0], Sym)
+    simple = len(node.arguments) == 1 and isinstance(node.arguments[0], Sym) and not name.startswith("\\operator")
     return (f"{name} {arguments}" if simple else rf"{name}\left({arguments}\right)"), _PRODUCT if simple else _ATOM
+
+
+def _read_only(node: Call, whole: Callable[[Node], str], bound: Callable[[Node, int], str]) -> tuple[str, int] | None:
+    """The LaTeX of what is read and held against nothing; ``None`` for anything else."""
+    first, *rest = node.arguments
+    others = ", ".join(map(whole, rest))
+    if node.function in _SIGNS:
+        return f"{whole(first)} {_SIGNS[node.function]} {others}", _SUM
+    if node.function in _OPTIMA:
+        below = f"_{{{others}}}" if rest else ""
+        return rf"{_OPTIMA[node.function]}{below} \left({whole(first)}\right)", _SUM
+    if node.function == "limit":
+        return rf"\lim_{{{whole(rest[0])} \to {whole(rest[1])}}} {bound(first, _PRODUCT)}", _SUM
+    if node.function == "gradient":
+        by = f"_{{{others}}}" if rest else ""
+        return rf"\nabla{by} {bound(first, _ATOM)}", _PRODUCT
+    if node.function == "value" and isinstance(first, Sym) and len(rest) == 1 and _counts(rest[0]):
+        return rf"{whole(first)}\left[{others}\right]", _ATOM
+    if node.function == "value" and isinstance(first, Sym):
+        return rf"{whole(first)}\left({others}\right)", _ATOM
+    if node.function == "value":
+        return rf"{bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
+    if node.function == "power":
+        return rf"{whole(first) if isinstance(first, Num) else bound(first, _ATOM + 1)}^{{{others}}}", _PRODUCT
+    if node.function == "tensor":
+        return rf"{bound(first, _ATOM)} \otimes {bound(rest[0], _ATOM)}", _PRODUCT
+    if node.function == "both":
+        steps = [
+            f"{_SIGNS[part.function]} {whole(part.arguments[1])}" for part in node.arguments if isinstance(part, Call)
+        ]
+        return f"{whole(first.arguments[0]) if isinstance(first, Call) else ''} {' '.join(steps)}", _SUM
+    if node.function == "cases":
+        rows = [f"{whole(value)} & {whole(when)}" for value, when in zip(node.arguments[::2], rest[::2], strict=True)]
+        body = r" \\ ".join(rows)
+        return rf"\begin{{cases}} {body} \end{{cases}}", _ATOM
+    return None
+
+
+def _counts(node: Node) -> bool:
+    """Whether something is the number of a member of a sequence."""
+    return bool(symbols(node)) and symbols(node) <= COUNTERS
 
 
 def _power(node: Pow, letters: Mapping[str, str]) -> str:

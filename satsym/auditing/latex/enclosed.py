@@ -1,0 +1,120 @@
+"""What stands between signs: braces, bars, cases, places below a bar, and indices in front of a letter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from satsym.auditing.latex import words
+from satsym.auditing.latex.letters import cleaned
+from satsym.auditing.latex.refusals import RefusalCursor
+from satsym.auditing.latex.rows import relation_in, split
+from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.words import FUNCTIONS
+from satsym.formula.tree import Add, Call, Grid, Node, Sym, symbols
+
+
+class EnclosedCursor(RefusalCursor):
+    """Reads what signs enclose."""
+
+    def _taken(self, base: Node, script: list[Token], at: int) -> Node:
+        """What is taken at a place that stands below a bar."""
+        places: list[Node] = []
+        for part in split(script, lambda t: t.text in ",;"):
+            line = relation_in(part)
+            sides = [self._inner(side, at) for side in line.sides]
+            if line.signs not in ([], ["="]):
+                raise Unread("what something is taken at is not read", at)
+            places.append(sides[0] if line.bare else Call("equal", tuple(sides)))
+        return Call("value", (base, *places))
+
+    def _in_a_frame(self) -> Node:
+        """A letter in front of which its frame is printed, ``{}^A r``: components in that frame."""
+        at, said = self._found[self._i].at, []
+        while self._is("^") or self._is("_"):
+            self._i += 1
+            said.append(cleaned(self._said(self._script())))
+        if self._is("{", kind="open") and not self._peek_group():
+            self._group()
+        letter = self._letter()
+        if letter is None or not all(said):
+            raise Unread("what this index in front belongs to is not clear", at)
+        return self._symbol(replace(letter, marks=(*letter.marks, f"in_{'_'.join(said)}")), at)
+
+    def _named(self, macro: str, word: str, length: int) -> Node | None:
+        """A function that is printed upright with its brackets, and is only known by name."""
+        begin, behind = self._i, self._i + 1 + length + 2 * self._is("{", 1, "open")
+        known = word in words.UNKNOWN or (macro == "operatorname" and word not in words.OPTIMA)
+        if not known or word in FUNCTIONS or not word.isalpha() or behind >= len(self._found):
+            return None
+        self._i = behind
+        if self._is("{", kind="open"):
+            self._i += 1 if self._is("(", 1) else 0
+        if not self._is("("):
+            self._i = begin
+            return None
+        arguments = self._arguments()
+        if self._is("}", kind="close"):
+            self._i += 1
+        return Call(word, tuple(arguments))
+
+    def _braces(self, token: Token) -> Node:
+        """What stands in printed braces."""
+        begin, depth = self._i, 1
+        while depth:
+            inside = self._take()
+            depth += (inside.text in ("{", "lbrace", "lbrack") and inside.kind == "macro") - (
+                inside.text in ("}", "rbrace", "rbrack") and inside.kind == "macro"
+            )
+        parts = split(self._found[begin : self._i - 1], lambda t: t.kind == "sign" and t.text in ",;")
+        if len(parts) > 1:
+            return Call("braces", tuple(self._inner(part, token.at) for part in parts))
+        return self._inner(parts[0], token.at)
+
+    def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
+        """Values, each with the condition under which it is taken."""
+        found: list[Node] = []
+        for row in rows:
+            cells = split(row, lambda t: t.kind == "sign" and t.text in "&,")
+            value, *rest = [cell for cell in cells if cell]
+            said = [token for cell in rest for token in cell]
+            line = relation_in(said)
+            if "otherwise" in "".join(t.text for t in said):
+                found += [self._inner(value, at), Sym("otherwise")]
+                continue
+            sides = [self._inner(side, at) for side in line.sides]
+            if not rest or line.bare:
+                raise Unread("the condition of a case is not read", said[0].at if said else at)
+            conditions: list[Node] = [
+                Call("equal" if sign == "=" else sign, (one, other))
+                for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True)
+            ]
+            found += [
+                self._inner(value, at),
+                conditions[0] if len(conditions) == 1 else Call("both", tuple(conditions)),
+            ]
+        return Call("cases", tuple(found))
+
+    def _size(self, token: Token) -> Node:
+        """Between bars: the size of a number, or of a vector."""
+        closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
+        begin, groups = self._i, 0
+        while True:
+            if self._peek() is None:
+                raise Unread("a bar that nothing closes, as behind what is taken at a place, is not read", token.at)
+            inside = self._take()
+            groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
+            if groups == 0 and inside.text == closing and inside.kind == token.kind:
+                break
+        inner = self._inner(self._found[begin : self._i - 1], token.at)
+        if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
+            return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
+        single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
+            return Call("det", (inner,))
+        if single and isinstance(inner, Add) and "I" in symbols(inner):
+            raise Unread("bars around a matrix are a determinant, or a size; write \\det", token.at)
+        if single and isinstance(inner, Grid):
+            return Call("det", (inner,))
+        return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))

@@ -1,0 +1,65 @@
+r"""Macros of packages that many documents load: ``\dv{x}{t}``, ``\norm{x}``, ``\cross``, as what they stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from satsym.auditing.latex.tokens import Token, group_end
+
+_OTHER_NAMES = {"cross": "times", "vdot": "cdot", "dotproduct": "cdot", "crossproduct": "times", "grad": "nabla"}
+_OTHER_NAMES |= {"vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
+_BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
+_DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
+
+
+def put_in(found: Sequence[Token]) -> list[Token]:
+    """The tokens with macros of packages put in; those of the document's own are put in before."""
+    done: list[Token] = []
+    i = 0
+    while i < len(found):
+        token = found[i]
+        i += 1
+        name = token.text if token.kind == "macro" else ""
+        if name == "arg" and i < len(found) and found[i].text in ("min", "max"):
+            done.append(Token("macro", f"arg{found[i].text}", token.at))
+            i += 1
+        elif name in _OTHER_NAMES:
+            done.append(Token("macro", _OTHER_NAMES[name], token.at))
+        elif name in _BARS and i < len(found) and found[i].kind == "open":
+            end = group_end(found, i)
+            opening, closing = (Token("macro", bar, token.at) for bar in _BARS[name])
+            done += [opening, *put_in(found[i + 1 : end - 1]), closing]
+            i = end
+        elif name in _DERIVATIVES and i < len(found) and (found[i].kind == "open" or found[i].text == "["):
+            order, i = _order(found, i)
+            groups: list[list[Token]] = []
+            while i < len(found) and found[i].kind == "open" and len(groups) < 2:
+                end = group_end(found, i)
+                groups.append(put_in(found[i + 1 : end - 1]))
+                i = end
+            done += _quotient(_DERIVATIVES[name], order, groups, token.at)
+        else:
+            done.append(token)
+    return done
+
+
+def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
+    """The order of a derivative, in square brackets where it is not the first, and the place behind it."""
+    if found[i].text != "[":
+        return [], i
+    end = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1)
+    at = found[i].at
+    return [Token("sign", "^", at), _brace(True, at), *found[i + 1 : end], _brace(False, at)], end + 1
+
+
+def _quotient(sign: str, order: list[Token], groups: list[list[Token]], at: int) -> list[Token]:
+    """A quotient of differentials; with one group, the derivative sign by it."""
+    of, by = groups if len(groups) == 2 else ([], groups[0] if groups else [])
+    mark = Token("letter" if sign == "d" else "macro", sign, at)
+    above = [_brace(True, at), mark, *order, *of, _brace(False, at)]
+    below = [_brace(True, at), mark, *by, *order, _brace(False, at)]
+    return [Token("macro", "frac", at), *above, *below]
+
+
+def _brace(opens: bool, at: int) -> Token:
+    return Token("open", "{", at) if opens else Token("close", "}", at)
