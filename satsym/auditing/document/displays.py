@@ -24,6 +24,7 @@ _CODE = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 """Code in Markdown; a block of mathematics is matched too, so that its end is not taken for a beginning."""
+_QUOTE = re.compile(r"(?:(?<=\n\n)|(?<=\A)|(?<=\n))(?:[ \t]{0,3}>)+(?=[^\n]*(?:\n[ \t]{0,3}>|\n\n|\n?\Z))")
 _INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
 _NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
 _DISPLAY = re.compile(
@@ -208,6 +209,8 @@ def _content(path: Path) -> str:
 
 def _blank_out(source: Source) -> None:
     """Put spaces in the place of comments, and of what is printed as it stands."""
+    if source.path.suffix.lower() in _MARKDOWN:
+        source.text = _QUOTE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
     patterns = (_CODE,) if source.path.suffix.lower() in _MARKDOWN else (_VERBATIM, _COMMENT)
     for pattern in patterns:
         source.text = pattern.sub(_blank, source.text)

@@ -78,6 +78,8 @@ class Cursor(ABC):
         token = self._take()
         if token.kind == "macro" and token.text in REFUSED:
             raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not read", token.at)
+        if token.kind == "macro" and token.text == "remark":
+            raise Unread("words between formulas are not read", token.at)
         if token.text in RELATIONS:
             raise Unread("a relation inside of something is not read", token.at)
         sign = "\\" if token.kind == "macro" else ""

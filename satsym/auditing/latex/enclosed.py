@@ -117,4 +117,8 @@ class EnclosedCursor(RefusalCursor):
             raise Unread("bars around a matrix are a determinant, or a size; write \\det", token.at)
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
+        if not single and self._is("_"):
+            self._i += 1
+            if [t.text for t in self._script()] != ["2"]:
+                raise Unread("a norm of this kind is not read", token.at)
         return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))

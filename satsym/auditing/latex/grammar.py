@@ -10,19 +10,20 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from math import factorial
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.enclosed import EnclosedCursor
 from satsym.auditing.latex.letters import GREEK, Letter, of_word
-from satsym.auditing.latex.names import capitals, refuse_spelled_name, with_names
+from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
-from satsym.formula.reading import MAX_DEPTH, MAX_EXPONENT
+from satsym.formula.reading import MAX_DEPTH
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.wording import printable
 
@@ -56,6 +57,7 @@ def read(
     if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
         reading = _read(kept, Reading([], known=reading.places), start, plain)
     reading.products = capitals(kept)
+    refuse_powers_of_numbered(reading, start)
     if not reading.statements:
         raise Unread("no formula", start)
     return reading
@@ -67,6 +69,9 @@ def _read(kept: Sequence[Token], reading: Reading, start: int, plain: bool) -> R
         sides = [Parser(part, reading, start, plain).side() for part in line.sides]
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
+            braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
+            if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
+                raise Unread("what may be a set is no product", line.sides[0][0].at)
             reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
     return reading
 
@@ -141,6 +146,9 @@ class Parser(EnclosedCursor):
                 if not self._plain and self._bare_end == self._i:
                     raise Unread("what a function is taken of, a slash behind it, needs brackets", token.at)
                 self._i += 1
+                following = self._peek()
+                if token.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
+                    raise Unread("a colon is not read here", token.at)
                 divisor = self._signed_factor()
                 unit = self._peek()
                 if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
@@ -190,6 +198,11 @@ class Parser(EnclosedCursor):
         if not self._plain and (self._is("^") or self._is("_")):
             return self._powers(self._in_a_frame())
         found = self._derivative(token)
+        if isinstance(found, Call) and found.function == "diff" and self._is("("):
+            begin, arguments = self._i, self._arguments()
+            if len(arguments) > 1:
+                return self._powers(Call("value", (found, *arguments)))
+            self._i = begin
         base = found if found is not None else self._atom()
         return self._powers(base)
 
@@ -199,56 +212,20 @@ class Parser(EnclosedCursor):
                 at = self._take().at
                 known = isinstance(base, Sym) and base.name in self._reading.letters
                 base = self._raised(base, self._script(), at)
-                if known and self._is("(") and isinstance(base, Pow) and not self._plain:
+                if known and self._is("(") and isinstance(base, Pow | Call) and not self._plain:
                     self._timed_behind_power()
             elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
                 self._i += 2
                 base = self._taken(base, self._script(), bar.at)
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
+            elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
+                self._i += 1
+                base = Num(Fraction(factorial(int(base.value))))
             elif self._is("!"):
                 raise Unread("a factorial is not read", self._take().at)
             else:
                 return base
-
-    def _timed_behind_power(self) -> None:
-        """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
-        begin = self._i
-        end = self._bracket_end()
-        inside = self._found[begin + 1 : end]
-        words_inside = "".join(t.text for t in inside)
-        if words_inside in words.TIMES_OF_ANGLES:
-            return
-        if words_inside in words.AT_A_TIME or self._place(inside) is not None:
-            raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
-        self._i = begin
-
-    def _raised(self, base: Node, script: list[Token], at: int) -> Node:
-        if not script:
-            return base
-        if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
-            return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
-        upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
-        if len(script) == 1 and script[0].text in ("wedge", "times"):
-            return Call("skew", (base,))
-        if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
-            return Call("transpose", (base,))
-        exponent = self._inner(script, at)
-        value = constant(exponent)
-        number = isinstance(base, Num | Add | Mul | Div | Neg) or base == Sym("pi")
-        if value is None and number and not self._plain:
-            return Call("power", (base, exponent))
-        if base == Sym("e") and not self._plain and len(script) == 1 and script[0].text in "ijklmn":
-            raise Unread("a power of e may be one of a number, or an exponential", at)
-        if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
-            return Call("exp", (exponent,))
-        if value is None:
-            raise Unread("an exponent that is not a number is not read", at)
-        if value == 0:
-            raise Unread("a power of zero may be an index", at)
-        if abs(value) > MAX_EXPONENT:
-            raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
-        return Pow(base, exponent)
 
     def _inner(self, part: Sequence[Token], at: int) -> Node:
         if not part:
@@ -291,6 +268,9 @@ class Parser(EnclosedCursor):
                 self._reading.constants = True
                 return Sym(CONSTANT)
             self._refuse_spelled_function(token)
+            twice = self._peek()
+            if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
+                raise Unread("twice the same letter in front of an index may be one name", token.at)
             after = self._peek()
             beside = after is not None and after.at == token.at + 1 and not self._plain
             if token.text == "d" and beside and after is not None and (after.kind == "letter" or after.text in GREEK):
@@ -323,7 +303,7 @@ class Parser(EnclosedCursor):
             return Div(self._inner(above, token.at), self._inner(below, token.at))
         if name in KEPT_GROUPS:
             inner = self._inner(self._group(), token.at)
-            if self._is("_"):
+            if self._is("_") or self._is("^"):  # what is written beside the brace
                 self._i += 1
                 self._script()
             return inner
@@ -348,7 +328,7 @@ class Parser(EnclosedCursor):
                 if word in words.OPTIMA and behind < len(self._found) and self._found[behind].text == "_":
                     self._i = behind
                     return self._optimum(replace(token, text=word))
-            if word in FUNCTIONS and len(word) > 1:
+            if word in FUNCTIONS and len(word) > 1 and word != "diff":
                 self._i += 1
                 self._group()
                 return self._function(FUNCTIONS[word], token)

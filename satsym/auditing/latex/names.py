@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
+from satsym.formula.cells import cells
+from satsym.formula.tree import Pow, Sym, walk
 
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
@@ -50,3 +53,15 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
+
+
+def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
+    """Refuse powers of a letter of which other exponents, 0 and 1, are indices."""
+    numbered = {name.rpartition("_upper_")[0] for name in reading.letters if name.endswith(("_upper_0", "_upper_1"))}
+    for statement in reading.statements if numbered else ():
+        for side in cells(statement):
+            if any(
+                isinstance(part, Pow) and isinstance(part.base, Sym) and part.base.name in numbered
+                for _, part in walk(side)
+            ):
+                raise Unread("powers of a letter that has indices above, too", start)

@@ -1,17 +1,20 @@
-"""Functions, roots, sums, integrals, brackets and environments of printed formulas: tokens -> trees."""
+"""Functions, roots, powers, sums, integrals, brackets and environments of printed formulas: tokens -> trees."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 
+from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import MATRICES, OPTIMA
-from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
+from satsym.formula.reading import MAX_EXPONENT
+from satsym.formula.tree import Add, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
 from satsym.wording import printable
 
 
@@ -101,10 +104,13 @@ class OperatorCursor(QuotientCursor):
         limits = self._limits()
         parts: list[Node] = [self._product()]
         if below := limits.get("_"):
-            first, *start = split(below, lambda t: t.kind == "sign" and t.text == "=")
-            indices = split(first, lambda t: t.text == ",")
-            parts += [self._inner(index, token.at) for index in indices]
-            parts += [self._inner(side, token.at) for side in start[:1]]
+            line = relation_in(below)
+            if line.signs not in ([], ["="]):
+                sides = [self._inner(side, token.at) for side in line.sides]
+                parts += [Call(sign, pair) for sign, pair in zip(line.signs, pairwise(sides), strict=True)]
+            else:
+                indices = split(line.sides[0], lambda t: t.text == ",")
+                parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
         if "^" in limits:
             parts.append(self._limit(limits["^"], token.at))
         return Call("sum", tuple(parts))
@@ -117,6 +123,8 @@ class OperatorCursor(QuotientCursor):
         return limits
 
     def _limit(self, part: Sequence[Token], at: int) -> Node:
+        line = relation_in(part)
+        part = line.sides[-1] if line.signs == ["="] else part
         endless = len(part) == 1 and part[0].text == "infty"
         return Sym("infinity") if endless else self._inner(part, at)
 
@@ -213,6 +221,9 @@ class OperatorCursor(QuotientCursor):
             before = self._found[begin - 1]
             if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
                 raise Unread("what something is taken at, in brackets behind it, is not read", at)
+        if len(arguments) > 1 and not self._plain and not square and self._is("("):
+            listed = Grid(tuple(arguments))
+            return Call("value", (listed, *self._arguments()))
         if len(arguments) > 1:
             parted = any(token.text == "quad" for token in self._found[begin : self._i])
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
@@ -228,7 +239,8 @@ class OperatorCursor(QuotientCursor):
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Whether a bracket holds one letter, and one stands in front of it, as in an expectation."""
-        letter = self._letter_in(self._found[begin + 1 : self._i - 1])
+        inside = self._found[begin + 1 : self._i - 1]
+        letter = self._letter_in(inside) or (self._of(inside)._letter() if self._is_taken(inside) else None)
         alone = letter is not None and letter == letter.plain and not letter.dots
         return alone and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
 
@@ -254,6 +266,7 @@ class OperatorCursor(QuotientCursor):
         entries = []
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
+            cells = cells[:-1] if len(cells) > 1 and not cells[-1] else cells
             if len(cells) == 1:  # a row may be printed with commas
                 cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
             entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
@@ -262,6 +275,45 @@ class OperatorCursor(QuotientCursor):
         if token.text == "vmatrix":
             return Call("det", (Grid(tuple(entries)),))
         return Grid(tuple(entries))
+
+    def _timed_behind_power(self) -> None:
+        """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
+        begin = self._i
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        words_inside = "".join(t.text for t in inside)
+        if words_inside in words.TIMES_OF_ANGLES:
+            return
+        if words_inside in words.AT_A_TIME or self._place(inside) is not None:
+            raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
+        self._i = begin
+
+    def _raised(self, base: Node, script: list[Token], at: int) -> Node:
+        if not script:
+            return base
+        if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
+            return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
+        upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
+        if len(script) == 1 and script[0].text in ("wedge", "times"):
+            return Call("skew", (base,))
+        if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
+            return Call("transpose", (base,))
+        exponent = self._inner(script, at)
+        value = constant(exponent)
+        number = isinstance(base, Num | Add | Mul | Div | Neg) or base == Sym("pi")
+        if value is None and number and not self._plain:
+            return Call("power", (base, exponent))
+        if base == Sym("e") and not self._plain and len(script) == 1 and script[0].text in "ijklmn":
+            raise Unread("a power of e may be one of a number, or an exponential", at)
+        if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
+            return Call("exp", (exponent,))
+        if value is None:
+            raise Unread("an exponent that is not a number is not read", at)
+        if value == 0:
+            raise Unread("a power of zero may be an index", at)
+        if abs(value) > MAX_EXPONENT:
+            raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
+        return Pow(base, exponent)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""

@@ -3,7 +3,9 @@ r"""Macros of packages that many documents load: ``\dv{x}{t}``, ``\norm{x}``, ``
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
 
 _OTHER_NAMES = {"cross": "times", "vdot": "cdot", "dotproduct": "cdot", "crossproduct": "times", "grad": "nabla"}
@@ -20,7 +22,11 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         token = found[i]
         i += 1
         name = token.text if token.kind == "macro" else ""
-        if name == "arg" and i < len(found) and found[i].text in ("min", "max"):
+        if name in ("boldsymbol", "bm") and i < len(found) and found[i].kind == "open":
+            end = group_end(found, i)
+            done += _bold(token, found[i + 1 : end - 1])
+            i = end
+        elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
             done.append(Token("macro", f"arg{found[i].text}", token.at))
             i += 1
         elif name in _OTHER_NAMES:
@@ -41,6 +47,32 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         else:
             done.append(token)
     return done
+
+
+def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:
+    """What is set bold, letter by letter where it is a formula and not one letter with what it wears."""
+    letters = [k for k, t in enumerate(inside) if t.kind == "letter" and (not k or inside[k - 1].text not in "^_{")]
+    greek = [k for k, t in enumerate(inside) if t.kind == "macro" and t.text in GREEK]
+    signs = any(t.kind == "sign" and t.text in "=+-()^" for t in inside)
+    if len(letters) + len(greek) < 2 and not signs:
+        return [macro, _brace(True, macro.at), *inside, _brace(False, macro.at)]
+    done: list[Token] = []
+    for k, token in enumerate(inside):
+        alone = token.kind == "letter" or (token.kind == "macro" and token.text in GREEK)
+        script = k > 0 and (inside[k - 1].text in "^_" or _within_script(inside, k))
+        at = token.at
+        done += [replace(macro, at=at), _brace(True, at), token, _brace(False, at)] if alone and not script else [token]
+    return done
+
+
+def _within_script(inside: Sequence[Token], k: int) -> bool:
+    """Whether a token stands in an index or an exponent."""
+    depth = 0
+    for place in range(k - 1, -1, -1):
+        depth += (inside[place].kind == "close") - (inside[place].kind == "open")
+        if depth < 0:
+            return place > 0 and inside[place - 1].text in ("^", "_")
+    return False
 
 
 def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:

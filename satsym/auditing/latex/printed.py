@@ -69,6 +69,8 @@ class LetterCursor(Cursor):
         """Whether a delta in front of a letter is a sign of variation: of two letters behind it, it is a factor."""
         if sign.text not in ("delta", "Delta"):
             return False
+        if token.kind == "letter" and self._is("(", 1):
+            raise Unread("a difference of what is taken somewhere, or a factor", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"
@@ -110,8 +112,12 @@ class LetterCursor(Cursor):
             else:
                 return letter
 
+    _may_have_index = False
+    """Whether the letter that is read is another one than the base of exponentials."""
+
     def _marked(self, letter: Letter) -> str:
-        self._bold = letter.style == "vector"
+        self._may_have_index = letter.base != "e"
+        self._bold = bool(letter.style)
         try:
             return self._mark()
         finally:
@@ -147,6 +153,8 @@ class LetterCursor(Cursor):
         upright = (
             bool(script) and script[0].kind == "macro" and script[0].text in UPRIGHT and script[0].text != "mathsf"
         )
+        if len(script) == 1 and script[0].text in "01" and self._may_have_index:
+            return f"upper_{script[0].text}"  # no power
         if len(script) == 1 and script[0].text in STARS:
             return "star"
         if len(script) == 1 and script[0].text == "circ":
@@ -160,7 +168,7 @@ class LetterCursor(Cursor):
         if word.startswith("(") and word.endswith(")") and cleaned(word):
             return f"upper_{cleaned(word)}"
         if self._bold and not word.isdigit() and word not in TRANSPOSED and (said := cleaned(self._said(script))):
-            return said  # a vector has no powers
+            return said  # a vector, or a set, has no powers
         self._i, self._found = begin, found
         return ""
 
@@ -215,13 +223,14 @@ class LetterCursor(Cursor):
             return ()
         places = split(inside, lambda t: t.text in ",;")
         letters = [self._place(place) for place in places]
-        bare = [at for at in letters if at and (len(places) > 1 or not at.dots)]
+        bare = [at for at in letters if at and (len(places) > 1 or not (at.dots or "prime" in at.marks))]
         fixed = words in AT_A_TIME or (len(places) == 1 and bool(bare) and bool(bare[0].index))
         number = len(inside) == 1 and inside[0].kind == "number"
         known = self._reading.known.get(letter.name, set())
         sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
         if not sure and not self._is_shift(letter, inside):
-            if self._is_product(inside) and not self._is_factor(letter, inside):
+            barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
+            if barred or letter.style == "cal" or (self._is_product(inside) and not self._is_factor(letter, inside)):
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
             return ()

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
 from satsym.auditing.latex.words import CONNECTIVES, OPTIMA, SAID, SIGNS, SKIPPED_GROUPS, SPACES, UNITS, UPRIGHT
 
@@ -30,14 +31,23 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             i -= 1
         elif token.kind == "macro" and token.text == "ensuremath":
             continue
+        elif token.kind == "macro" and token.text == "\\" and (end := _height(found, i)):
+            kept.append(token)
+            i = end
         elif token.kind == "macro" and token.text in _BRACKETS:
             kept.append(Token("sign", _BRACKETS[token.text], token.at))
             depth += 1 if token.text.startswith("l") else -1
+        elif token.kind == "macro" and token.text in ("intertext", "shortintertext") and i < len(found):
+            kept.append(replace(token, text="\\"))
+            i = group_end(found, i)
+        elif token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
+            end = group_end(found, i - 1)
+            found = [*found[:i], *found[i : end - 1], *found[end:]]
         elif token.kind == "open" and i + 1 < len(found) and found[i].text in SIGNS and found[i + 1].kind == "close":
             kept.append(found[i])  # a sign in a group of its own
             i += 2
         elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
-            if token.text == "hspace":  # parts equations, as a wide space does
+            if token.text == "hspace" and not _is_narrow(found, i):  # parts equations, as a wide space does
                 kept.append(replace(token, text="quad"))
             i += 1 if i < len(found) and found[i].text == "*" else 0
             i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
@@ -57,18 +67,61 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             kept.append(replace(token, text=REMARK))
         elif token.kind == "macro" and token.text in CONNECTIVES and not depth:
             kept.append(replace(token, text=REMARK))
+        elif token.kind == "sign" and kept and _is_doubled(kept[-1], token):
+            kept[-1] = Token("macro", {"|": "|", "<": "ll", ">": "gg"}[token.text], kept[-1].at)
+        elif token.kind == "macro" and token.text == "_":
+            kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
         else:
             depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
             kept.append(token)
     return kept
 
 
+def _is_doubled(before: Token, token: Token) -> bool:
+    """Whether a sign is printed twice for another one: bars of a norm, much less, much greater."""
+    return before.kind == "sign" and before.text == token.text in "|<>" and before.at == token.at - 1
+
+
+def _is_bracket(found: Sequence[Token], i: int) -> bool:
+    """Whether a group is a bracket and nothing else."""
+    end = group_end(found, i)
+    depth = 0
+    for place in range(i + 1, end - 1):
+        depth += (found[place].text == "(") - (found[place].text == ")")
+        if depth <= 0 and place < end - 2:
+            return False
+    return end - i > 3 and depth == 0
+
+
+def _stands_free(kept: Sequence[Token]) -> bool:
+    """Whether what follows is no argument, and no index."""
+    if not kept or kept[-1].text in GREEK:
+        return True
+    return kept[-1].kind not in ("macro", "close", "begin") and kept[-1].text not in "^_"
+
+
+def _is_narrow(found: Sequence[Token], i: int) -> bool:
+    """Whether a space is none, or goes back."""
+    inside = found[i + 1 : group_end(found, i)]
+    return bool(inside) and (inside[0].text == "-" or inside[0].text.strip("0.") == "")
+
+
+def _height(found: Sequence[Token], i: int) -> int:
+    """The place behind the height that is printed in brackets behind the end of a line; 0 where none is."""
+    if i >= len(found) or found[i].text != "[":
+        return 0
+    end = next((k for k in range(i, min(i + 8, len(found))) if found[k].text == "]"), i)
+    inside = [t for t in found[i + 1 : end] if t.text != "-"]
+    unit = "".join(t.text for t in inside[1:])
+    return end + 1 if inside and inside[0].kind == "number" and unit in ("em", "ex", "pt", "mm", "cm") else 0
+
+
 def _underset(found: Sequence[Token], i: int) -> list[Token]:
     """What is minimised over what stands below, as an index of the word; empty for other words."""
     end = group_end(found, i)
-    if end >= len(found) or found[i].kind != "open" or found[end].kind != "open":
+    if end >= len(found) or found[i].kind != "open":
         return []
-    above = found[end + 1 : group_end(found, end) - 1]
+    above = found[end : group_end(found, end)]
     word = "".join(t.text for t in above if t.kind == "letter" or t.text in OPTIMA)
     if word.removeprefix("operatorname") not in OPTIMA:
         return []

@@ -39,7 +39,7 @@ def lines(found: Sequence[Token]) -> list[Line]:
     done: list[Line] = []
     begun: dict[int, Line] = {}
     for place, row in _rows(found):
-        for piece in (piece for part in _equations(row) for piece in _at_commas(part)):
+        for piece in (piece for part in _equations(row) for piece in _at_commas(_at_colons(part))):
             line = _sides(piece)
             if not any(line.sides):
                 continue
@@ -137,7 +137,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 if broken or (i < len(found) and found[i].text == "+"):
                     continue
                 rows[-1].append(replace(token, text="quad"))  # parts the entries of a row
-            elif not inside and depth == 0 and token.text != " " and not _asks(rows[-1]):
+            elif not inside and depth == 0 and token.text != " " and not _asks(rows[-1]) and not _goes_on(rows[-1]):
                 rows.append([])
         else:
             broken = False
@@ -215,7 +215,11 @@ def _is_system(found: Sequence[Token], i: int, name: str, before: Sequence[Token
 
 def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     """Relations between which commas stand; ends of sentences are left out, lists stay together."""
-    parts = split(found, lambda token: token.kind == "sign" and token.text in ",;")
+    parts = [
+        piece
+        for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
+        for piece in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+    ]
     for before, after in pairwise(part for part in parts if part):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
@@ -241,6 +245,26 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         else:
             raise Unread("a comma has no meaning here", _between(found, kept))
     return done
+
+
+def _at_colons(found: Sequence[Token]) -> list[Token]:
+    """Relations, with semicolons for the colons between them."""
+    part = list(found)
+    for k in range(1, len(part) - 1):
+        colon = part[k].kind == "sign" and part[k].text == ":" and not _sign(part[k - 1]) and not _sign(part[k + 1])
+        if colon and _has_relation(part[:k]) and _has_relation(part[k:]):
+            part[k] = Token("sign", ";", part[k].at)
+    return part
+
+
+def _unbracketed(part: list[Token]) -> list[Token]:
+    """A relation without the brackets that stand around all of it."""
+    depth = 0
+    for place, token in enumerate(part):
+        depth += (token.text == "(") - (token.text == ")")
+        if depth <= 0 and place < len(part) - 1:
+            return part
+    return part[1:-1] if part and depth == 0 and _has_relation(part[1:-1]) else part
 
 
 def _goes_on_as_list(relation: Sequence[Token], later: Sequence[Sequence[Token]]) -> bool:

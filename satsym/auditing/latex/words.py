@@ -24,7 +24,7 @@ FUNCTIONS = {
 ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
 MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
 MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
-STYLES = dict.fromkeys("mathbf boldsymbol bm vec pmb overrightarrow bf".split(), "vector")
+STYLES = dict.fromkeys("mathbf boldsymbol bm vec pmb overrightarrow bf textbf".split(), "vector")
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb".split(), "cal")
 UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
 SPACES = frozenset(
@@ -34,7 +34,7 @@ SPACES = frozenset(
     "vcentcolon IEEEyessubnumber IEEEyesnumber".split()
 ) | {" "}
 SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom color eqno cite".split())
-KEPT_GROUPS = frozenset("boxed underbrace overbrace mathord mathop mathrel smash".split())
+KEPT_GROUPS = frozenset("boxed underbrace overbrace underbracket overbracket mathord mathop mathrel smash".split())
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
 SIGNS = TIMES | frozenset(("+", "-", "=", "otimes"))
