@@ -124,6 +124,24 @@ def test_several_equations_are_judged_one_by_one(run: Run) -> None:
     assert "wrong: the sign of u_1 is reversed" in out
 
 
+@pytest.mark.parametrize(
+    ("formula", "verdict", "address"),
+    [
+        (r"\lambda_r(t_f) = k_1(r(t_f) - \sigma)", "right", "boundary_conditions.lambda_r"),
+        (r"\lambda_r(t_f) = -k_1(r(t_f) - \sigma)", "wrong", "boundary_conditions.lambda_r"),
+        (r"\lambda_r(0) = k_1(r(0) - \sigma)", "undecided", ""),  # what holds at the end alone
+        ("r(0) = r_0", "right", "boundary_conditions.r"),
+        ("r(t_f) = r_0", "undecided", ""),  # what holds at the beginning alone
+        (r"r(t) = r(0)\cos\omega t", "undecided", ""),  # about two times
+        (r"0 \le r", "undecided", ""),
+    ],
+)
+def test_what_is_said_of_one_end_is_held_against_the_conditions_there(formula: str, verdict: str, address: str) -> None:
+    found = satsym.check(formula, "polar_orbit")
+    assert found.verdict == verdict
+    assert not address or found.address == f"polar_orbit:{address}"
+
+
 @pytest.mark.parametrize(("entry", "verdict"), [("-n^2", "right"), ("n^2", "wrong")])
 def test_matrices_are_compared_entry_by_entry(entry: str, verdict: str) -> None:
     rows = [

@@ -94,6 +94,32 @@ def test_displays_of_myst_have_their_labels_as_items(tmp_path: Path) -> None:
     assert found == [("out", "out", r"\ddot z = -n^2 z", ("out",)), ("line 11", "", r"\dot z = 0", ("out",))]
 
 
+def test_no_display_of_markdown_is_lost_and_no_bracket_is_one(tmp_path: Path) -> None:
+    path = tmp_path / "notes.md"
+    blocks = [f"```{{math}}\nx_{k} &= {k} \\\\ &= {k}\n```\n" for k in range(4)]
+    listed = "1. So\n\n   ```math\n   y = 1\n   ```\n"
+    path.write_text("\n".join([*blocks, listed, "| mass \\[kg\\] | 3 |\n", "> $$z =\n> 2$$\n"]))
+    found = [(d.text.split()[0], d.columns) for d in displays.displays(displays.read(path))]
+    assert found == [*((f"x_{k}", "split") for k in range(4)), ("y", ""), ("z", "")]
+    assert "kg" not in "".join(d.text for d in displays.displays(displays.read(path)))
+    assert all(">" not in d.text for d in displays.displays(displays.read(path)))
+
+
+@pytest.mark.parametrize(
+    ("body", "texts"),
+    [
+        (r"J &= \sum_{k=0}^N \\ & (a_k + b)", 1),
+        (r"& -1 \le u \\ & -2 \le v", 2),
+        (r"a &= b \\ &- c", 1),
+        (r"a &= b \\ & c = d", 2),
+    ],
+)
+def test_lines_that_go_on_are_one_display(tmp_path: Path, body: str, texts: int) -> None:
+    path = tmp_path / "paper.tex"
+    path.write_text(rf"\begin{{align}} {body} \end{{align}}")
+    assert len(list(displays.displays(displays.read(path)))) == texts
+
+
 def test_markdown_is_read_too(tmp_path: Path) -> None:
     path = tmp_path / "notes.md"
     path.write_text("# Hill\n\n$$\\ddot z = n^2 z$$\n\n```\n$$not = this$$\n```\n\nand `$$nor = that$$`\n")

@@ -47,7 +47,12 @@ def capitals(found: Sequence[Token]) -> list[str]:
 
 
 def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
-    """Refuse what is defined where capitals side by side are: a name, or a product."""
+    """Refuse what is a name or a product: capitals side by side that are defined, or in front of a number: SO(3)."""
+    for part in line:
+        for first, last in _runs(part):
+            name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
+            if name.isupper() and [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "(":
+                raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):

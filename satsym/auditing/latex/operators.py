@@ -240,7 +240,9 @@ class OperatorCursor(QuotientCursor):
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Whether a bracket holds one letter, and one stands in front of it, as in an expectation."""
         inside = self._found[begin + 1 : self._i - 1]
-        letter = self._letter_in(inside) or (self._of(inside)._letter() if self._is_taken(inside) else None)
+        if self._is_taken(inside):
+            return begin > 0 and self._found[begin - 1].kind in ("letter", "close")
+        letter = self._letter_in(inside)
         alone = letter is not None and letter == letter.plain and not letter.dots
         return alone and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
 

@@ -53,7 +53,7 @@ def lines(found: Sequence[Token]) -> list[Line]:
             if before is not None and not line.sides[0]:  # a line that begins with a sign of relation
                 before.sides += line.sides[1:]
                 before.signs += line.signs
-            elif before is not None and signed and (line.bare or before.bare):
+            elif before is not None and signed and (line.bare or before.bare or line.sides[0][0].text == "+"):
                 before.sides[-1] += line.sides[0]
                 before.sides += line.sides[1:]
                 before.signs += line.signs
@@ -157,7 +157,8 @@ def _goes_on(row: Sequence[Token]) -> bool:
     last = row[-1] if row else None
     if last is None:
         return False
-    if (last.kind == "sign" and last.text in "+-") or bool(_sign(last)):
+    index = len(row) > 1 and row[-2].text in ("^", "_")
+    if not index and ((last.kind == "sign" and last.text in "+-") or _sign(last)):
         return True
     k = max((k for k, token in enumerate(row) if token.kind == "macro" and token.text in ("sum", "int")), default=-1)
     end = k + 1
