@@ -34,6 +34,11 @@ _DISPLAY = re.compile(
     r"^[ \t]*(?P=rail)[ \t]*$",
     re.DOTALL | re.MULTILINE,
 )
+_OPENING = re.compile(
+    rf"(?P<env>\\begin\{{((?:{_NUMBERED})\*?|displaymath|math)\}})|(?P<brackets>\\\[)|(?P<dollars>(?<!\\)\$\$)"
+    r"|^[ \t]*(?P<fence>```+|:::+) *\{?math",
+    re.MULTILINE,
+)
 _SECTION = re.compile(
     r"\\(chapter|section|subsection)(\*?)\s*\{([^{}\n]{0,200})|^(#{1,3}) +([^\n]{1,200})$", re.MULTILINE
 )
@@ -53,6 +58,8 @@ _OPEN_END = re.compile(
 """A line that asks for more."""
 _RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
 _GROUP = re.compile(r"\{[^{}]*\}")
+_INDENT = 80
+"""Characters of a line that are looked at in front of brackets, which are escaped in Markdown where others stand there."""
 _NEAR_CHARACTERS = 400
 """Characters before a display in which what it refers to is looked for."""
 
@@ -114,9 +121,7 @@ def displays(source: Source) -> Iterator[Display]:
     counted, heading = 0, ""
     seen: set[str] = set()
     markdown = source.path.suffix.lower() in _MARKDOWN
-    for found, match in enumerate(_DISPLAY.finditer(text)):
-        if markdown and match["brackets"] is not None and text[: match.start()].rpartition("\n")[2].strip():
-            continue  # brackets that are escaped
+    for found, match in enumerate(_blocks(text, markdown)):
         if found >= MOST_DISPLAYS:
             raise BadInput(f"{source.place(match.start())}: more than {MOST_DISPLAYS} displays; split the document")
         kind = match.lastgroup if match["env"] is None else "body"
@@ -155,6 +160,28 @@ def displays(source: Source) -> Iterator[Display]:
                 refers,
                 _columns(match["env"]) or ("split" if kind == "fence" and "&" in row else ""),
             )
+
+
+def _blocks(text: str, markdown: bool) -> Iterator[re.Match[str]]:
+    """The displays of a text as matches; time is linear in its length, also where nothing is closed."""
+    nearest: dict[str, int] = {}
+    position = 0
+    while opening := _OPENING.search(text, position):
+        position, kind = opening.end(), opening.lastgroup or ""
+        closing = {
+            "env": re.escape(opening[0].replace("begin", "end", 1)),
+            "brackets": r"\\\]",
+            "dollars": r"(?<!\\)\$\$",
+            "fence": rf"(?m:^[ \t]*{opening['fence']}[ \t]*$)",
+        }[kind]
+        if nearest.get(closing, -1) < position:
+            found = re.compile(closing).search(text, position)
+            nearest[closing] = found.start() if found else len(text)
+        before = text[max(0, opening.start() - _INDENT) : opening.start()].rpartition("\n")[2]
+        escaped = markdown and kind == "brackets" and before.strip()
+        if nearest[closing] < len(text) and not escaped and (match := _DISPLAY.match(text, opening.start())):
+            yield match
+            position = match.end()
 
 
 def _columns(environment: str | None) -> str:

@@ -217,6 +217,8 @@ class LetterCursor(Cursor):
             return ()
         end = self._bracket_end()
         inside = list(self._found[begin + 1 : end])
+        if not inside:
+            raise Unread("an empty bracket", self._found[begin].at)
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
         timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
         if timed or words in (".", "cdot"):

@@ -30,7 +30,8 @@ class RefusalCursor(OperatorCursor):
             return False
         if isinstance(last, Num) or last == Sym("pi"):
             return True
-        stem = self._reading.letters[last.name].base if isinstance(last, Sym) else ""
+        letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
+        stem = letter.base if letter is not None else ""
         time = token.text in words.TIMES_OF_ANGLES
         if self._plain:
             return time or (stem in FREQUENCIES and token.text in words.PLACES)
