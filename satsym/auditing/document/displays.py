@@ -59,7 +59,7 @@ _OPEN_END = re.compile(
 _RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
 _GROUP = re.compile(r"\{[^{}]*\}")
 _INDENT = 80
-"""Characters of a line that are looked at in front of brackets, which are escaped in Markdown where others stand there."""
+"""Characters that are looked at in front of brackets: in Markdown they are escaped where others stand in the line."""
 _NEAR_CHARACTERS = 400
 """Characters before a display in which what it refers to is looked for."""
 
