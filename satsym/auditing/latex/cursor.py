@@ -58,6 +58,34 @@ class Cursor(ABC):
     def _inner(self, part: Sequence[Token], at: int) -> Node:
         """What a part is, read as a whole."""
 
+    @abstractmethod
+    def _sum(self) -> Node:
+        """Read the sum that is next."""
+
+    @abstractmethod
+    def _product(self, argument: bool = False) -> Node:
+        """Read the term that is next."""
+
+    @abstractmethod
+    def _factor(self) -> Node:
+        """Read the factor that is next."""
+
+    @abstractmethod
+    def _signed_factor(self) -> Node:
+        """Read the factor that is next, which may have a sign."""
+
+    @abstractmethod
+    def _bracket(self) -> Node:
+        """Read what stands in the bracket that is next."""
+
+    @abstractmethod
+    def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
+        """Read values with their conditions."""
+
+    @abstractmethod
+    def _begins_factor(self, token: Token) -> bool:
+        """Tell whether a factor begins with a token."""
+
     def _peek(self, ahead: int = 0) -> Token | None:
         place = self._i + ahead
         return self._found[place] if place < len(self._found) else None

@@ -167,9 +167,6 @@ class Parser(EnclosedCursor):
                 break
         return product_of(chain)
 
-    def _is_function(self, token: Token) -> bool:
-        return token.kind in ("macro", "word") and token.text in FUNCTIONS and token.text != "d"
-
     def _signed_factor(self) -> Node:
         if self._is("-") or self._is("+"):
             negative = self._take().text == "-"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -21,26 +20,6 @@ from satsym.wording import printable
 class OperatorCursor(QuotientCursor):
     """Reads what is applied to the terms behind it."""
 
-    @abstractmethod
-    def _product(self, argument: bool = False) -> Node:
-        """Read the term that is next."""
-
-    @abstractmethod
-    def _factor(self) -> Node:
-        """Read the factor that is next."""
-
-    @abstractmethod
-    def _signed_factor(self) -> Node:
-        """Read the factor that is next, which may have a sign."""
-
-    @abstractmethod
-    def _begins_factor(self, token: Token) -> bool:
-        """Tell whether a factor begins with a token."""
-
-    @abstractmethod
-    def _inner(self, part: Sequence[Token], at: int) -> Node:
-        """Read some tokens by themselves."""
-
     _bare_end = -1
     """Where what a function is taken of ended, if it stands without brackets."""
 
@@ -55,14 +34,6 @@ class OperatorCursor(QuotientCursor):
             return Num(Fraction(inside[0].text))
         self._i, self._found = begin, found
         return None
-
-    @abstractmethod
-    def _sum(self) -> Node:
-        """Read the sum that is next."""
-
-    @abstractmethod
-    def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
-        """Read values with their conditions."""
 
     def _gradient(self, token: Token) -> Node:
         """A gradient: what it is of, and by which letter, where that is printed."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -14,14 +13,6 @@ from satsym.formula.tree import Call, Mul, Node, Sym, constant
 
 class QuotientCursor(LetterCursor):
     """Reads derivatives."""
-
-    @abstractmethod
-    def _bracket(self) -> Node:
-        """What stands in the bracket that is next."""
-
-    @abstractmethod
-    def _product(self) -> Node:
-        """The term that is next."""
 
     def _derivative(self, token: Token) -> Node | None:
         """A derivative that is printed as a quotient; ``None``, with nothing taken, where none is next."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -18,9 +17,8 @@ from satsym.wording import printable
 class RefusalCursor(OperatorCursor):
     """Refuses at its place what the grammar does not read."""
 
-    @abstractmethod
     def _is_function(self, token: Token) -> bool:
-        """Tell whether a token is the name of a function."""
+        return token.kind in ("macro", "word") and token.text in FUNCTIONS and token.text != "d"
 
     def _continues_argument(self, token: Token, last: Node) -> bool:
         r"""Whether what a function is taken of goes on: ``2\theta``, ``\omega t``, ``kx``; not ``\theta v``."""
