@@ -87,6 +87,20 @@ def written(pictures: dict[str, Content]) -> dict[str, bytes]:
     return {name: stream.getvalue() for name, stream in streams.items()}
 
 
+def test_names_of_clip_paths_do_not_depend_on_digits_that_are_not_written() -> None:
+    """What a path is clipped by stays; paths that are clipped alike have one name, others have others."""
+    square = '<clipPath id="p{}"><rect x="{}" y="2.000000" width="3.000000" height="4.000000"/></clipPath>'
+    drawn = '<path clip-path="url(#p{})"/>'
+    once, again, moved = (
+        style.clips_named((square.format(name, x) + drawn.format(name)).encode())
+        for name, x in (("1a", "1.000000"), ("2b", "1.000000"), ("1a", "1.000001"))
+    )
+    assert once == again != moved
+    name = re.search(rb'id="(\w+)"', once)
+    assert name
+    assert once.endswith(b'<path clip-path="url(#' + name[1] + b')"/>')
+
+
 @pytest.mark.slow
 def test_a_page_without_title_has_none_is_the_same_when_drawn_again_and_leaves_no_style_behind() -> None:
     from satsym import instance

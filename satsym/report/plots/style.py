@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import textwrap
@@ -369,4 +370,21 @@ def rendered(page: Figure, kind: str) -> bytes:
         page.set_layout_engine("none")
     content = io.BytesIO()
     page.savefig(content, format=kind, metadata=_UNDATED.get(kind, {}))
-    return content.getvalue()
+    return clips_named(content.getvalue()) if kind == "svg" else content.getvalue()
+
+
+_CLIP = re.compile(rb'<clipPath id="(\w+)">(.*?)</clipPath>', re.DOTALL)
+
+
+def clips_named(svg: bytes) -> bytes:
+    """A picture whose clip paths are named after their coordinates as they are written.
+
+    Matplotlib names them after all digits, the last of which depend on where in memory the layout's variables lie.
+    """
+    names = {
+        old: b"p" + hashlib.blake2b(inside, digest_size=5).hexdigest().encode() for old, inside in _CLIP.findall(svg)
+    }
+    if not names:
+        return svg
+    known = re.compile(rb'((?:id="|url\(#))(' + b"|".join(names) + rb")(?=[\")])")
+    return known.sub(lambda found: found[1] + names[found[2]], svg)
