@@ -19,9 +19,7 @@ extensions = [
     "accessible",
     "formulas",
     "reference",
-    "gallery",
-    "figures",
-    "notebooks",
+    "work",
 ]
 exclude_patterns = ["_build", "_ext"]
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -142,7 +142,12 @@ FIGURES: dict[str, Callable[[], str]] = {
 }
 
 
-def _write(app: Sphinx) -> None:
+def _keep(name: str, folder: Path) -> None:
+    (folder / f"{name}.svg").write_text(themed(FIGURES[name]()), "utf-8")
+
+
+def begin(app: Sphinx, work: Any) -> None:
+    """Draw the figures that are not kept."""
     from satsym import source_files
 
     folder = Path(app.srcdir, "_static", "figures")
@@ -152,12 +157,4 @@ def _write(app: Sphinx) -> None:
     kept = folder / "key"
     if kept.is_file() and kept.read_text("utf-8") == key:
         return
-    for name, drawn in FIGURES.items():
-        (folder / f"{name}.svg").write_text(themed(drawn()), "utf-8")
-    kept.write_text(key, "utf-8")
-
-
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the extension with Sphinx."""
-    app.connect("builder-inited", _write)
-    return {"parallel_read_safe": True}
+    work.begin([(_keep, (name, folder)) for name in FIGURES], lambda _: kept.write_text(key, "utf-8"))

@@ -4,19 +4,22 @@ What a page shows is what the command line prints and draws. It is kept until th
 change.
 """
 
+import hashlib
 import io
 import json
 import os
 import re
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import redirect_stdout
 from html import escape
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
+import cards
 from sphinx.application import Sphinx
+
+from satsym.report.display import raised
 
 COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\})"
 """What a style sheet of a page begins with."""
@@ -39,6 +42,9 @@ WHOLE = 110
 """Characters of LaTeX beyond which an equation is left to the derivation."""
 EQUATIONS = 12
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
+OWN = hashlib.blake2b(b"".join(Path(one).read_bytes() for one in (__file__, cards.__file__))).hexdigest()
+"""Digest of what writes the pages."""
+DRAWN = "--format svg --size page --no-title".split()
 KEPT = "SATSYM_DOCS_KEPT"
 """Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
 TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
@@ -51,23 +57,25 @@ def command_of(name: str, has_cost: bool) -> str:
     return next(asked, "solve" if has_cost else "simulate")
 
 
-def shown(name: str, folder: Path) -> dict[str, str]:
-    """What the page says of an instance; its picture is written into the folder."""
+def shown(name: str, folder: Path) -> dict[str, Any]:
+    """What the page says of an instance; its pictures are written into the folder."""
     from satsym import instance, source_files
 
     case = instance.load(name)
     command = command_of(name, case.model.spec.has_cost)
-    key = f"{command} {source_files.digest(list(CODE))} {source_files.digest_of(case.path)}"
-    said, picture = folder / f"{name}.json", folder / f"{name}.svg"
-    if said.is_file() and picture.is_file():
+    key = f"{command} {source_files.digest(list(CODE))} {OWN} {source_files.digest_of(case.path)}"
+    said = folder / f"{name}.json"
+    if said.is_file():
         known = json.loads(said.read_text("utf-8"))
         if known["key"] == key or os.environ.get(KEPT):
             return known
     with TemporaryDirectory() as out:
-        text = printed([command, name, "--plot", "--format", "svg", "--size", "page", "--no-title", "--out", out])
-        drawn = sorted(Path(out).glob("*.svg"), key=lambda path: path.stem != "overview")
-        picture.write_text(themed(drawn[0].read_text("utf-8")) if drawn else "", "utf-8")
+        motion = command in ("solve", "simulate")
+        text = printed([command, name, "--out", out, *(() if motion else ("--plot", *DRAWN))])
+        pictures = cards.of_motion(case, Path(out)) if motion else cards.written(case, Path(out))
         result = json.loads(Path(out, "result.json").read_text("utf-8"))
+    for part, svg in pictures.items():
+        (folder / f"{name}{part}.svg").write_text(themed(svg), "utf-8")
     known = {
         "key": key,
         "name": name,
@@ -78,6 +86,7 @@ def shown(name: str, folder: Path) -> dict[str, str]:
         "text": text,
         "verdict": verdict(result),
         "file": case.path.read_text("utf-8").strip(),
+        "pictures": [part for part in pictures if part != cards.CARD],
     }
     said.write_text(json.dumps(known), "utf-8")
     return known
@@ -128,7 +137,7 @@ def equations(model: str, generated: Path) -> list[str]:
     return short if len(short) == len(kept) <= EQUATIONS else []
 
 
-def page(known: dict[str, str], root: Path) -> str:
+def page(known: dict[str, Any], root: Path) -> str:
     """The page of one instance."""
     name, model = known["name"], known["model"]
     motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
@@ -138,9 +147,9 @@ def page(known: dict[str, str], root: Path) -> str:
     call = python.get(known["command"], "found = satsym.analyse")
     code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
     parts = [
-        f"---\norphan: true\n---\n\n{WRITTEN}# {known['title'].replace('^2', '²')}\n",
+        f"---\norphan: true\n---\n\n{WRITTEN}# {raised(known['title'])}\n",
         "Back to the [gallery](../gallery.md).\n",
-        f"{picture(known, '../')}\n" if known["drawn"] else "",
+        *(f"{picture(known, part)}\n" for part in known["pictures"]),
         f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
         f"The instance `{name}` sets the numbers:\n\n```toml\n{known['file']}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
@@ -161,24 +170,26 @@ def about(source: Path) -> str:
     return re.sub(r"([*_<\[\]])", r"\\\1", said)
 
 
-def picture(known: dict[str, str], up: str = "") -> str:
-    """The element that shows it."""
-    name = known["name"]
-    image = f"<img src='{up}_static/gallery/{name}.svg' alt='Picture of {escape(known['title'])}' loading='lazy'>"
+def picture(known: dict[str, Any], part: str) -> str:
+    """The element that shows one of its pictures."""
+    name, title = known["name"], escape(raised(known["title"]))
+    said = f"Picture of {title}" if len(known["pictures"]) == 1 else f"{part[1:].capitalize()}: {title}"
+    image = f"<img src='../_static/gallery/{name}{part}.svg' alt='{said}' loading='lazy'>"
     return f"```{{raw}} html\n<figure class='example'>{image}</figure>\n```\n"
 
 
-def card(known: dict[str, str]) -> str:
+def card(known: dict[str, Any]) -> str:
     """An example in the overview."""
-    name, title = known["name"], escape(known["title"].replace("^2", "²"))
-    image = f"<img src='_static/gallery/{name}.svg' alt='' loading='lazy'>" if known["drawn"] else ""
+    name, title = known["name"], escape(raised(known["title"]))
+    shape = " class='tall'" if known["command"] == "compare" else ""
+    image = f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'{shape}>"
     return (
         f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"
         f"<p><code>{name}</code> {escape(known['verdict'])}</p></figure>"
     )
 
 
-def overview(every: dict[str, dict[str, str]]) -> Iterator[str]:
+def overview(every: dict[str, dict[str, Any]]) -> Iterator[str]:
     """The page of all, piece by piece."""
     from satsym.report.terminal.listing import INSTANCES, by_subject
 
@@ -189,34 +200,30 @@ def overview(every: dict[str, dict[str, str]]) -> Iterator[str]:
         yield "</div>\n```\n"
 
 
-def _write(app: Sphinx) -> None:
+def begin(app: Sphinx, work: Any) -> None:
+    """Solve and draw the instances that are not kept, and write their pages and the overview."""
     from satsym import instance
 
-    source, root = Path(app.srcdir), Path(app.srcdir).parent
+    source = Path(app.srcdir)
     folder, pages = source / "_static" / "gallery", source / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
     pages.mkdir(exist_ok=True)
     names = sorted(instance.shipped(), key=lambda name: LONGEST.index(name) if name in LONGEST else len(LONGEST))
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does: threads cost more than they save
-    with ProcessPoolExecutor(os.cpu_count() or 1, get_context("spawn")) as pool:
-        every = {known["name"]: known for known in pool.map(shown, names, [folder] * len(names))}
-    for name, known in every.items():
-        known["drawn"] = "yes" if (folder / f"{name}.svg").stat().st_size else ""
-        _put(pages / f"{name}.md", page(known, root))
-    for path in pages.glob("*.md"):
-        if path.stem not in every:
-            path.unlink()
-    _put(source / "gallery.md", "\n".join(overview(every)))
+
+    def done(found: list[dict[str, Any]]) -> None:
+        every = {known["name"]: known for known in found}
+        for name, known in every.items():
+            put(pages / f"{name}.md", page(known, source.parent))
+        for path in pages.glob("*.md"):
+            if path.stem not in every:
+                path.unlink()
+        put(source / "gallery.md", "\n".join(overview(every)))
+
+    work.begin([(shown, (name, folder)) for name in names], done)
 
 
-def _put(path: Path, text: str) -> None:
+def put(path: Path, text: str) -> None:
     """Write a file, unless it says so already."""
     text = text.rstrip() + "\n"
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
-
-
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the extension with Sphinx."""
-    app.connect("builder-inited", _write)
-    return {"parallel_read_safe": True}

@@ -8,13 +8,13 @@ from pathlib import Path
 from pprint import pformat
 from typing import Any
 
-from gallery import themed
+from gallery import put, themed
 from sphinx.application import Sphinx
 
 NOTEBOOKS = ("notebook", "notebook_class", "notebook_system", "notebook_study")
 
 
-def page(name: str, path: Path) -> str:
+def page(path: Path) -> str:
     """The page of a notebook, whose cells are executed in order."""
     cells = json.loads(path.read_text("utf-8"))["cells"]
     known: dict[str, object] = {}
@@ -64,15 +64,13 @@ def drawn(figure: Any) -> str:
     return f"```{{raw}} html\n<figure class='example' role='img' aria-label='{label}'>{svg}</figure>\n```"
 
 
-def _write(app: Sphinx) -> None:
-    for name in NOTEBOOKS:
-        text = page(name, Path(app.srcdir, f"{name}.ipynb"))
-        path = Path(app.srcdir, f"{name}.md")
-        if not path.is_file() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
+def begin(app: Sphinx, work: Any) -> None:
+    """Execute the notebooks."""
+    folder = Path(app.srcdir)
+    jobs = [(page, (folder / f"{name}.ipynb",)) for name in NOTEBOOKS]
 
+    def done(pages: list[str]) -> None:
+        for name, text in zip(NOTEBOOKS, pages, strict=True):
+            put(folder / f"{name}.md", text)
 
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the extension with Sphinx."""
-    app.connect("builder-inited", _write)
-    return {"parallel_read_safe": True}
+    work.begin(jobs, done)

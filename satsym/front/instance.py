@@ -192,7 +192,7 @@ def as_case(given: Instance | str | Path) -> Instance:
     if isinstance(given, str | Path):
         return load(given)
     raise BadInput(
-        f"{shown(given)} is not an instance; make one with Instance.of(model, initial=..., tf=...), or load(...) one"
+        f"{shown(given)} is not an instance; make one with Instance.of(model, initial=..., tf=...) or load(...)"
     )
 
 

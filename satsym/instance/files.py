@@ -120,7 +120,9 @@ def _repair(error: str) -> str:
     """What is wrong most often where a reader of TOML says so."""
     if error.startswith("Invalid value"):
         return 'put text into quotes, such as "free"'
-    return "correct it there; numbers have a point" if "end of document after" in error else "correct it there"
+    if "end of document after" in error:
+        return "correct it there; numbers are written with a decimal point"
+    return "correct it there"
 
 
 def _exists(path: Path) -> bool:

@@ -50,9 +50,14 @@ def plain(text: str) -> str:
 
 def unit_text(unit: str) -> str:
     """A unit as people write it: ``km/s**2`` as km/s², ``km/s/rad`` as km/(s·rad). Empty for a plain number."""
-    raised = _POWER.sub(lambda power: power[1].translate(_RAISED), "" if unit == "1" else unit).replace("*", "·")
-    above, *below = raised.split("/")
-    return f"{above}/({'·'.join(below)})" if len(below) > 1 else raised
+    written = raised("" if unit == "1" else unit).replace("*", "·")
+    above, *below = written.split("/")
+    return f"{above}/({'·'.join(below)})" if len(below) > 1 else written
+
+
+def raised(text: str) -> str:
+    """Text with its powers as people write them: ``4e-8 km/s^2`` as 4e-8 km/s²."""
+    return _POWER.sub(lambda power: power[1].translate(_RAISED), text)
 
 
 def labelled(symbol: str, unit: str) -> str:

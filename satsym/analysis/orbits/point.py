@@ -74,7 +74,7 @@ class Point:
             return found
         same = "calls the same orbit stable" if self.own_verdict == STABLE else "happens to say the same"
         return (
-            f"{found} In the model's own coordinates the eigenvalues at this point are others, and the rule {same}: "
+            f"{found} In the model's own coordinates the eigenvalues at this point are different, and the rule {same}: "
             "away from equilibria they depend on the choice of coordinates, and stability does not."
         )
 

@@ -30,7 +30,7 @@ In single quotes the shell leaves backslashes alone."""
     "model",
     metavar="NAME",
     required=True,
-    help="The model whose derivation it is held against: a shipped one, or DIR/NAME.",
+    help="The model whose derivation it is checked against: a shipped one, or DIR/NAME.",
     shell_complete=names.completed(names.models),
 )
 @click.option("--let", metavar="LETTER=NAME", multiple=True, help="What a printed letter means; may be repeated.")
@@ -39,7 +39,7 @@ In single quotes the shell leaves backslashes alone."""
 def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
     """Say whether a printed formula is right, and if not, what is wrong.
 
-    FORMULA is LaTeX or plain notation. It is held against every equation that satsym derives for the model, in any
+    FORMULA is LaTeX or plain notation. It is checked against every equation that satsym derives for the model, in any
     rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects it.
     Exit codes: 0 right, 5 wrong, 4 undecided.
     """

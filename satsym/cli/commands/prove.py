@@ -38,7 +38,7 @@ def prove(
     """Prove that the answer is a strict local minimum.
 
     X is a shipped instance or the path of a TOML file. It is solved; then ball arithmetic, whose every number carries a
-    bound of its error, proves that an extremal exists, that there is no other one near by, and that no motion near by
+    bound of its error, proves that an extremal exists, that there is no other one nearby, and that no nearby motion
     costs less.
     """
     from satsym import instance, solvers

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from satsym.proof.record import Enclosure, Outcome, Proof
@@ -86,10 +87,24 @@ def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
         [unit_text(cell) if name == say("unit") else decimal(cell) for name, cell in zip(header, row, strict=True)]
         for row in body
     ]
-    kept = [k for k, column in enumerate(zip(*body, strict=True)) if any(column)] if body else []
-    head = tag("tr", *(tag("th", header[k], scope="col") for k in kept))
-    lines = [tag("tr", *(tag("td", row[k]) if k else tag("th", row[k], scope="row") for k in kept)) for row in body]
+    columns = list(zip(*body, strict=True))
+    kept = [k for k, column in enumerate(columns) if any(column)]
+    look = {k: {"class_": "number"} if k and _numeric(columns[k]) else {} for k in kept}
+    head = tag("tr", *(tag("th", header[k], scope="col", **look[k]) for k in kept))
+    lines = [
+        tag("tr", *(tag("td", row[k], **look[k]) if k else tag("th", row[k], scope="row") for k in kept))
+        for row in body
+    ]
     return scrolled(tag("table", tag("caption", caption), tag("thead", head), tag("tbody", *lines), class_="facts"))
+
+
+_NUMBER = re.compile(r"[-\N{MINUS SIGN}]?\d[\d.,]*(e[-+]?\d+)?( %)?")
+
+
+def _numeric(column: Sequence[str]) -> bool:
+    """Whether a column has numbers, and at most single words beside them, such as ``free``."""
+    filled = [cell for cell in column if cell]
+    return any(map(_NUMBER.fullmatch, filled)) and all(" " not in cell or _NUMBER.fullmatch(cell) for cell in filled)
 
 
 def proof(found: Proof, texts: Texts) -> Markup:

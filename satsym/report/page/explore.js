@@ -46,7 +46,8 @@
 
   const layout = (more) => ({
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: 12 },
-    separators: `${decimal} `, showlegend: false, hovermode: "closest", dragmode: "pan", ...more,
+    separators: `${decimal} `, showlegend: false, hovermode: "closest", dragmode: "pan",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: faint, activecolor: ink }, ...more,
   });
   const axis = (more) => ({ gridcolor: line, zerolinecolor: line, linecolor: line, exponentformat: "power", minexponent: 5, ...more });
   const curve = (rows, name, look, mode = "lines") => ({
@@ -182,7 +183,7 @@
     let k = 0;
     columns.forEach((column, c) => column.forEach((panel, r) => {
       const id = k++ ? String(k) : "";
-      const from = columns.length > 1 ? [[0, 0.46], [0.54, 1]][c] : [0, 1];
+      const from = columns.length > 1 ? [[0, 0.44], [0.56, 1]][c] : [0, 1];
       const top = 1 - r / column.length, bottom = 1 - (r + 1) / column.length;
       const last = r === column.length - 1;
       axes[`xaxis${id}`] = axis({ domain: from, anchor: `y${id}`, range: span, ...(k > 1 ? { matches: "x" } : {}), showticklabels: last, title: last ? { text: current.time, standoff: 4 } : undefined });
@@ -210,8 +211,9 @@
   const now = () => place(time);
   const tell = () => {
     const there = now();
-    stated.textContent = `${number(time)}`;
-    slider.setAttribute("aria-valuetext", number(time));
+    const unit = /\[(.*)\]/.exec(current.time)?.[1] ?? "";
+    stated.textContent = `${number(time)} ${unit}`.trim();
+    slider.setAttribute("aria-valuetext", stated.textContent);
     reading.querySelectorAll("td[data-panel]").forEach((cell) => {
       const panel = current.panels[cell.dataset.panel];
       cell.textContent = number(at(panel.values, there), Math.max(Math.abs(panel.low), Math.abs(panel.high)));
@@ -243,14 +245,16 @@
     updates = [];
     scenesHome.querySelectorAll(".scene-plot").forEach((home) => Plotly.purge(home));
     scenesHome.replaceChildren();
-    for (const scene of current.scenes) {
+    // all places are made before anything is drawn, for a picture is as wide as its place when it is drawn
+    const homes = current.scenes.map((scene) => {
       const figure = document.createElement("figure"), home = document.createElement("div"), caption = document.createElement("figcaption");
       home.className = "scene-plot";
       caption.textContent = scene.title + (scene.magnified ? `, ${words.magnified.replace("<times>", scene.magnified)}` : "");
       figure.append(home, caption);
       scenesHome.append(figure);
-      (scene.kind === "attitude" ? drawAttitude : drawPath)(home, scene);
-    }
+      return home;
+    });
+    current.scenes.forEach((scene, k) => (scene.kind === "attitude" ? drawAttitude : drawPath)(homes[k], scene));
     Plotly.purge(panelsHome);
     drawPanels();
     const body = document.createElement("tbody");

@@ -72,7 +72,8 @@ def motion(scene: Scene, texts: Texts) -> Markup:
 
 def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more: str) -> Markup:
     """The picture with a way to stop it, and what it shows."""
-    span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit_text(scene.time_unit)}".strip()
+    unit = unit_text(scene.time_unit) or texts.get("page", "units_of_time")
+    span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit}"
     return tag(
         "figure",
         tag("input", type="checkbox", id="pause"),

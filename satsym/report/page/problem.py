@@ -49,7 +49,7 @@ def problem(instance: Instance, statement: Derived | None, values: Sequence[str]
 def _conditions(instance: Instance, texts: Texts) -> list[tuple[str, ...]]:
     """Below a header, a row for each state: where it begins and where it is to end."""
     rows: list[tuple[str, ...]] = [
-        (say("state"), say("initial"), say("final"), say("unit"), texts.get("words", "meaning"))
+        (say("state"), say("initial"), say("final"), say("unit"), texts.get("words", "meaning").lower())
     ]
     free = {unknown.name for unknown in instance.free}
     for variable, initial in zip(instance.model.spec.states, instance.initial, strict=True):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from satsym.proof.record import Proof
 from satsym.report import plots
+from satsym.report.display import raised
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.look import Look
 from satsym.report.page import answer
@@ -100,7 +101,8 @@ def _rendered(
 ) -> str:
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
-    title = say(authored)
+    said = say(authored)
+    title = raised(said)
     parts = _sections(solution, derivation, given, texts, explored, proof)
     shown = {name: part for name, part in parts.items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
@@ -115,7 +117,7 @@ def _rendered(
         tag("a", texts.get("page", "skip"), class_="skip", href="#answer"),
         tag(
             "header",
-            tag("h1", title, lang="en" if title == authored else language),
+            tag("h1", title, lang="en" if said == authored else language),
             tag("p", texts.get("page", "about", name=instance.name, model=instance.model.spec.name), " ", verdict),
             tag("nav", tag("ul", *links), aria_label=texts.get("page", "contents")),
         ),

@@ -100,14 +100,14 @@ def page(found: Survey) -> Figure:
     unit = display.length_unit(v.unit for v in case.model.spec.states)
     for i, view in enumerate(planes):
         axes = sheet.add_subplot(grid[i])
-        factor, readable = _panel(axes, drawn, view, unit)
+        factor, readable = panel(axes, drawn, view, unit)
         if i == 0:
             axes.set_title(", ".join(filter(None, [view.title, _caption(found.elements, factor, readable)])))
     legend.below(sheet, _entries(found, drawn))
     return sheet
 
 
-def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
+def panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
     """Draw a panel, and give the unit of its axes in that of the model, and its name."""
     curves = [c for c in (drawn.curve, drawn.travelled) if c is not None]
     seen = np.hstack([view.axes @ curve for curve in curves] + [np.zeros((2, 1))])

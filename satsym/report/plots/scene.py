@@ -76,7 +76,7 @@ class Scene:
     @property
     def title(self) -> str:
         """What the instance is about, in a line."""
-        return say(self.instance.title or self.spec.title) or self.instance.name
+        return display.raised(say(self.instance.title or self.spec.title) or self.instance.name)
 
     @property
     def nodes(self) -> Array:

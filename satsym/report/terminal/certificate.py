@@ -22,7 +22,7 @@ _HOLDS = {
     "generalised legendre-clebsch": "generalised Legendre-Clebsch condition holds",
     "switching times": "switching times confirmed by integration",
     "stated times of events": "events at the stated times",
-    "stated switching times, to the spacing of the nodes": "controls switch between the nodes beside the stated times",
+    "stated switching times, to the spacing of the nodes": "controls switch between the nodes next to the stated times",
     "stated times of saturation": "controls meet their bounds at the stated times",
     "minimisers of H that a jump joins stay as good": "minimisers of H differ on either side of a jump",
     "coinciding switching times": "switching times distinct",

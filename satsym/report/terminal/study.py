@@ -21,7 +21,7 @@ def progress_line(advance: Advance) -> str:
         parts.append(say("<time> left", time=_time(advance.left)))
     parts.append(say("<number> failed", number=advance.failures))
     if advance.compiling:
-        parts.append(say("compiling first, once a model"))
+        parts.append(say("compiling first, once for each model"))
     return ", ".join(parts)
 
 

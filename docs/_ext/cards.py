@@ -1,0 +1,74 @@
+"""Pictures of an example: the overview for its page, and one panel of it for its card in the gallery."""
+
+from pathlib import Path
+from typing import Any
+
+CARD = "-card"
+"""What follows the name of an instance in that of its card."""
+WIDE, HIGH = 3.5, 2.8
+"""Size of a card, in inches."""
+
+
+def of_motion(case: Any, folder: Path) -> dict[str, str]:
+    """Pictures of what ``solve`` or ``simulate`` saved: the end of their names, and SVG."""
+    from satsym.report.look import Look
+    from satsym.report.plots import pages, style
+    from satsym.report.plots.scene import Scene
+    from satsym.report.results import trajectory
+
+    scene = Scene.of(trajectory.read(case, folder)[0])
+    with style.applied(Look(("svg",), titled=False, size="page")):
+        drawn = {"": pages.overview(scene), CARD: _card(scene)}
+        return {part: _svg(style.finished(page)) for part, page in drawn.items() if page is not None}
+
+
+def written(case: Any, folder: Path) -> dict[str, str]:
+    """Pictures that a command wrote, the most telling one first, and a card."""
+    found = sorted(folder.glob("*.svg"), key=lambda path: path.stem not in ("overview", "orbit", "responses"))
+    texts = {path.stem: path.read_text("utf-8") for path in found}
+    names = ["", *(f"-{name}" for name in list(texts)[1:])]
+    first = next((name for name in ("equilibria", "eigenvalues") if name in texts), next(iter(texts)))
+    card = _conic(case) if "orbit" in texts else texts[first]
+    return dict(zip(names, texts.values(), strict=True)) | {CARD: card}
+
+
+def _conic(case: Any) -> str:
+    """An orbit from where it shows best."""
+    from satsym.analysis.subject import survey
+    from satsym.report import display
+    from satsym.report.look import Look
+    from satsym.report.plots import conics, style, views
+
+    with style.applied(Look(("svg",), titled=False, size="page")):
+        page, drawn = _empty(), conics.Drawn.of(survey(case))
+        unit = display.length_unit(v.unit for v in case.model.spec.states)
+        view = views.views([drawn.curve], ("$x$", "$y$", "$z$"))[0]
+        conics.panel(page.subplots(), drawn, view, unit)
+        return _svg(style.finished(page))
+
+
+def _empty() -> Any:
+    from satsym.report.plots import style
+
+    return style.figure(style.WIDTH / 2, style.WIDTH / 2 * HIGH / WIDE)
+
+
+def _card(scene: Any) -> Any:
+    """The path in space, or in a phase plane, or else the first state over time."""
+    from satsym.report.plots import phase_planes, scenes, series, style
+    from satsym.report.plots.panels import small_multiples
+
+    page = _empty()
+    if (shown := scenes.Orbit.of(scene)) is not None:
+        scenes.in_space(page.subplots(), shown, shown.views[0])
+    elif planes := phase_planes.of(scene):
+        phase_planes.draw(page.subplots(), planes[0])
+    else:
+        small_multiples(page, scene, [(series.states(scene)[0], style.STATE)], 1)
+    return page
+
+
+def _svg(page: Any) -> str:
+    from satsym.report.plots import style
+
+    return style.rendered(page, "svg").decode("utf-8")
