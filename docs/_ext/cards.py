@@ -10,16 +10,18 @@ WIDE, HIGH = 3.5, 2.8
 
 
 def of_motion(case: Any, folder: Path) -> dict[str, str]:
-    """Pictures of what ``solve`` or ``simulate`` saved: the end of their names, and SVG."""
+    """Pictures of what ``solve`` or ``simulate`` saved: the end of their names, and SVG; none without a trajectory."""
     from satsym.report.look import Look
     from satsym.report.plots import pages, style
     from satsym.report.plots.scene import Scene
     from satsym.report.results import trajectory
 
     scene = Scene.of(trajectory.read(case, folder)[0])
+    if not scene.drawable:
+        return {}
     with style.applied(Look(("svg",), titled=False, size="page")):
         drawn = {"": pages.overview(scene), CARD: _card(scene)}
-        return {part: _svg(style.finished(page)) for part, page in drawn.items() if page is not None}
+        return {part: _svg(style.finished(page)) for part, page in drawn.items()}
 
 
 def written(case: Any, folder: Path) -> dict[str, str]:

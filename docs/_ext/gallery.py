@@ -36,7 +36,10 @@ COMMANDS = {
     "compare": "lapan-coupling",
 }
 """What is asked of instances that are not solved."""
-LONGEST = ("shuttle", "shuttle-heating", "reorientation", "goddard-pressure", "transfer-fuel", "cart-pole")
+LONGEST = (
+    "shuttle-heating its-thesis-return-two-sided reorientation cart-pole goddard-pressure transfer-fuel obstacle "
+    "goddard shuttle"
+).split()
 """Begun first, so that no processor waits for another in the end."""
 WHOLE = 110
 """Characters of LaTeX beyond which an equation is left to the derivation."""
@@ -105,7 +108,7 @@ def printed(arguments: list[str]) -> str:
 def verdict(result: dict) -> str:
     """A line on what came of it."""
     if result.get("certificate"):
-        return f"{result['status']}, {result['certificate']['verdict']}"
+        return result["certificate"]["verdict"]
     return result["status"]
 
 
@@ -182,7 +185,9 @@ def card(known: dict[str, Any]) -> str:
     """An example in the overview."""
     name, title = known["name"], escape(raised(known["title"]))
     shape = " class='tall'" if known["command"] == "compare" else ""
-    image = f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'{shape}>"
+    image = (
+        f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'{shape}>" if known["pictures"] else ""
+    )
     return (
         f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"
         f"<p><code>{name}</code> {escape(known['verdict'])}</p></figure>"

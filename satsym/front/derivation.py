@@ -200,7 +200,7 @@ class Derivation:
         from satsym.report.texts import load
 
         texts = load("en")
-        parts = [f"<h4>{escape(self.title)}</h4>"]
+        parts = [f"<p><strong>{escape(self.title)}</strong></p>"]
         for step in self.derived.steps:
             title = texts.find("titles", step.name) or step.name
             claims = ", ".join(f"{check.claim} ({check.error:.0e})" for check in step.checks)

@@ -18,7 +18,7 @@ from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
 READMES = [DOCS.parent / "README.md", DOCS.parent / "README.id.md"]
-SINGLE = ("start", "howto", "asked", "models_without_cost")
+SINGLE = ("index", "start", "howto", "asked", "models_without_cost")
 PAGES = [*(DOCS / f"{name}.md" for name in SINGLE), *sorted((DOCS / "tutorials").glob("*.md"))]
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
