@@ -102,10 +102,10 @@ def sled() -> str:
     return _overview(satsym.solve(push).found)
 
 
-def study() -> str:
-    """The picture of the tutorial's study."""
+def study(*varied: str) -> str:
+    """The picture of a study of what is varied."""
     with TemporaryDirectory() as out:
-        printed(["study", "return-to-orbit", "--vary", "initial.r=1.05:1.15:3", "--out", out])
+        printed(["study", "return-to-orbit", *(part for one in varied for part in ("--vary", one)), "--out", out])
         drawn = Path(out, "drawn")
         printed(["plot", out, "--format", "svg", "--size", "page", "--no-title", "--out", str(drawn)])
         return (drawn / "overview.svg").read_text("utf-8")
@@ -138,7 +138,8 @@ FIGURES: dict[str, Callable[[], str]] = {
     "constraint": lambda: _drawn(constraint),
     "free_time": lambda: _drawn(free_time),
     "sled": sled,
-    "study": study,
+    "study": lambda: study("initial.r=1.05:1.15:3"),  # as the tutorial has it
+    "map": lambda: study("initial.r=0.9:1.1:11", "initial.theta_dot=0.9:1.1:11"),
 }
 
 

@@ -10,7 +10,7 @@ import json
 import os
 import re
 from collections.abc import Iterator
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -100,7 +100,7 @@ def printed(arguments: list[str]) -> str:
     from satsym import cli
 
     os.environ |= {"COLUMNS": "80", "NO_COLOR": "1"}
-    with redirect_stdout(io.StringIO()) as stream:
+    with redirect_stdout(io.StringIO()) as stream, redirect_stderr(io.StringIO()):  # progress would look like a warning
         cli.main(arguments)
     return TAKEN.sub("", stream.getvalue().partition("\n  written to ")[0]).rstrip()
 
