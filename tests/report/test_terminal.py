@@ -103,6 +103,11 @@ def test_a_control_that_saturates_without_a_jump_does_not_switch() -> None:
             "structure +s-, 2 switches, residual 3e-11, from the reachable set",
             "upper bound, singular, lower",
         ),
+        (
+            "reorientation",
+            "structure -+ | +- | -, 2 switches, residual 3e-11, from the reachable set",
+            "u1 lower bound, upper bound; u2 upper bound, lower bound; u3 lower bound;",
+        ),
         ("goddard", "structure +-+-+-+-+-, 9 switches, residual 3e-11, from the reachable set", "structure +-+-+-+-+-"),
     ],
 )

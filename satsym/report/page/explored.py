@@ -243,11 +243,12 @@ def _forbidden(around: Surroundings, axes: Array, low: Array, high: Array, scale
 def _attitude(attitude: Attitude, kept: NDArray[np.intp]) -> Data:
     own: Data = {
         "kind": "attitude",
-        "title": say("attitude"),
+        "title": say("attitude, with the body axes 1 (red), 2 (green) and 3 (blue)"),
         "turns": [_numbers(turn.ravel()) for turn in attitude.turns[kept]],
         "magnified": decimal(number(attitude.magnified)) if attitude.magnified != 1.0 else "",
     }
     if attitude.torque is not None and (most := np.nanmax(np.linalg.norm(attitude.torque, axis=0), initial=0.0)) > 0.0:
+        own["title"] += f", {say('torque (purple)')}"
         own["torque"] = [_numbers(row) for row in attitude.torque[:, kept] / most]
     return own
 

@@ -21,7 +21,7 @@ _AT_BOUND = 1e-9
 _SIGNS = {"+": "upper bound", "-": "lower bound", "0": "zero", "s": "singular", "b": "boundary"}
 _THRUST = {"+": "burn", "-": "coast", "0": "coast", "s": "singular"}
 _FOUND = re.compile(r"residual (\S+), from (.+)")
-_STRUCTURE = re.compile(r"structure ([-+0sb]+), (?:\d+ switch(?:es)?, )?")
+_STRUCTURE = re.compile(r"structure ([-+0sb]+(?: \| [-+0sb]+)*), (?:\d+ switch(?:es)?, )?")
 
 
 def rows_of_arcs(solution: Solution, unit: str) -> list[tuple[str, str, str]]:
@@ -39,12 +39,14 @@ def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]
 
 
 def in_words(solution: Solution, text: str) -> str:
-    """A solver's message in the language asked for, with the structure ``-+-`` of arcs in words."""
-    found = _STRUCTURE.match(text)
-    if not found or len(found[1]) > SHOWN_ARCS:
+    """A solver's message in the language asked for, with the structure ``-+-`` of arcs in words, control by control."""
+    found, names = _STRUCTURE.match(text), solution.instance.model.spec.control_names
+    each = found[1].split(" | ") if found else []
+    if not found or len("".join(each)) > SHOWN_ARCS or (len(each) > 1 and len(each) != len(names)):
         return message(text)
     signs = _THRUST if _throttled(solution) else _SIGNS
-    arcs = ", ".join(say(signs.get(sign, _SIGNS[sign])) for sign in found[1])
+    listed = [", ".join(say(signs.get(sign, _SIGNS[sign])) for sign in one) for one in each]
+    arcs = listed[0] if len(each) == 1 else "; ".join(map(" ".join, zip(names, listed, strict=True)))
     rest = text[found.end() :]
     if ends := _FOUND.fullmatch(rest):
         rest = say("residual <residual>, from <origin>", residual=ends[1], origin=message(ends[2]))
