@@ -35,7 +35,7 @@ Examples:
 @out_option
 @plot_options("analyse")
 def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
-    """Analyse a model about its reference or an equilibrium, an orbit about a central body, or attitudes in orbit.
+    """Analyse a model, an orbit, or attitudes in orbit.
 
     X is a shipped model or instance, or the path of one. For a model: eigenvalues with their Jordan blocks, stability
     and its reason, the Routh array, and the controllable and observable subspaces, numerically and, for linear

@@ -39,7 +39,7 @@ FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 @out_option
 @plot_options("compare")
 def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, look: Look | None) -> ExitCode:
-    """Simulate or solve several instances of one system, and compare them side by side.
+    """Compare several instances of one system side by side.
 
     An instance that states a control law ([classical]) is simulated under it; any other is solved. The metrics are
     durations, integrals, and peak and final values, each explained below the table. Results go into the folder of the

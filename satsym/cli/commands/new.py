@@ -37,7 +37,7 @@ _FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
     help="Write into this folder; by default a model goes into NAME/ and an instance into the current folder.",
 )
 def new(name: str, original: str | None, out: Path | None) -> ExitCode:
-    """Write files to start from: a new model, or a copy of an instance.
+    """Start a new model, or copy a shipped instance.
 
     A new model consists of three files that run as they are: a commented derivation file, an instance, and a test.
     Existing files are never overwritten.

@@ -90,7 +90,7 @@ def study(
     values: tuple[str, ...],
     **options: Any,
 ) -> ExitCode:
-    """Solve, simulate or regulate an instance for many values of its numbers.
+    """Solve, simulate or regulate many variants of an instance.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The table has one row for each
     combination of values, with the results or the reason why there are none. An interrupted study is continued with
