@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from satsym.report.display import unit_text
 from satsym.report.terminal.table import figure
 
 
@@ -16,9 +17,14 @@ def page(title: str, lines: Sequence[str], *tables: str) -> str:
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A table; numbers as reports have them. Empty without rows."""
-    body = [f"<tr>{''.join(f'<td>{escape(_shown(cell))}</td>' for cell in row)}</tr>" for row in rows]
-    head = "".join(f'<th scope="col">{escape(name)}</th>' if name else "<td></td>" for name in header)
+    """A table without its empty columns; numbers and units as reports have them. Empty without rows."""
+    shown = [[_shown(cell) for cell in row] for row in rows]
+    kept = [k for k, column in enumerate(zip(*shown, strict=True)) if any(column)]
+    body = []
+    for row in shown:
+        cells = (escape(unit_text(row[k]) if header[k] == "unit" else row[k]) for k in kept)
+        body.append(f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
+    head = "".join(f'<th scope="col">{escape(header[k])}</th>' if header[k] else "<td></td>" for k in kept)
     return "\n".join(["<table>", f"<tr>{head}</tr>", *body, "</table>"]) if body else ""
 
 

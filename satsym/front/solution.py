@@ -18,7 +18,8 @@ from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
 from satsym.report.results.objects import solution_object
 from satsym.report.terminal.certificate import statement, verdict_text
-from satsym.report.terminal.solution import solution_text
+from satsym.report.terminal.solution import solution_text, state_rows
+from satsym.report.terminal.table import figure
 from satsym.solution import Certificate, Event, Progress
 from satsym.solvers.constrained.structure import stated_arcs
 
@@ -106,17 +107,30 @@ class Solution(Result[solution.Solution]):
         return solution_text(self.found)
 
     def _repr_html_(self) -> str:
-        said = self.to_dict()
-        facts = {name: said[name] for name in ("objective", "t_final", "method", "boundary_type", "switching_times")}
-        ends = zip(said["x_final"], said["x_final"].values(), said["costate_initial"].values(), strict=True)
-        found = self.certificate
+        said, found, instance = self.to_dict(), self.certificate, self.found.instance
+        # as the command line has them: a final state that is nothing but rounding is zero
+        rows = state_rows(instance, self.found.times, self.found.x, self.found.lam) if len(self.times) else []
+        names, *states = rows or [()]
+        facts = {
+            "objective": said["objective"],
+            "final time": said["t_final"],
+            "method": said["method"],
+            "boundary type": said["boundary_type"],
+            **{f"switching times of {name}": times for name, times in self.switching_times.items() if times},
+            "certificate": verdict_text(found, self._spec.maximise) if found else None,
+        }
         checks = [
-            (statement(c), c.value if c.limit else None, c.limit or None, "" if c.passed else "FAILED")
+            (
+                statement(c),
+                figure(abs(c.value), 2) if c.limit else "",
+                figure(c.limit, 2) if c.limit else "",
+                "" if c.passed else "FAILED",
+            )
             for c in (found.checks if found else ())
         ]
         return self._html(
-            {**facts, "certificate": verdict_text(found, self._spec.maximise) if found else None},
-            html.table(("state", "final", "costate at t0"), ends),
+            facts,
+            html.table(names, states),
             html.table(("condition", "measured", "limit", ""), checks),
         )
 

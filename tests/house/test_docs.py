@@ -130,7 +130,8 @@ def test_the_notebook_runs_from_top_to_bottom_and_shows_what_each_cell_ends_with
         assert isinstance(last, ast.Expr)
         exec(compile(ast.Module(before, []), "notebook", "exec"), known)  # noqa: S102
         shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), known))  # noqa: S307
-    solution, verdict, _, equation, costlier = shown
+    solution, verdict, picture, _, equation, costlier = shown
+    assert picture.axes
     assert "<table>" in solution._repr_html_()
     assert verdict == ("certified", pytest.approx(0.0031946551089, rel=1e-10))  # of CasADi with Ipopt
     assert equation._repr_latex_().startswith("$")
