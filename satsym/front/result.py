@@ -245,4 +245,4 @@ class Result(ABC, Generic[Found]):
     def _html(self, facts: dict[str, Any], *tables: str) -> str:
         case = self.instance
         lines = [f"{case.name}, model {case.model}: {self.status.value}", self.message]
-        return html.page(case.title or case.name, lines, html.facts(facts), *tables)
+        return html.page(case.title or self._spec.title or case.name, lines, html.facts(facts), *tables)
