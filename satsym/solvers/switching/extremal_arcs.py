@@ -37,7 +37,7 @@ ROUGHLY = 1e6
 CORNERS, LOOKED = 1e-9, 64
 """Relative error of the times of corners, and how many stretches of a piece are looked at."""
 
-MOST_SINGULAR, MOST_EVALUATIONS = 2000, 30_000
+MOST_ON_ARC, MOST_EVALUATIONS = 2000, 30_000
 """Evaluations of a piece with a singular control, and of any other one. Off its manifold a singular motion may leave
 for infinity, and next to a centre of attraction steps become ever smaller. Of other pieces 999 in 1,000 need fewer than
 4,000."""
@@ -203,7 +203,7 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
     through = np.array([start, *corners, end])
 
     def counted() -> None:
-        if next(evaluations) > (MOST_EVALUATIONS if field.singular is None else MOST_SINGULAR):
+        if next(evaluations) > (MOST_EVALUATIONS if field.singular is None else MOST_ON_ARC):
             raise ArithmeticError("the motion diverges, or comes next to where its rates do")
 
     if not accuracy.slopes:
