@@ -77,12 +77,12 @@ class _Search:
     out: tuple[int, ...] | None
 
     def conditions(self, place: Place) -> dict[int, Any]:
-        """The differences of both sides of all conditions that are met at a place."""
+        """The differences of both sides of all conditions that are met at a place, as far as these are real there."""
         self.seen.clear()
         given = [exactly(place[a]) for a in self.arguments]
         with suppress(*NO_NUMBERS):
             self.function(*given, *(() if self.out is None else (np.empty(self.out, dtype=object),)))
-        return dict(self.seen)
+        return {condition: gap for condition, gap in self.seen.items() if not isinstance(gap, mp.mpc)}
 
     def pairs(
         self, begin: Place, first: Mapping[int, Any], moved: tuple[str, int], wanted: Iterable[int]

@@ -54,7 +54,7 @@ MESHES, SETTLED_COST, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
 CHEAPER = 1e-9
 """Relative difference of exact costs that is one."""
 
-OTHERS, SHOWN, ALIKE_SHARE = 3, 41, 0.05
+OTHERS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
 """Motions at the cost of an answer that are made exact at most, the times at which ways are looked at, and the share of
 the range of a state by which those differ that are another way."""
 
@@ -210,7 +210,7 @@ def _another_way(found: Found, cost: float, shapes: list[Array]) -> bool:
         return False
     at = motion(found)
     shape = _shape(at.times, at.x)
-    if any(np.abs(shape - other).max() < ALIKE_SHARE for other in shapes):
+    if any(np.abs(shape - other).max() < ALIKE_RANGE for other in shapes):
         return False
     shapes.append(shape)
     return True

@@ -14,7 +14,7 @@ from satsym.solvers.switching.field import NUDGE
 from satsym.solvers.switching.structure import SINGULAR, jumps, on_boundary
 from satsym.solvers.switching.trajectory import Trajectory, Violation, runs
 
-SHARE_BESIDE = 0.01
+LENGTH_BESIDE = 0.01
 """Share of a boundary arc that a singular one is given beside it."""
 
 
@@ -77,7 +77,7 @@ def _pulling(arcs: list[Arc], slack: float) -> list[Violation]:
                 continue
             by, size = jump(one.field, before.end, before.after, after.before)
             if -by > slack * size:
-                span = SHARE_BESIDE * (one.end - one.start)
+                span = LENGTH_BESIDE * (one.end - one.start)
                 low, high = (one.end - span, one.end) if which == k else (one.start, one.start + span)
                 found.append(Violation(one.field.acting, which, low, high, SINGULAR, -by / size))
     return found

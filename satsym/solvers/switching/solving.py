@@ -48,7 +48,7 @@ class Search:
     why: Callable[[Instance, Limits], tuple[Status, str]]
 
 
-SHORT_OF_LEAST = 1e-9
+SHORTFALL = 1e-9
 """By this share of it a given time may fall short of the least."""
 
 LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
@@ -145,7 +145,7 @@ def _by_least_time(
     if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
         return stopped
     least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
-    if found.origin is Origin.REACH and least > given * (1.0 + SHORT_OF_LEAST):
+    if found.origin is Origin.REACH and least > given * (1.0 + SHORTFALL):
         message = (
             f"the minimum time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
         )
@@ -155,11 +155,7 @@ def _by_least_time(
         return replace(near, origin=Origin.MINIMUM_TIME)
     if stopped.status is Status.INFEASIBLE:
         return stopped
-    alone = (
-        ", and at that only one control arrives, whatever it costs"
-        if abs(given / least - 1.0) <= SHORT_OF_LEAST
-        else ""
-    )
+    alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= SHORTFALL else ""
     message = f"{stopped.message}; the minimum time to the given end is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
 
