@@ -95,6 +95,7 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
         If one does not.
     """
     n, s = end.law.n, end.terminal[1]
+    spec = statement.spec
     names = statement.spec.state_names
     for i, target in statement.targets.items():
         if target.side is None:
@@ -105,11 +106,22 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
     for i, (low, high) in statement.open_ranges.items():
         if not (end.z[i] > low and end.z[i] < high):
             raise NotProved(f"{names[i]} is not shown to end inside its range")
+    first = len(spec.multipliers) - len(spec.terminal_inequalities)
+    for k in statement.limits:
+        called = f"the inequality {spec.terminal_inequalities[k - first]} at the end"
+        if k in statement.held and not end.nu[statement.held.index(k)] > 0:
+            raise NotProved(f"the multiplier of {called} is not shown to be positive")
+        if k not in statement.held and not end.constraints[k][0] < 0:
+            raise NotProved(f"{called} is not shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
+    parts = [f"{len(statement.targets)} states given", f"{n - len(statement.targets)} free", f"{ranges} ranges"]
+    if spec.multipliers:
+        parts += [f"{len(statement.held)} constraints", f"{len(spec.multipliers) - len(statement.held)} not met"]
+        parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]
     return Hypothesis(
         "the conditions at the end hold, strictly where they are inequalities",
         "by the equations of the extremal",
-        f"{len(statement.targets)} states given, {n - len(statement.targets)} free, {ranges} ranges",
+        ", ".join(parts),
     )
 
 

@@ -27,7 +27,7 @@ def convex(statement: Statement) -> str:
     spec = statement.spec
     if statement.tf is None or spec.control_set not in ("free", "box", "ball") or not spec.autonomous:
         return ""
-    if any(target.turns is not None for target in statement.targets.values()):
+    if any(target.turns is not None for target in statement.targets.values()) or not _affine_end(statement):
         return ""
     n, m = len(spec.states), len(spec.controls)
     kernel, p = statement.kernel, statement.p
@@ -52,7 +52,7 @@ def waiting(statement: Statement) -> str:
     n, m = len(spec.states), len(spec.controls)
     if statement.tf is not None or spec.control_set not in ("box", "ball") or not spec.autonomous:
         return ""
-    if spec.path_constraints or spec.maximise or len(statement.targets) != n:
+    if spec.path_constraints or spec.multipliers or spec.maximise or len(statement.targets) != n:
         return ""
     if any(target.value is None or target.side or target.turns is not None for target in statement.targets.values()):
         return ""
@@ -78,6 +78,21 @@ def _linear(statement: Statement) -> bool:
     jets = [one for one in motion or () if isinstance(one, Jet)]
     finite = all(v[0].is_finite() for one in jets for v in one.first.values())
     return motion is not None and finite and not any(_second(one) for one in jets)
+
+
+def _affine_end(statement: Statement) -> bool:
+    """Whether constraints at the end are equations that are linear in the states, apart from constants."""
+    kernel, n = statement.kernel, len(statement.spec.states)
+    if not statement.spec.multipliers:
+        return True
+    if statement.spec.terminal_inequalities:
+        return False
+    rows = _anywhere(
+        statement, lambda given: kernel.terminal_constraints(constant(statement.tf), given[:n], statement.p)
+    )
+    jets = [one for one in rows or () if isinstance(one, Jet)]
+    finite = all(v[0].is_finite() for one in jets for v in one.first.values())
+    return rows is not None and finite and not any(_second(one) for one in jets)
 
 
 def _anywhere(statement: Statement, function: Callable[[list[Jet]], Sequence[Any]]) -> Sequence[Any] | None:

@@ -8,10 +8,9 @@ from itertools import accumulate
 from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof import claims
-from satsym.proof.balls.arithmetic import Ball, value
+from satsym.proof.balls.arithmetic import Ball, constant, value
 from satsym.proof.balls.jets import derivatives, variables
 from satsym.proof.balls.taylor import from_zero
-from satsym.proof.ends import End
 from satsym.proof.inclusion import Inclusion
 from satsym.proof.laws import Law
 from satsym.proof.record import Enclosure, Hypothesis, Node, Outcome, Proof
@@ -37,8 +36,8 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
     final = shooting.final_time(lengths)
     ends = [sum(lengths[: j + 1], statement.t0) for j in range(len(shooting.arcs) - 1)]
     cost = _cost(shooting, box, last, _share(shooting, box, last))
-    end = End.at(statement, shooting.arcs[-1].law, nodes[-1], final)
-    objective = cost + end.terminal[0]
+    last_state = [constant(v) for v in nodes[-1][:n]]
+    objective = cost + value(statement.kernel.terminal_cost(constant(final), last_state, statement.p))
     shown = Hypothesis(
         "an extremal exists, and only one near by",
         f"Krawczyk's operator maps a box of {len(here)} unknowns into itself ({fractions} segments, "
@@ -62,7 +61,7 @@ def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
     """The factors of the gradients of path constraints by which costates fall, junction by junction."""
     here = shooting.unknowns(box.nodes, box.lengths)
     _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
-    return list(found[len(shooting.arcs) :])
+    return list(found[len(shooting.arcs) : len(found) - len(shooting.statement.held)])
 
 
 def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) -> Proof:

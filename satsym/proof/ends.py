@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
-from satsym.proof.balls.arithmetic import Ball, constant, value
+from satsym.proof.balls.arithmetic import Ball, NotProved, constant, value
 from satsym.proof.balls.jets import derivatives, variables
 from satsym.proof.balls.taylor import Matrix, rates
 from satsym.proof.laws import Law
@@ -25,32 +26,52 @@ class End:
         The law of the last arc.
     z, time
         The final components and the final time.
+    nu
+        The multipliers of the constraints at the end that hold with equality.
     terminal
-        Value, gradient and Hessian of the terminal cost by the states and time.
+        Value, gradient and Hessian by the states and time of the terminal cost, with the constraints times their
+        multipliers.
+    constraints
+        Values and gradients of all constraints at the end.
     """
 
     statement: Statement
     law: Law
     z: Sequence[Ball]
     time: Ball
+    nu: Sequence[Ball]
     terminal: tuple[Ball, list[Ball], list[list[Ball]]]
+    constraints: list[tuple[Ball, list[Ball]]]
 
     @classmethod
-    def at(cls, statement: Statement, law: Law, z: Sequence[Ball], time: Ball) -> End:
-        """The end of a chain of arcs whose last law and final components are these."""
-        n, kernel = law.n, statement.kernel
+    def at(cls, statement: Statement, law: Law, z: Sequence[Ball], time: Ball, nu: Sequence[Ball]) -> End:
+        """The end of a chain of arcs whose last law, final components and multipliers are these."""
+        n, kernel, p = law.n, statement.kernel, statement.p
         given = variables([*z[:n], time])
-        terminal = derivatives(lambda: kernel.terminal_cost(given[n], given[:n], statement.p), n + 1)
-        return cls(statement, law, z, time, terminal)
+        psi = kernel.terminal_constraints(given[n], given[:n], p) if statement.spec.multipliers else ()
+
+        def weighted() -> Any:
+            total = kernel.terminal_cost(given[n], given[:n], p)
+            for k, v in zip(statement.held, nu, strict=True):
+                total = psi[k] * constant(v) + total
+            return total
+
+        constraints = [derivatives(lambda one=one: one, n + 1)[:2] for one in psi]
+        return cls(statement, law, z, time, nu, derivatives(weighted, n + 1), constraints)
+
+    @property
+    def ties(self) -> list[tuple[Ball, list[Ball]]]:
+        """Values and gradients of the constraints that hold with equality."""
+        return [self.constraints[k] for k in self.statement.held]
 
     def residuals(self) -> tuple[list[Ball], Matrix]:
-        """What vanishes at the end, and its derivatives by the components and by the final time.
+        """What vanishes at the end, and its derivatives by the components, by the final time and by the multipliers.
 
-        There is a row for each state, and where the final time is free one for it.
+        There is a row for each state, for each constraint, and where the final time is free one for it.
         """
-        n, m, free = self.law.n, self.law.m, self.statement.tf is None
-        rows, found = n + free, []
-        jac = arb_mat(rows, m + 1)
+        n, m, free, ties = self.law.n, self.law.m, self.statement.tf is None, self.ties
+        found: list[Ball] = []
+        jac = arb_mat(n + len(ties) + free, m + 1 + len(ties))
         (_, s, ss), lam = self.terminal, self.z[n : 2 * n]
         for i in range(n):
             target = self.statement.targets.get(i)
@@ -60,10 +81,17 @@ class End:
                 for j in range(n):
                     jac[i, j] = -ss[i][j]
                 jac[i, m] = -ss[i][n]
+                for k, (_, slopes) in enumerate(ties, m + 1):
+                    jac[i, k] = -slopes[i]
             else:
                 goal, speed, _ = self.goal(i)
                 found.append(self.z[i] - goal)
                 jac[i, i], jac[i, m] = 1, -speed
+        for k, (level, slopes) in enumerate(ties, n):
+            found.append(level)
+            for j in range(n):
+                jac[k, j] = slopes[j]
+            jac[k, m] = slopes[n]
         if free:
             found.append(self._of_time(jac))
         return found, jac
@@ -78,9 +106,13 @@ class End:
         return place, speed, bend
 
     def _of_time(self, jac: Matrix) -> Ball:
-        """H + S_t + (S_x - lambda)' c' over the states on the reference; its derivatives into the last row."""
-        n, m = self.law.n, self.law.m
+        """H + S_t + (S_x - lambda)' c' over the states on the reference; its derivatives into the last row.
+
+        S has the constraints with it, times their multipliers.
+        """
+        n, m, ties = self.law.n, self.law.m, self.ties
         (_, s, ss), lam = self.terminal, self.z[n : 2 * n]
+        by_multiplier = [slopes[n] for _, slopes in ties]
         ctx.cap = 1
         total = value(self.law.hamiltonian([arb_series([v]) for v in self.z])) + s[n]
         moving = rates(self.law, self.z)
@@ -95,8 +127,9 @@ class End:
                 row[j] += ss[i][j] * speed
             row[n + i] -= speed
             by_time += ss[i][n] * speed + (s[i] - lam[i]) * bend
-        for j, v in enumerate([*row, by_time]):
-            jac[n, j] = v
+            by_multiplier = [v + slopes[i] * speed for v, (_, slopes) in zip(by_multiplier, ties, strict=True)]
+        for j, v in enumerate([*row, by_time, *by_multiplier]):
+            jac[n + len(ties), j] = v
         return total
 
     def hamiltonian_by_time(self) -> Ball:
@@ -117,8 +150,13 @@ class End:
     def second_variation(self, w: Matrix) -> Matrix:
         """The form that must be positive on what the end leaves free: final states, then the final time.
 
-        It is the Hessian of the terminal cost less the value function of the field, whose second derivatives by the
-        states are W, over the ends that the problem admits.
+        It is the Hessian of the terminal cost, with constraints times their multipliers, less the value function of the
+        field, whose second derivatives by the states are W, over the tangents of the ends that the problem admits.
+
+        Raises
+        ------
+        NotProved
+            If the gradients of constraints are not shown to be independent on these.
         """
         n, free = self.law.n, self.statement.tf is None
         (_, s, ss), lam = self.terminal, self.z[n : 2 * n]
@@ -145,7 +183,41 @@ class End:
             full[n, n] = corner
             basis.append(along)
         rows = arb_mat(len(basis), size, [v for row in basis for v in row]) if basis else arb_mat(0, size)
+        if self.ties:
+            slopes = arb_mat(len(self.ties), size, [v for _, row in self.ties for v in row[:size]])
+            rows = kernel_of(slopes * rows.transpose()) * rows
         return rows * full * rows.transpose()
+
+
+def kernel_of(slopes: Matrix) -> Matrix:
+    """Rows that span what a ball matrix maps to zero, if its own rows are independent.
+
+    Raises
+    ------
+    NotProved
+        If that is not shown.
+    """
+    from scipy.linalg import qr
+
+    count, size = slopes.nrows(), slopes.ncols()
+    middle = np.array([[float(slopes[i, j].mid()) for j in range(size)] for i in range(count)]).reshape(count, size)
+    middle /= np.maximum(np.abs(middle).max(axis=1, initial=0.0), 1e-300)[:, None]
+    chosen = sorted(int(j) for j in qr(middle, mode="r", pivoting=True)[1][:count]) if count <= size else []
+    others = [j for j in range(size) if j not in chosen]
+    try:
+        if not chosen:
+            raise ZeroDivisionError
+        block = arb_mat(count, count, [slopes[i, j] for i in range(count) for j in chosen])
+        rest = arb_mat(count, len(others), [slopes[i, j] for i in range(count) for j in others])
+        solved = block.inv() * rest
+    except ZeroDivisionError:
+        raise NotProved("the gradients of the constraints at the end are not shown to be independent") from None
+    found = arb_mat(len(others), size)
+    for row, j in enumerate(others):
+        found[row, j] = 1
+        for k, i in enumerate(chosen):
+            found[row, i] = -solved[k, row]
+    return found
 
 
 def positive(form: Matrix) -> bool:

@@ -21,7 +21,7 @@ SETTLED = 1e-8
 
 @dataclass(frozen=True)
 class Place:
-    """Nodes and lengths near an extremal."""
+    """Nodes near an extremal, and lengths with what is listed with them."""
 
     nodes: list[list[Ball]]
     lengths: list[Ball]
@@ -40,8 +40,8 @@ def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], di
         terms, rest = (int(1.2 * digits) + 12, 10.0 ** -(digits + 12)) if fine else (TERMS, REMAINDER)
         residuals, jacobian = _equations(shooting, nodes, lengths, terms, rest)
         move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
-        scales = [*shooting.scales, *(abs(float(v.mid())) for v in lengths)]
-        before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=False))
+        scales = [*shooting.scales, *shooting.scales_of_lengths(lengths)]
+        before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=True))
         here = shooting.unknowns(nodes, lengths)
         nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
         if fine and size < SETTLED:

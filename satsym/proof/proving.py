@@ -169,14 +169,15 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
         junctions = [Junction.between(a, b) for a, b in pairwise(laws)]
     sizes = structure.sizes_of(statement, found, path)
     arcs, nodes, lengths = structure.placed(laws, times, path, sizes)
-    shooting = Shooting(statement, tuple(arcs), tuple(junctions), tuple(sizes))
+    nu, of_multipliers = structure.multipliers(statement, laws[-1], nodes[-1], arb(times[-1]), sizes)
+    shooting = Shooting(statement, tuple(arcs), tuple(junctions), tuple(sizes), of_multipliers)
     n = laws[0].n
     nodes[0] = _started(statement, nodes[0], n)
     if laws[0].timed:
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
         lengths = [statement.tf - statement.t0]
-    place = located(shooting, nodes, [*lengths, *map(arb, jumps)], digits)
+    place = located(shooting, nodes, [*lengths, *map(arb, jumps), *nu], digits)
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR:
@@ -213,15 +214,10 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
     return Located(shooting, box, last, radius)
 
 
-def _scales(shooting: Shooting, box: Box) -> list[float]:
-    lengths = [abs(float(v.mid())) for v in box.lengths] if shooting.lengths_unknown else []
-    return [*shooting.scales, *lengths]
-
-
 def _box(shooting: Shooting, place: Place, radius: float) -> Box:
     zero = [[arb(0)] * len(node) for node in place.nodes]
     box = Box(_exact(shooting, place.nodes), zero, place.lengths, [arb(0)] * len(place.lengths))
-    around = [arb(0, radius * s) for s in _scales(shooting, box)]
+    around = [arb(0, radius * s) for s in (*shooting.scales, *shooting.scales_of_lengths(box.lengths))]
     return _around(shooting, box, around)
 
 

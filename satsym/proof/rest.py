@@ -30,6 +30,7 @@ def costs_nothing(statement: Statement) -> bool:
         statement.free
         or statement.targets
         or statement.open_ranges
+        or spec.multipliers
         or statement.tf is None
         or spec.control_parts
         or spec.switching

@@ -1,9 +1,10 @@
 """Multiple shooting on balls: the conditions that make arcs an extremal, and Krawczyk's operator of them.
 
-Unknown are the costates at the start and the states that are free there, all components at the later nodes, and the
-lengths of arcs where these are not given. The equations: costates of states that are free at the start vanish there;
-each segment leads from a node to the next; where one arc ends and another begins a condition of
-the former vanishes; the conditions at the end; and, with unknown lengths and a given final time, their sum.
+Unknown are the costates at the start and the states that are free there, all components at the later nodes, the
+lengths of arcs where these are not given, and the multipliers of constraints at the end. The equations: costates of
+states that are free at the start vanish there; each segment leads from a node to the next; where one arc ends and
+another begins a condition of the former vanishes; the conditions at the end; and, with unknown lengths and a given
+final time, their sum.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ class Box:
     nodes, around
         All components of each node; those of the first that are given have their own radius in `nodes`.
     lengths, lengths_around
-        Lengths of the arcs, and after them the multiples of junctions at which costates jump.
+        Lengths of the arcs, after them the multiples of junctions at which costates jump, then the multipliers of
+        constraints at the end.
     """
 
     nodes: list[list[Ball]]
@@ -131,6 +133,23 @@ class Shooting:
     junctions: tuple[Junction, ...]
     sizes: tuple[float, ...]
     """Sizes of the components, and of the cost."""
+    multiplier_sizes: tuple[float, ...] = ()
+    """Sizes of the multipliers of constraints at the end."""
+
+    @property
+    def lengths_given(self) -> int:
+        """How many of the lengths are given."""
+        return 0 if self.lengths_unknown else len(self.arcs)
+
+    def multipliers(self, lengths: Sequence[Any]) -> list[Any]:
+        """The multipliers of constraints at the end, which are the last of what is listed with the lengths."""
+        return list(lengths[len(lengths) - len(self.statement.held) :])
+
+    def scales_of_lengths(self, lengths: Sequence[Ball]) -> list[float]:
+        """Sizes of the unknown ones of lengths, multiples and multipliers."""
+        found = [abs(float(v.mid())) for v in lengths]
+        least = [0.0] * (len(found) - len(self.multiplier_sizes)) + list(self.multiplier_sizes)
+        return [max(v, w) for v, w in zip(found, least, strict=True)][self.lengths_given :]
 
     @property
     def lengths_unknown(self) -> bool:
@@ -152,7 +171,7 @@ class Shooting:
     def unknowns(self, nodes: Sequence[Sequence[Any]], lengths: Sequence[Any]) -> list[Any]:
         """The unknown ones of all numbers, in order."""
         found = [*(nodes[0][i] for i in self.first), *(v for node in nodes[1:] for v in node)]
-        return [*found, *lengths] if self.lengths_unknown else found
+        return [*found, *lengths[self.lengths_given :]]
 
     def placed(self, values: Sequence[Any], nodes: list[list[Any]], lengths: list[Any]) -> tuple[Any, Any]:
         """Nodes and lengths with other unknowns."""
@@ -163,7 +182,7 @@ class Shooting:
         for _ in nodes[1:]:
             moved.append(left[:m])
             del left[:m]
-        return moved, (left if self.lengths_unknown else list(lengths))
+        return moved, [*lengths[: self.lengths_given], *left]
 
     def final_time(self, lengths: Sequence[Ball]) -> Ball:
         """The time at which the last arc ends."""
@@ -290,8 +309,8 @@ class Rows:
         self.residuals: list[Ball] = []
         self.rows: list[dict[int, Ball]] = []
         self.first = shooting.first
-        self.lengths = len(self.first) + self.m * (len(box.nodes) - 1)
-        """The first place of a length."""
+        self.lengths = len(self.first) + self.m * (len(box.nodes) - 1) - shooting.lengths_given
+        """The first place of a length, were all of them unknown."""
         for i in shooting.statement.free:  # costates of states that are free at the start vanish there
             self._add(box.nodes[0][self.n + i], {self._place(0, self.n + i): arb(1)})
 
@@ -333,8 +352,8 @@ class Rows:
         time, times = (
             (node[-1], wide[-1]) if law.timed else (shooting.final_time(box.lengths), shooting.final_time(around))
         )
-        found, _ = End.at(shooting.statement, law, node, time).residuals()
-        end = End.at(shooting.statement, law, wide, times)
+        found, _ = End.at(shooting.statement, law, node, time, shooting.multipliers(box.lengths)).residuals()
+        end = End.at(shooting.statement, law, wide, times, shooting.multipliers(around))
         _, jac = end.residuals()
         for i, v in enumerate(found):
             entries = [jac[i, c] for c in range(m)]
@@ -343,6 +362,8 @@ class Rows:
             row = self._of_node(k, entries)
             if shooting.lengths_unknown and not law.timed:
                 row |= {self.lengths + j: jac[i, m] for j in range(len(shooting.arcs))}
+            first = self.lengths + len(box.lengths) - len(end.nu)
+            row |= {first + c: jac[i, m + 1 + c] for c in range(len(end.nu))}
             self._add(v, row)
         if shooting.lengths_unknown and shooting.statement.tf is not None:
             given = shooting.statement.tf - shooting.statement.t0
@@ -352,7 +373,7 @@ class Rows:
 
     def jacobian(self) -> Matrix:
         """Derivatives of all residuals by all unknowns."""
-        count = self.lengths + (len(self.box.lengths) if self.shooting.lengths_unknown else 0)
+        count = self.lengths + len(self.box.lengths)
         found = arb_mat(len(self.rows), count)
         for i, row in enumerate(self.rows):
             for j, v in row.items():

@@ -18,7 +18,7 @@ from satsym.instance.resolve import REFERENCE
 from satsym.instance.unknowns import Place
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, constant
 from satsym.proof.balls.exact import Source
-from satsym.proof.balls.kernel import BallKernel
+from satsym.proof.balls.kernel import CONSTRAINTS, BallKernel
 from satsym.spec import ProblemSpec
 
 _OF_INSTANCES = frozenset(
@@ -78,6 +78,8 @@ class Statement:
         The ends between which free final states must lie, by the place of the state.
     free
         Places of the initial states that are free; in `initial` they have the values where a solver begins.
+    held, limits
+        Places of the constraints at the end that hold with equality, and of those that are inequalities.
     """
 
     case: Instance
@@ -93,6 +95,8 @@ class Statement:
     targets: dict[int, Target]
     open_ranges: dict[int, tuple[Any, Any]]
     free: tuple[int, ...]
+    held: tuple[int, ...]
+    limits: tuple[int, ...]
 
     @property
     def spec(self) -> ProblemSpec:
@@ -160,7 +164,15 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         targets,
         ranges,
         free,
+        *_constraints(spec, met),
     )
+
+
+def _constraints(spec: ProblemSpec, met: Mapping[str, Side]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Places of the constraints at the end that hold with equality, and of the inequalities."""
+    names, first = spec.terminal_inequalities, len(spec.multipliers) - len(spec.terminal_inequalities)
+    held = [*range(first), *(first + k for k, name in enumerate(names) if name in met)]
+    return tuple(held), tuple(range(first, len(spec.multipliers)))
 
 
 def walled(statement: Statement) -> bool:
@@ -249,6 +261,7 @@ def _refuse_cases(kernel: BallKernel) -> None:
     """Refuse motions and costs with cases; what controls that switch cost may be their magnitudes."""
     spec = kernel.spec
     besides = (("reference",) if spec.has_reference else ()) + (("path_constraints",) if spec.path_constraints else ())
+    besides += (CONSTRAINTS,) if spec.multipliers else ()
     for name in ("dynamics", "running_cost", "terminal_cost", *besides):
         known = {f"{control}{after}" for control in spec.control_names for after in ("", "_value")}
         allowed = known if name == "running_cost" and spec.switching else set()
@@ -281,7 +294,7 @@ def refuse(case: Instance) -> None:
         (orders not in (set(), {0}, {2}), "path constraints of order one, or of several orders"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),
-        (spec.multipliers, "constraints at the end other than given states"),
+        (spec.multipliers and spec.path_constraints, "path constraints beside constraints at the end"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
         (any(one.place is not Place.INITIAL for one in case.free), "an initial time or parameters that are free"),

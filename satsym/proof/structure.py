@@ -12,6 +12,7 @@ from flint import arb, arb_series, ctx
 
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved, balls
 from satsym.proof.balls.taylor import expand, expand_flow, polynomial, unit
+from satsym.proof.ends import End
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
 from satsym.proof.shooting import Arc
 from satsym.proof.statement import Statement
@@ -184,6 +185,24 @@ def leap(
     flow = polynomial(expand_flow(law, series, unit(law.m), terms // 2), h)
     there = [polynomial([s[k] for k in range(terms + 1)], h).mid() for s in series]
     return there, flow.mid(), h, whole
+
+
+def multipliers(
+    statement: Statement, law: Law, z: Sequence[Ball], time: Ball, sizes: Sequence[float]
+) -> tuple[list[Ball], tuple[float, ...]]:
+    """Multipliers of constraints at the end that fit its costates best; and sizes that they have at least."""
+    if not statement.held:
+        return [], ()
+    n, zero = law.n, [arb(0)] * len(statement.held)
+    end = End.at(statement, law, [v.mid() for v in z], time, zero)
+    residuals, jac = end.residuals()
+    slopes = np.array([[float(jac[i, law.m + 1 + k].mid()) for k in range(len(zero))] for i in range(len(residuals))])
+    wanted = np.array([-float(v.mid()) for v in residuals])
+    lines = np.abs(slopes).max(axis=1) > 0.0
+    scale = np.where(lines, np.maximum(np.abs(slopes).max(axis=1), 1e-300), 1.0)
+    nu = np.linalg.lstsq(slopes[lines] / scale[lines, None], wanted[lines] / scale[lines], rcond=None)[0]
+    reach = [max(abs(float(row[j].mid())) * sizes[j] for j in range(n)) for _, row in end.ties]
+    return [arb(float(v)) for v in nu], tuple(1e-3 * sizes[-1] / r if r > 0.0 else 0.0 for r in reach)
 
 
 def sizes_of(statement: Statement, found: Solution, path: Path) -> list[float]:

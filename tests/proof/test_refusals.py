@@ -29,8 +29,11 @@ def body(*parameters: Any) -> Any:
 
 EFFORT = (u**2 + w**2) / 2
 STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
-    "terminal constraints": ({"terminal_constraints": (q + v - 1,)}, {"tf": 1.0}, "constraints at the end"),
-    "terminal inequalities": ({"terminal_inequalities": {"far": q - 9}}, {"tf": 1.0}, "constraints at the end"),
+    "walls beside constraints at the end": (
+        {"terminal_constraints": (q + v - 1,), "path_constraints": {"wall": q - 9}},
+        {"tf": 1.0},
+        "path constraints beside constraints at the end",
+    ),
     "points on the way": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "points on the way"),
     "walls of order one": ({"path_constraints": {"slow": v - 9}}, {"final": END, "tf": 1.0}, "order one"),
     "sets of two kinds": (

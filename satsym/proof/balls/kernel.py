@@ -15,6 +15,8 @@ from satsym.kernels.checking import check
 from satsym.kernels.loading import shipped_text
 from satsym.proof.balls.arithmetic import Answers, BeyondProof, constant, mathematics
 
+CONSTRAINTS = "terminal_constraints"
+"""The name under which a kernel has the constraints at the end."""
 ROUNDED = 15
 """Digits from which a number of generated code may be a rounded one."""
 
@@ -90,7 +92,41 @@ def _definitions(model: Kernels) -> Mapping[str, ast.FunctionDef]:
         raise BeyondProof(f"a generated module whose line {error.line} {error.reason}") from None
     if spec != model.spec:
         raise BeyondProof("a model whose constraints at the end were changed")
-    return {node.name: node for node in functions if not node.name.endswith("_batch")}
+    found = {node.name: node for node in functions if not node.name.endswith("_batch")}
+    if spec.multipliers:
+        found[CONSTRAINTS] = _constraints(found["boundary"], len(spec.states), len(spec.multipliers))
+    return found
+
+
+def _constraints(boundary: ast.FunctionDef, first: int, count: int) -> ast.FunctionDef:
+    """The function of time, states and parameters that has the constraints at the end alone.
+
+    They are residuals of the end, which a module states in one function with transversality: what they are made of is
+    taken from it, and nothing else may occur in it.
+    """
+    *body, last = boundary.body
+    if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Tuple)):
+        raise BeyondProof("constraints at the end in a function of another form")
+    wanted = ast.Tuple(last.value.elts[first : first + count], ast.Load())
+    needed = _names(wanted, ast.Load)
+    kept: list[ast.stmt] = [ast.Return(wanted)]
+    for node in reversed(body):
+        if not _names(node, ast.Store) & needed:
+            continue
+        if not isinstance(node, ast.Assign):
+            raise BeyondProof("constraints at the end that are stated by cases")
+        kept.insert(0, node)
+        needed |= _names(node.value, ast.Load)
+    if needed & {"lam", "nu", "bounds", "final"}:
+        raise BeyondProof("constraints at the end of other than states, time and parameters")
+    made = ast.parse(f"def {CONSTRAINTS}(t, x, p): pass").body[0]
+    assert isinstance(made, ast.FunctionDef)
+    made.body = kept
+    return ast.fix_missing_locations(made)
+
+
+def _names(node: ast.AST, use: type[ast.expr_context]) -> set[str]:
+    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, use)}
 
 
 def _reads_time(node: ast.FunctionDef) -> bool:
