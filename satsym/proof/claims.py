@@ -109,14 +109,14 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
     first = len(spec.multipliers) - len(spec.terminal_inequalities)
     for k in statement.limits:
         called = f"the inequality {spec.terminal_inequalities[k - first]} at the end"
-        if k in statement.held and not end.nu[statement.held.index(k)] > 0:
+        if k in statement.active and not end.nu[statement.active.index(k)] > 0:
             raise NotProved(f"the multiplier of {called} is not shown to be positive")
-        if k not in statement.held and not end.constraints[k][0] < 0:
+        if k not in statement.active and not end.constraints[k][0] < 0:
             raise NotProved(f"{called} is not shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
     parts = [f"{len(statement.targets)} states given", f"{n - len(statement.targets)} free", f"{ranges} ranges"]
     if spec.multipliers:
-        parts += [f"{len(statement.held)} constraints", f"{len(spec.multipliers) - len(statement.held)} not met"]
+        parts += [f"{len(statement.active)} constraints", f"{len(spec.multipliers) - len(statement.active)} not met"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]
     return Hypothesis(
         "the conditions at the end hold, strictly where they are inequalities",

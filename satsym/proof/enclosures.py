@@ -61,7 +61,7 @@ def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
     """The factors of the gradients of path constraints by which costates fall, junction by junction."""
     here = shooting.unknowns(box.nodes, box.lengths)
     _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
-    return list(found[len(shooting.arcs) : len(found) - len(shooting.statement.held)])
+    return list(found[len(shooting.arcs) : len(found) - len(shooting.statement.active)])
 
 
 def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) -> Proof:

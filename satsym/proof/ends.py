@@ -52,7 +52,7 @@ class End:
 
         def weighted() -> Any:
             total = kernel.terminal_cost(given[n], given[:n], p)
-            for k, v in zip(statement.held, nu, strict=True):
+            for k, v in zip(statement.active, nu, strict=True):
                 total = psi[k] * constant(v) + total
             return total
 
@@ -62,7 +62,7 @@ class End:
     @property
     def ties(self) -> list[tuple[Ball, list[Ball]]]:
         """Values and gradients of the constraints that hold with equality."""
-        return [self.constraints[k] for k in self.statement.held]
+        return [self.constraints[k] for k in self.statement.active]
 
     def residuals(self) -> tuple[list[Ball], Matrix]:
         """What vanishes at the end, and its derivatives by the components, by the final time and by the multipliers.

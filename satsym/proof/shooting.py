@@ -143,7 +143,7 @@ class Shooting:
 
     def multipliers(self, lengths: Sequence[Any]) -> list[Any]:
         """The multipliers of constraints at the end, which are the last of what is listed with the lengths."""
-        return list(lengths[len(lengths) - len(self.statement.held) :])
+        return list(lengths[len(lengths) - len(self.statement.active) :])
 
     def scales_of_lengths(self, lengths: Sequence[Ball]) -> list[float]:
         """Sizes of the unknown ones of lengths, multiples and multipliers."""

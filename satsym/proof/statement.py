@@ -78,7 +78,7 @@ class Statement:
         The ends between which free final states must lie, by the place of the state.
     free
         Places of the initial states that are free; in `initial` they have the values where a solver begins.
-    held, limits
+    active, limits
         Places of the constraints at the end that hold with equality, and of those that are inequalities.
     """
 
@@ -95,7 +95,7 @@ class Statement:
     targets: dict[int, Target]
     open_ranges: dict[int, tuple[Any, Any]]
     free: tuple[int, ...]
-    held: tuple[int, ...]
+    active: tuple[int, ...]
     limits: tuple[int, ...]
 
     @property
@@ -171,8 +171,8 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
 def _constraints(spec: ProblemSpec, met: Mapping[str, Side]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Places of the constraints at the end that hold with equality, and of the inequalities."""
     names, first = spec.terminal_inequalities, len(spec.multipliers) - len(spec.terminal_inequalities)
-    held = [*range(first), *(first + k for k, name in enumerate(names) if name in met)]
-    return tuple(held), tuple(range(first, len(spec.multipliers)))
+    active = [*range(first), *(first + k for k, name in enumerate(names) if name in met)]
+    return tuple(active), tuple(range(first, len(spec.multipliers)))
 
 
 def walled(statement: Statement) -> bool:

@@ -191,9 +191,9 @@ def multipliers(
     statement: Statement, law: Law, z: Sequence[Ball], time: Ball, sizes: Sequence[float]
 ) -> tuple[list[Ball], tuple[float, ...]]:
     """Multipliers of constraints at the end that fit its costates best; and sizes that they have at least."""
-    if not statement.held:
+    if not statement.active:
         return [], ()
-    n, zero = law.n, [arb(0)] * len(statement.held)
+    n, zero = law.n, [arb(0)] * len(statement.active)
     end = End.at(statement, law, [v.mid() for v in z], time, zero)
     residuals, jac = end.residuals()
     slopes = np.array([[float(jac[i, law.m + 1 + k].mid()) for k in range(len(zero))] for i in range(len(residuals))])
