@@ -39,14 +39,6 @@ WAITING = (
     "Processes, Interscience 1962",
 )
 
-BEST = (
-    "It is strictly better than all other admissible motions whose states stay near it, however different their "
-    "controls are (a strict strong local optimum)."
-)
-BEST_AT_FREE_TIMES = (
-    "It is strictly better than all other admissible motions whose states stay near it and whose final time is near, "
-    "however different their controls are (a strict strong local optimum)."
-)
 REST = Theorem(
     "no control costs less than none",
     "the running cost is a sum of squares",
@@ -114,7 +106,8 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
         if k not in statement.active and not end.constraints[k][0] < 0:
             raise NotProved(f"{called} is not shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
-    parts = [f"{len(statement.targets)} states given", f"{n - len(statement.targets)} free", f"{ranges} ranges"]
+    given = sum(i < statement.own for i in statement.targets)
+    parts = [f"{given} states given", f"{statement.own - given} free", f"{ranges} ranges"]
     if spec.multipliers:
         parts += [f"{len(statement.active)} constraints", f"{len(spec.multipliers) - len(statement.active)} not met"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]
@@ -175,12 +168,28 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
         )
     jumping = len(laws) > 1 and isinstance(laws[0], AtLevels | Throttled)
     name, source = BROKEN if jumping else FIELD
-    claimed: tuple[str, ...] = (one, BEST_AT_FREE_TIMES if statement.tf is None else BEST)
+    claimed: tuple[str, ...] = (one, _best(statement))
     for (also, where), reason in ((CONVEX, convexity), (WAITING, waits)):
         if reason and not statement.spec.path_constraints:
             name, source = f"{name}; {also}", f"{source}; {where}"
             claimed = (*claimed, f"It is global: {reason}.")
     return Theorem(name, source, claimed)
+
+
+def _best(statement: Statement) -> str:
+    """Say beside which motions an extremal is the best."""
+    more = [i for i in statement.free if i >= statement.own]
+    free = [
+        ("whose initial time is near", statement.clock in more),
+        ("whose final time is near", statement.tf is None and statement.clock not in statement.targets),
+        ("whose free parameters are near", any(i != statement.clock for i in more)),
+    ]
+    near = ["whose states stay near it", *(said for said, holds in free if holds)]
+    listed = " and ".join([", ".join(near[:-1]), near[-1]]) if len(near) > 1 else near[0]
+    return (
+        f"It is strictly better than all other admissible motions {listed}, however different their controls are "
+        "(a strict strong local optimum)."
+    )
 
 
 def scope(statement: Statement) -> str:

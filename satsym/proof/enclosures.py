@@ -27,14 +27,15 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
     nodes, lengths = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
     statement, law = shooting.statement, shooting.arcs[0].law
     states, n, digits = statement.spec.state_names, law.n, record.digits
+    begun = statement.t0 if statement.clock is None else nodes[0][statement.clock]
 
     def row(values: list[Ball]) -> dict[str, Enclosure]:
-        return {name: Enclosure.of(v, digits) for name, v in zip(states, values, strict=True)}
+        return {name: Enclosure.of(v, digits) for name, v in zip(states[: statement.own], values, strict=False)}
 
-    times, fractions = _times(shooting, lengths), sum(arc.segments for arc in shooting.arcs)
+    times, fractions = _times(shooting, lengths, begun), sum(arc.segments for arc in shooting.arcs)
     kept = sorted({round(k * fractions / (MOST_NODES - 1)) for k in range(MOST_NODES)})
-    final = shooting.final_time(lengths)
-    ends = [sum(lengths[: j + 1], statement.t0) for j in range(len(shooting.arcs) - 1)]
+    final = shooting.final_time(lengths) if statement.clock is None else nodes[-1][statement.clock]
+    ends = [sum(lengths[: j + 1], begun) for j in range(len(shooting.arcs) - 1)]
     cost = _cost(shooting, box, last, _share(shooting, box, last))
     last_state = [constant(v) for v in nodes[-1][:n]]
     objective = cost + value(statement.kernel.terminal_cost(constant(final), last_state, statement.p))
@@ -53,8 +54,16 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
         t_final=Enclosure.of(final, digits),
         objective=Enclosure.of(-objective if statement.spec.maximise else objective, digits),
         switching_times=tuple(Enclosure.of(v, digits) for v in ends),
+        numbers={**record.numbers, **_found(statement, nodes[0], digits)},
         unique_within=radius,
     )
+
+
+def _found(statement: Statement, start: list[Ball], digits: int) -> dict[str, str]:
+    """Free parameters and a free initial time, by their names among the numbers of a record."""
+    more = [i for i in statement.free if i >= statement.own]
+    called = {i: "time.t0" if i == statement.clock else f"parameters.{statement.spec.states[i].symbol}" for i in more}
+    return {name: f"free; {Enclosure.of(start[i], digits).text} is best" for i, name in called.items()}
 
 
 def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
@@ -81,10 +90,10 @@ def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) ->
     )
 
 
-def _times(shooting: Shooting, lengths: list[Ball]) -> list[Ball]:
+def _times(shooting: Shooting, lengths: list[Ball], begun: Ball) -> list[Ball]:
     """The times of the nodes."""
-    found = [shooting.statement.t0]
-    begins = accumulate(lengths, initial=shooting.statement.t0)
+    found = [begun]
+    begins = accumulate(lengths, initial=begun)
     for arc, begin, length in zip(shooting.arcs, begins, lengths, strict=False):
         found += [begin + length * arb(f) for f in arc.fractions[1:]]
     return found

@@ -186,7 +186,8 @@ def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
 
 
 def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
-    """Diagonals of W, at later times, of the field of all extremals from the initial state."""
+    """Diagonals of W, at later times, of the field of all extremals from the initial states that are admitted."""
+    free = shooting.statement.free
     n, flow = shooting.arcs[0].law.n, unit(shooting.arcs[0].law.m)
     jumping = isinstance(shooting.arcs[0].law, AtLevels | Throttled)
     reach = passed.segments[:1] if jumping else passed.segments
@@ -197,7 +198,9 @@ def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
         if k not in wanted:
             continue
         try:
-            w = _block(flow, n, n, n) * _block(flow, 0, n, n).inv()
+            of = [i if i in free else n + i for i in range(n)]  # what differs at the start of all these extremals
+            x, lam = (arb_mat(n, n, [flow[r + i, c] for i in range(n) for c in of]) for r in (0, n))
+            w = lam * x.inv()
         except ZeroDivisionError:
             continue
         for kappa in (1, 8, 64):

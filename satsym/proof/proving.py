@@ -20,6 +20,7 @@ from satsym.proof.convexity import convex, waiting
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
 from satsym.proof.inclusion import Inclusion, krawczyk
+from satsym.proof.lifting import Lifted, with_more_states
 from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
 from satsym.proof.rest import costs_nothing, final_state
@@ -131,6 +132,8 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
         raise NotProved(f"there is no answer to begin with: {found.message}")
     statement = stated(case, found.instance.met, found.x[:, -1].tolist())
     record = replace(record, numbers=dict(statement.source.stated))
+    if isinstance(statement.kernel, Lifted):
+        found = with_more_states(statement.kernel, found, statement.p)
     shooting, place = _begun(statement, found, record.digits)
     for arc in shooting.arcs:
         verify(statement, arc.law, place.nodes, shooting.sizes)
@@ -179,6 +182,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
         lengths = [statement.tf - statement.t0]
     place = located(shooting, nodes, [*lengths, *map(arb, jumps), *nu], digits)
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
+    moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR:
         raise NotProved("the answer is not an extremal: the nearest one has other costates")

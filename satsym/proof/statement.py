@@ -19,6 +19,7 @@ from satsym.instance.unknowns import Place
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, constant
 from satsym.proof.balls.exact import Source
 from satsym.proof.balls.kernel import CONSTRAINTS, BallKernel
+from satsym.proof.lifting import Lifted
 from satsym.spec import ProblemSpec
 
 _OF_INSTANCES = frozenset(
@@ -80,6 +81,9 @@ class Statement:
         Places of the initial states that are free; in `initial` they have the values where a solver begins.
     active, limits
         Places of the constraints at the end that hold with equality, and of those that are inequalities.
+    clock
+        The place of time among the states; ``None`` where it is none. It is one where the initial time is free, and
+        `t0` and `tf` are then counted from it.
     """
 
     case: Instance
@@ -97,6 +101,7 @@ class Statement:
     free: tuple[int, ...]
     active: tuple[int, ...]
     limits: tuple[int, ...]
+    clock: int | None = None
 
     @property
     def spec(self) -> ProblemSpec:
@@ -107,6 +112,11 @@ class Statement:
     def p(self) -> list[Any]:
         """The parameters as constants."""
         return [constant(v) for v in self.parameters]
+
+    @property
+    def own(self) -> int:
+        """How many states the model has itself."""
+        return len(self.case.model.spec.states)
 
 
 def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[float] = ()) -> Statement:
@@ -126,13 +136,16 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
     """
     refuse(case)
     spec, source = case.model.spec, Source(case)
+    unknown = {one.name for one in case.free if one.place is Place.PARAMETER}
     parameters = [
-        source.number(value, v.unit, "parameters", v.symbol)
+        source.free(value, "parameters", v.symbol)
+        if v.symbol in unknown
+        else source.number(value, v.unit, "parameters", v.symbol)
         if value != v.default or source.gives("parameters", v.symbol)
         else source.default(value, "parameters", v.symbol)
         for v, value in zip(spec.parameters, case.parameters, strict=True)
     ]
-    free = tuple(sorted(one.index for one in case.free))
+    free = tuple(sorted(one.index for one in case.free if one.place is Place.INITIAL))
     initial = [
         source.free(value, "initial", v.symbol) if i in free else source.number(value, v.unit, "initial", v.symbol)
         for i, (v, value) in enumerate(zip(spec.states, case.initial, strict=True))
@@ -143,6 +156,7 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         targets = {i: _turned(case, i, target, last[i] if last else 0.0) for i, target in targets.items()}
     kernel = BallKernel(case.model)
     _refuse_cases(kernel)
+    starts = any(one.place is Place.TIME for one in case.free)
     lower, upper = (
         [
             source.number(value, v.unit, "control", v.symbol, side) if math.isfinite(value) else value
@@ -150,13 +164,13 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         ]
         for side, row in enumerate((case.lower, case.upper))
     )
-    return Statement(
+    statement = Statement(
         case,
         kernel,
         source,
         parameters,
         initial,
-        source.number(case.t0, time, "time", "t0"),
+        source.free(case.t0, "time", "t0") if starts else source.number(case.t0, time, "time", "t0"),
         None if case.tf is None else source.number(case.tf, time, "time", "tf"),
         _bounds(case, source, lower, upper),
         lower,
@@ -165,6 +179,34 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
         ranges,
         free,
         *_constraints(spec, met),
+    )
+    places = [i for i, v in enumerate(spec.parameters) if v.symbol in unknown]
+    return _lifted(statement, places, starts) if places or starts else statement
+
+
+def _lifted(statement: Statement, places: Sequence[int], starts: bool) -> Statement:
+    """The problem with free parameters among its states, and time if it begins freely or the motion depends on it."""
+    spec, t0, tf = statement.spec, statement.t0, statement.tf
+    if any(target.value is None for target in statement.targets.values()):
+        raise BeyondProof("an end on the reference beside free parameters or a free initial time")
+    clocked = starts or not spec.autonomous
+    kernel, own = Lifted(statement.case.model, places, clocked), len(spec.states)
+    clock = own + len(places) if clocked else None
+    free = [*statement.free, *range(own, own + len(places)), *([clock] if starts else [])]
+    targets = dict(statement.targets)
+    if clock is not None and starts and tf is not None:
+        targets[clock], tf = Target(tf), None
+    if clock is not None and tf is not None:
+        tf = tf - t0
+    return replace(
+        statement,
+        kernel=kernel,
+        initial=[*statement.initial, *(statement.parameters[i] for i in places), *([t0] if clocked else [])],
+        t0=arb(0) if clocked else t0,
+        tf=tf,
+        targets=targets,
+        free=tuple(i for i in free if i is not None),
+        clock=clock,
     )
 
 
@@ -289,6 +331,7 @@ def refuse(case: Instance) -> None:
     if not spec.has_cost:
         raise BeyondProof("a model without a cost")
     orders = {one.order for one in spec.path_constraints}
+    lifts = any(one.place is not Place.INITIAL for one in case.free)
     for there, feature in (
         (spec.path_constraints and spec.control_set != "free", "path constraints beside bounds of the controls"),
         (orders not in (set(), {0}, {2}), "path constraints of order one, or of several orders"),
@@ -297,7 +340,11 @@ def refuse(case: Instance) -> None:
         (spec.multipliers and spec.path_constraints, "path constraints beside constraints at the end"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
-        (any(one.place is not Place.INITIAL for one in case.free), "an initial time or parameters that are free"),
+        (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),
+        (
+            lifts and any(part.branch == "throttled" for part in spec.control_parts),
+            "thrust that is throttled beside free parameters or a free initial time",
+        ),
         (spec.equilibria, "a model that is an attitude in orbit"),
     ):
         if there:

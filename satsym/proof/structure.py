@@ -210,6 +210,8 @@ def sizes_of(statement: Statement, found: Solution, path: Path) -> list[float]:
     n = (len(path.values)) // 2
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
-    rates = statement.case.model.running_cost_batch(found.times, found.x, found.u, statement.case.parameters)
+    rates = statement.case.model.running_cost_batch(
+        found.times, found.x[: statement.own], found.u, found.instance.parameters
+    )
     cost = float(np.trapezoid(np.abs(np.broadcast_to(rates, found.times.shape)), found.times))
     return [*(max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group), cost or 1.0]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 import sympy
 
 import satsym
+from satsym.instance.unknowns import Place, Unknown
 from satsym.proof.proving import prove
 from satsym.proof.record import Outcome
 from satsym.symbolic import Ball, Box
@@ -41,7 +43,6 @@ STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
         {"final": END, "tf": 1.0, "control": {"u": [-9.0, 9.0], "other": {"max_norm": 9.0}}},
         "a product of several control sets",
     ),
-    "a free beginning": ({}, {"final": END, "tf": 3.0, "t0": "free"}, "an initial time or parameters that are free"),
 }
 
 
@@ -49,8 +50,7 @@ STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
 @pytest.mark.parametrize("feature", STATED)
 def test_a_feature_is_named(feature: str) -> None:
     stated, given, named = STATED[feature]
-    cost = EFFORT + 1 + (satsym.symbolic.t**2 if "t0" in given else 0)
-    problem = satsym.Problem(name="refused", title="Refused", model=body(), running_cost=cost, **stated)
+    problem = satsym.Problem(name="refused", title="Refused", model=body(), running_cost=EFFORT + 1, **stated)
     case = satsym.Instance.of(problem, initial=START, **given)
     proof = prove(case.case, lambda: pytest.fail("nothing need be solved"))
     assert proof.status is Outcome.BEYOND
@@ -58,14 +58,16 @@ def test_a_feature_is_named(feature: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_free_parameter_is_refused() -> None:
+def test_a_free_parameter_beside_a_wall_is_refused() -> None:
     problem = satsym.Problem(
         name="refused",
         title="Refused",
         model=body(satsym.Variable("k", "k", default=1.0)),
         running_cost=EFFORT + (k - 2) ** 2,
+        path_constraints={"wall": q - 9},
     )
-    case = satsym.Instance.of(problem, initial=START, final=END, tf=1.0, parameters={"k": "free"})
-    proof = prove(case.case, lambda: pytest.fail("nothing need be solved"))
+    case = satsym.Instance.of(problem, initial=START, final=END, tf=1.0).case
+    case = replace(case, free=(Unknown(Place.PARAMETER, "k", 0, positive=False),))
+    proof = prove(case, lambda: pytest.fail("nothing need be solved"))
     assert proof.status is Outcome.BEYOND
-    assert "parameters that are free" in proof.reason
+    assert "beside free parameters" in proof.reason

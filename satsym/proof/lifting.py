@@ -1,0 +1,204 @@
+"""Free parameters and a free initial time as states: of rate zero and one, with initial values that are free.
+
+A proof about the motion with these states is one about the problem as it was stated. What a generated module says of a
+motion is kept; derivatives of H by the new states are taken from its motion and costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from satsym.instance.unknowns import Place
+from satsym.kernels import Kernels
+from satsym.proof.balls.arithmetic import BeyondProof, Series, constant, value
+from satsym.proof.balls.jets import Jet, gradients
+from satsym.proof.balls.kernel import BallKernel
+from satsym.solution import Solution
+from satsym.spec import Variable
+
+CLOCK = Variable("t", "t", meaning="time")
+
+
+class Lifted(BallKernel):
+    """A module whose states are its own, then parameters, then time where it is one of them.
+
+    Parameters
+    ----------
+    model
+        The kernels that floats are computed with.
+    places
+        Places of the parameters that are states.
+    clocked
+        Whether time is a state; what the argument ``t`` says is then of no account.
+    """
+
+    def __init__(self, model: Kernels, places: Sequence[int], clocked: bool) -> None:
+        super().__init__(model)
+        self.places, self.clocked, self.own = tuple(places), clocked, len(self.spec.states)
+        more = (*(self.spec.parameters[i] for i in places), *((CLOCK,) if clocked else ()))
+        self.spec = replace(self.spec, states=(*self.spec.states, *more), autonomous=self.spec.autonomous or clocked)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise BeyondProof(f"the function {name} of a motion with free parameters or a free initial time")
+
+    def _of(self, name: str) -> Callable[..., Any]:
+        """A function of the module itself."""
+        return super().__getattr__(name)
+
+    def _parts(self, t: Any, x: Sequence[Any], p: Sequence[Any]) -> tuple[Any, Sequence[Any], list[Any]]:
+        """Time, the module's own states, and all parameters."""
+        q = list(p)
+        for place, v in zip(self.places, x[self.own :], strict=False):
+            q[place] = v
+        return (x[-1] if self.clocked else t), x[: self.own], q
+
+    def _more(self) -> list[Series]:
+        """Rates of the states that are not the module's own."""
+        return [constant(0)] * len(self.places) + [constant(1)] * self.clocked
+
+    def dynamics(self, t: Any, x: Sequence[Any], u: Sequence[Any], p: Sequence[Any]) -> list[Any]:
+        time, own, q = self._parts(t, x, p)
+        return [*self._of("dynamics")(time, own, u, q), *self._more()]
+
+    def running_cost(self, t: Any, x: Sequence[Any], u: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("running_cost")(time, own, u, q)
+
+    def terminal_cost(self, t: Any, x: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("terminal_cost")(time, own, q)
+
+    def terminal_constraints(self, t: Any, x: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("terminal_constraints")(time, own, q)
+
+    def control_law(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], bounds: Any) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("control_law")(time, own, lam[: self.own], q, bounds)
+
+    def control_hessian(self, t: Any, x: Sequence[Any], u: Any, lam: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("control_hessian")(time, own, u, lam[: self.own], q)
+
+    def switching_function(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("switching_function")(time, own, lam[: self.own], q)
+
+    def magnitude_weight(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        return self._of("magnitude_weight")(time, own, lam[: self.own], q)
+
+    def canonical(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], bounds: Any) -> list[Any]:
+        time, own, q = self._parts(t, x, p)
+        rates = self._of("canonical")(time, own, lam[: self.own], q, bounds)
+        with self._unnoted():
+            u = self.control_law(t, x, lam, p, bounds)
+        return [*rates[: self.own], *self._more(), *rates[self.own :], *self._falls(t, x, u, lam, p)]
+
+    def costate_rate(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> Any:
+        time, own, q = self._parts(t, x, p)
+        rates = self._of("costate_rate")(time, own, u, lam[: self.own], q)
+        with self._unnoted():
+            return [*rates, *self._falls(t, x, u, lam, p)]
+
+    def canonical_jacobian(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], bounds: Any) -> Any:
+        n = len(x)
+        with self._unnoted():
+            u = self.control_law(t, x, lam, p, bounds)
+            by = gradients(lambda z: self.control_law(t, z[:n], z[n:], p, bounds), [*x, *lam])
+            return self._jacobian(t, x, u, lam, p, by)
+
+    def extremal_jacobian(
+        self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]
+    ) -> list[Any]:
+        with self._unnoted():
+            return self._jacobian(t, x, u, lam, p, [constant(0)] * (len(u) * 2 * len(x)))
+
+    @contextmanager
+    def _unnoted(self) -> Iterator[None]:
+        """Evaluate what is compared elsewhere as well, and noted there."""
+        noted, self.answers.noted = self.answers.noted, None
+        try:
+            yield
+        finally:
+            self.answers.noted = noted
+
+    def _hamiltonian(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> Any:
+        total = self.running_cost(t, x, u, p) + constant(0)
+        for a, b in zip(lam, self.dynamics(t, x, u, p), strict=True):
+            total = b * a + total
+        return total
+
+    def _falls(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> list[Series]:
+        """Rates of the costates that belong to states which are not the module's own."""
+        own, more = list(x[: self.own]), list(x[self.own :])
+        slopes = gradients(lambda v: [self._hamiltonian(t, [*own, *v], u, lam, p)], more)
+        return [-v for v in slopes]
+
+    def _jacobian(
+        self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], by: Sequence[Any]
+    ) -> list[Any]:
+        """Derivatives of all rates by states and costates, row by row, where those of the controls are these."""
+        n, m = len(x), len(u)
+        given = [Jet(v, {i: constant(1)}) for i, v in enumerate((*x, *u))]
+        rates = [_jet(v) for v in self.dynamics(t, given[:n], given[n:], p)]
+        total = _jet(self._hamiltonian(t, given[:n], given[n:], lam, p))
+
+        def through(slopes: Sequence[Any], j: int) -> Any:
+            """What controls do, whose effects these are, when component j changes."""
+            parts = [s * by[a * 2 * n + j] for a, s in enumerate(slopes) if s is not None]
+            return sum(parts, constant(0))
+
+        def second(i: int, j: int) -> Any:
+            return total.second.get((min(i, j), max(i, j)))
+
+        found: list[Any] = []
+        for rate in rates:
+            effects = [rate.first.get(n + a) for a in range(m)]
+            found += [through(effects, j) + rate.first.get(j, constant(0)) for j in range(n)]
+            found += [through(effects, n + j) for j in range(n)]
+        for i in range(n):
+            effects = [second(i, n + a) for a in range(m)]
+            for j in range(n):
+                direct = second(i, j)
+                found.append(-(through(effects, j) + (constant(0) if direct is None else direct)))
+            found += [-(through(effects, n + j) + rates[j].first.get(i, constant(0))) for j in range(n)]
+        return found
+
+
+def _jet(v: Any) -> Jet:
+    return v if isinstance(v, Jet) else Jet(v)
+
+
+def with_more_states(kernel: Lifted, found: Solution, parameters: Sequence[Any]) -> Solution:
+    """What a solver found, with all states of a kernel and their costates.
+
+    New costates vanish at the beginning, that of a time which does not begin freely at the end, but for what the end
+    costs.
+    """
+    count, states = len(found.times), [found.x]
+    states += [np.full((1, count), found.instance.parameters[i]) for i in kernel.places]
+    states += [found.times[None]] if kernel.clocked else []
+    x = np.vstack(states)
+    more = len(x) - len(found.x)
+    ctx.cap = 1
+    rates = np.zeros((more, count))
+    for k in range(count):
+        there = [constant(arb(float(v))) for v in x[:, k]]
+        costates = [*(constant(arb(float(v))) for v in found.lam[:, k]), *[constant(0)] * more]
+        u = [constant(arb(float(v))) for v in found.u[:, k]]
+        t = constant(arb(float(found.times[k])))
+        rates[:, k] = [float(value(v).mid()) for v in kernel.costate_rate(t, there, u, costates, parameters)[-more:]]
+    steps = (rates[:, 1:] + rates[:, :-1]) / 2 * np.diff(found.times)
+    added = np.hstack([np.zeros((more, 1)), np.cumsum(steps, axis=1)])
+    if kernel.clocked and not any(one.place is Place.TIME for one in found.instance.free):
+        added[-1] -= added[-1, -1]
+    return replace(found, x=x, lam=np.vstack([found.lam, added]))
