@@ -334,7 +334,7 @@ def refuse(case: Instance) -> None:
     lifts = any(one.place is not Place.INITIAL for one in case.free)
     for there, feature in (
         (spec.path_constraints and spec.control_set != "free", "path constraints beside bounds of the controls"),
-        (orders not in (set(), {0}, {2}), "path constraints of order one, or of several orders"),
+        (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),
         (spec.multipliers and spec.path_constraints, "path constraints beside constraints at the end"),

@@ -1,8 +1,8 @@
-"""Arcs on and beside the boundaries of path constraints of order two that are linear in the states.
+"""Arcs on and beside the boundaries of path constraints of order one or two that are linear in the states.
 
-On a boundary the controls keep the second rate of the constraint at zero, and the costates change by a multiple of its
-gradient besides; where a boundary is entered, left or touched they jump by such a multiple (direct adjoining). In a
-convex problem, multiples that are not negative make the extremal a global minimum.
+On a boundary the controls keep the first or the second rate of the constraint at zero, and the costates change by a
+multiple of its gradient besides; where a boundary of order two is entered, left or touched they jump by such a multiple
+(direct adjoining). In a convex problem, multiples that are not negative make the extremal a global minimum.
 """
 
 from __future__ import annotations
@@ -98,6 +98,7 @@ class OnBoundary(Pushed):
 
     def __init__(self, kernel: BallKernel, parameters: Sequence[Series], which: int) -> None:
         super().__init__(kernel, parameters, which)
+        self.order = kernel.spec.path_constraints[which].order
         self.slope = [constant(v) for v in gradient_of(self, which)]
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
@@ -110,13 +111,16 @@ class OnBoundary(Pushed):
         return self.slope
 
     def vanishing(self, z: Sequence[Series], law: Law | None = None) -> list[Series]:
-        """What is zero all along: the constraint, its rate, H_u along the boundary, and the rate of that."""
+        """What is zero all along: the constraint, its rate, H_u along the boundary, and the rate of that.
+
+        Of a constraint of order one its rate is zero by the control, and only H_u is left of the others.
+        """
         t, x, lam = self.parts(z)
         u, k = (law or self).control(z), self.which
         level = self.kernel.path_constraints(t, x, u, self.p, ())[k]
-        rate = self.kernel.path_rates(t, x, u, self.p)[2 * k]
-        others = self.kernel.path_vanishing(t, x, u, lam, self.p, ())[2 * k : 2 * k + 2]
-        return [v + constant(0) for v in (level, rate, *others)]
+        rates = self.kernel.path_rates(t, x, u, self.p)[2 * k : 2 * k + self.order - 1]
+        others = self.kernel.path_vanishing(t, x, u, lam, self.p, ())[2 * k : 2 * k + self.order]
+        return [v + constant(0) for v in (level, *rates, *others)]
 
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
         return [(wall(k), -v) for k, v in enumerate(levels(self, z)) if k != self.which]
@@ -139,14 +143,17 @@ def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[J
         ):
             raise BeyondProof("a structure of boundary arcs that is not recognised")
         boundary = OnBoundary(kernel, p, which)
+        first = boundary.order == 1
+        if first and event.kind == "touch":
+            raise BeyondProof("a path constraint of order one that is touched")
         laws.append(boundary if entered else BesideWalls(kernel, p, ()))
-        order = 2 if event.kind == "touch" else 3
-        asked = {"entry": 4, "touch": 2, "exit": 0}[event.kind]
-        slope = tuple(gradient_of(boundary, which))
+        order = 2 if first or event.kind == "touch" else 3
+        asked = {"entry": 2 * boundary.order, "touch": 2, "exit": 0}[event.kind]
+        slope = () if first else tuple(gradient_of(boundary, which))
         vanishing = partial(_first, boundary, laws[-1], asked)
         junctions.append(Junction(wall(which), wall(which), order, vanishing, slope))
         times.append(event.t)
-        jumps.append(_jump(found, event.t, slope))
+        jumps += [] if first else [_jump(found, event.t, slope)]
     return laws, junctions, [*times, float(found.times[-1])], jumps
 
 

@@ -37,7 +37,6 @@ STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
         "path constraints beside constraints at the end",
     ),
     "points on the way": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "points on the way"),
-    "walls of order one": ({"path_constraints": {"slow": v - 9}}, {"final": END, "tf": 1.0}, "order one"),
     "sets of two kinds": (
         {"control_sets": {"one": Box("u"), "other": Ball("w")}},
         {"final": END, "tf": 1.0, "control": {"u": [-9.0, 9.0], "other": {"max_norm": 9.0}}},
