@@ -1,6 +1,7 @@
 """What is proved of the shipped instances, in which time, and of random extremals with and without conjugate points.
 
-Both tables are in docs/proved.md; ``make bench-proof`` writes them anew.
+Both tables are in docs/proved.md; ``make bench-proof`` writes them anew. A transfer in orbital elements is proved by
+``python -m tests.bench.proof --transfer``, in some ten minutes.
 """
 
 from __future__ import annotations
@@ -19,11 +20,14 @@ from satsym.instance import Instance
 from satsym.proof.proving import prove
 from satsym.proof.record import Outcome, Proof
 from satsym.solution import Solution
+from tests.bench import orbit_raising
 from tests.bench.extremals import KINDS, drawn
 
 PAGE = Path(__file__).parents[2] / "docs" / "proved.md"
 SHIPPED, RANDOM = "table of proved optima", "table of random extremals"
 SEED, COUNT, DIGITS = 11, 100, 10
+OF_TRANSFER = 8
+"""Digits of the transfer in orbital elements."""
 
 
 def of_shipped(names: Sequence[str]) -> list[tuple[str, Proof, float]]:
@@ -87,6 +91,19 @@ def of_random(count: int) -> str:
     return "\n".join(lines) + "\n"
 
 
+def of_transfer() -> str:
+    """Prove the transfer in orbital elements; what is known of it, in lines."""
+    case = orbit_raising.stated().case
+    solution = solvers.solve(case)
+    spent = time.process_time()
+    proof = prove(case, lambda: solution, OF_TRANSFER)
+    lines = [f"{proof.status.value} {proof.reason}, in {time.process_time() - spent:.0f} s"]
+    lines += [f"{h.name}: {h.value}" for h in proof.hypotheses]
+    lines += [f"final time {proof.t_final.text}"] if proof.t_final else []
+    lines += [f"lambda_{name}(t0) {v.text}" for name, v in proof.costate_initial.items()]
+    return "\n".join(lines)
+
+
 def write(called: str, text: str) -> None:
     """Put a table in the place of the former one on the page."""
     begin, end = f"<!-- {called} -->\n", f"<!-- end of the {called} -->\n"
@@ -101,7 +118,11 @@ def main() -> int:
     parser.add_argument("--random", type=int, metavar="N", help="N random extremals alone, and write nothing")
     parser.add_argument("--only", nargs="*", metavar="NAME", help="print the rows of these instances, write nothing")
     parser.add_argument("--part", choices=("shipped", "random"), help="write one of the two tables alone")
+    parser.add_argument("--transfer", action="store_true", help="the transfer in orbital elements, and write nothing")
     asked = parser.parse_args()
+    if asked.transfer:
+        print(of_transfer())
+        return 0
     if asked.random is not None:
         print(of_random(asked.random))
         return 0
