@@ -22,7 +22,8 @@ from satsym.proof.statement import Statement
 def convex(statement: Statement) -> str:
     """Say why a problem is convex, in words; empty where that is not known.
 
-    A range of a final state is a convex end set, and so is a given state; a final time that is free is not.
+    A range of a final state is a convex end set, and so are a given state and linear equations and inequalities; a
+    final time that is free is not.
     """
     spec = statement.spec
     if statement.tf is None or spec.control_set not in ("free", "box", "ball") or not spec.autonomous:
@@ -81,12 +82,10 @@ def _linear(statement: Statement) -> bool:
 
 
 def _affine_end(statement: Statement) -> bool:
-    """Whether constraints at the end are equations that are linear in the states, apart from constants."""
+    """Whether constraints at the end are linear in the states, apart from constants: a convex end set, then."""
     kernel, n = statement.kernel, len(statement.spec.states)
     if not statement.spec.multipliers:
         return True
-    if statement.spec.terminal_inequalities:
-        return False
     rows = _anywhere(
         statement, lambda given: kernel.terminal_constraints(constant(statement.tf), given[:n], statement.p)
     )

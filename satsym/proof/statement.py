@@ -337,7 +337,6 @@ def refuse(case: Instance) -> None:
         (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),
-        (spec.multipliers and spec.path_constraints, "path constraints beside constraints at the end"),
         (spec.chattering, "controls that chatter"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
         (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),

@@ -48,6 +48,7 @@ def problem(kind: str) -> Any:
         "inside": {"terminal_inequalities": {"level": level}},
         "outside": {"terminal_inequalities": {"level": -level}},
         "turning": {"terminal_constraints": (x - sympy.cos(3 * t), y - 2 * sympy.sin(3 * t))},
+        "beyond a line": {"terminal_inequalities": {"level": x + y - 1}},
         "twice": {"terminal_constraints": (level, 2 * level)},
     }[kind]
     cost = (u**2 + w**2) / 2 + (1 if kind == "turning" else 0)
@@ -116,11 +117,23 @@ def test_an_inequality_that_is_met_pushes() -> None:
     assert "multiplier of the inequality level" in proof.reason
 
 
+def test_a_half_plane_is_entered_at_the_least_cost_of_all() -> None:
+    """The distance from (3, 1) to x + y = 1 is 3/sqrt(2)."""
+    case = stated("beyond a line", (3.0, 1.0))
+    proof = prove(case, lambda: solvers.solve(case))
+    assert proof.status is Outcome.PROVED
+    assert held(proof, mpmath.mpf(9) / 4)
+    assert proof.theorem is not None
+    assert "It is global" in proof.theorem.claims[-1]
+
+
 def test_an_inequality_that_is_not_met_is_kept() -> None:
     case = stated("outside", (3.0, 1.0))
     proof = prove(case, lambda: straight(case, (3.0, 1.0), (3.0, 1.0), 1))
     assert proof.status is Outcome.PROVED
     assert held(proof, 0)
+    assert proof.theorem is not None
+    assert not any("global" in claim for claim in proof.theorem.claims)
     case = stated("inside", (3.0, 1.0))
     proof = prove(case, lambda: straight(case, (3.0, 1.0), (3.0, 1.0), 1))
     assert proof.status is Outcome.NOT_PROVED

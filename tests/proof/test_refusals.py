@@ -31,11 +31,6 @@ def body(*parameters: Any) -> Any:
 
 EFFORT = (u**2 + w**2) / 2
 STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
-    "walls beside constraints at the end": (
-        {"terminal_constraints": (q + v - 1,), "path_constraints": {"wall": q - 9}},
-        {"tf": 1.0},
-        "path constraints beside constraints at the end",
-    ),
     "points on the way": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "points on the way"),
     "sets of two kinds": (
         {"control_sets": {"one": Box("u"), "other": Ball("w")}},

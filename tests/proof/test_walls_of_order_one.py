@@ -22,7 +22,7 @@ from satsym.solution import Solution
 
 
 @cache
-def problem() -> Any:
+def problem(tied: bool = False) -> Any:
     q, v, u, w = sympy.symbols("q v u w", real=True)
     motion = satsym.FirstOrder(
         name="limited_motion",
@@ -38,6 +38,7 @@ def problem() -> Any:
         model=motion,
         running_cost=u**2 / 2,
         path_constraints={"speed": v - w},
+        terminal_constraints=(q + v - 1, 2 * v - q + 1) if tied else (),
     )
 
 
@@ -64,6 +65,16 @@ def test_a_limited_speed_is_kept_at_least_cost(w: float) -> None:
         entered, left = proof.switching_times
         assert holds(entered, rising)
         assert holds(left, 1 - rising)
+    assert proof.theorem is not None
+    assert "global" in proof.theorem.claims[-1]
+
+
+def test_a_wall_beside_constraints_that_give_the_same_end() -> None:
+    _, found = solved(1.25)
+    case = satsym.Instance.of(problem(tied=True), initial={"q": 0.0, "v": 0.0}, final={}, tf=1.0).case
+    proof = prove(case, lambda: replace(found, instance=case))
+    assert proof.status is Outcome.PROVED, proof.reason
+    assert holds(proof.objective, mpmath.mpf(125) / 18)
     assert proof.theorem is not None
     assert "global" in proof.theorem.claims[-1]
 
