@@ -28,7 +28,11 @@ A, C = satsym.Variable("a", "a", default=0.0), satsym.Variable("c", "c", default
 
 @cache
 def problem(kind: str) -> Any:
-    rates: Any = {"dated": {q: u}, "drifting": {q: u + a}, "windy": {q: u + a * t}, "soft": {q: u + a}}[kind]
+    moving: Any = {"drifting": u + a, "windy": u + a * t, "soft": u + a}
+    rates = {q: moving.get(kind, u)}
+    ending: dict[str, Any] = {}
+    if kind == "aimed":
+        ending = {"terminal_constraints": (q - a,), "terminal_cost": 2 * sympy.sin(3 * a)}
     motion = satsym.FirstOrder(
         name="drift_motion",
         title="A point in a drift",
@@ -42,8 +46,8 @@ def problem(kind: str) -> Any:
         "drifting": sympy.sin(3 * a),
         "windy": a**2 / 2,
         "soft": (c * a**2 - q**2) / 2,
-    }[kind]
-    return satsym.Problem(name="drift", title="In a drift", model=motion, running_cost=u**2 / 2 + cost)
+    }.get(kind, 0)
+    return satsym.Problem(name="drift", title="In a drift", model=motion, running_cost=u**2 / 2 + cost, **ending)
 
 
 def drifting(kind: str, **given: Any) -> Instance:
@@ -92,6 +96,26 @@ def test_of_all_stationary_drifts_minima_are_proved() -> None:
             assert holds(proof, cost(drift))
             centre, radius = number(proof, "parameters.a")
             assert abs(centre - drift) <= radius < mpmath.mpf(10) ** -18
+            seen.add(bool(least))
+    assert seen == {True, False}
+
+
+def test_of_all_stationary_aims_minima_are_proved() -> None:
+    """From 1 to a parameter, at which the motion must end: (1 - a)^2/2 + 2 sin(3 a)."""
+    case = drifting("aimed", initial={"q": 1.0}, final={}, tf=1.0, parameters={"a": "free"})
+    seen = set()
+    with mpmath.workdps(40):
+
+        def cost(aim: Any) -> Any:
+            return (1 - aim) ** 2 / 2 + 2 * mpmath.sin(3 * aim)
+
+        for aim in roots(lambda s: mpmath.diff(cost, s), -3, 4):
+            times, pace = np.linspace(0.0, 1.0, 21), float(aim - 1)
+            given = found_of(case, times, 1 + pace * times, np.full(21, pace), (float(aim), 0.0))
+            proof = prove(case, lambda given=given: given)
+            least = mpmath.diff(cost, aim, 2) > 0
+            assert proof.status is (Outcome.PROVED if least else Outcome.NOT_PROVED), proof.reason
+            assert holds(proof, cost(aim))
             seen.add(bool(least))
     assert seen == {True, False}
 
