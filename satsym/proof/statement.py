@@ -341,6 +341,10 @@ def refuse(case: Instance) -> None:
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
         (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),
         (
+            spec.conditions and any(one.place is Place.PARAMETER for one in case.free),
+            "free parameters that must obey conditions together",
+        ),
+        (
             lifts and any(part.branch == "throttled" for part in spec.control_parts),
             "thrust that is throttled beside free parameters or a free initial time",
         ),

@@ -19,6 +19,7 @@ from satsym.instance.unknowns import Place, Unknown
 from satsym.proof.proving import prove
 from satsym.proof.record import Outcome, Proof
 from satsym.solution import Solution
+from satsym.spec import Condition
 from satsym.symbolic import t
 from tests.proof.closed_forms import answer
 
@@ -244,6 +245,14 @@ def test_the_best_engine_of_a_motion_with_a_switch() -> None:
     assert holds(proof, 2)
     centre, radius = number(proof, "parameters.a")
     assert abs(centre - 4) <= radius
+
+
+def test_conditions_on_a_free_parameter_are_refused() -> None:
+    case = drifting("drifting", initial={"q": 0.0}, final={"q": 1.0}, tf=1.0, parameters={"a": "free"})
+    spec = replace(case.model.spec, conditions=(Condition((("a", 1.0), ("c", 1.0)), True, "a test"),))
+    proof = prove(replace(case, model=replace(case.model, spec=spec)), lambda: pytest.fail("nothing need be solved"))
+    assert proof.status is Outcome.BEYOND
+    assert "obey conditions" in proof.reason
 
 
 def test_a_reference_beside_a_free_time_is_refused() -> None:
