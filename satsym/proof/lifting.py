@@ -36,13 +36,22 @@ class Lifted(BallKernel):
         Places of the parameters that are states.
     clocked
         Whether time is a state; what the argument ``t`` says is then of no account.
+    on_reference
+        Places of the states that end on the reference, which may depend on what is free: these are constraints at the
+        end, before all others.
     """
 
-    def __init__(self, model: Kernels, places: Sequence[int], clocked: bool) -> None:
+    def __init__(self, model: Kernels, places: Sequence[int], clocked: bool, on_reference: Sequence[int]) -> None:
         super().__init__(model)
         self.places, self.clocked, self.own = tuple(places), clocked, len(self.spec.states)
         more = (*(self.spec.parameters[i] for i in places), *((CLOCK,) if clocked else ()))
-        self.spec = replace(self.spec, states=(*self.spec.states, *more), autonomous=self.spec.autonomous or clocked)
+        self.on_reference, self.constrained = tuple(on_reference), bool(self.spec.multipliers)
+        self.spec = replace(
+            self.spec,
+            states=(*self.spec.states, *more),
+            multipliers=(*(self.spec.states[i] for i in on_reference), *self.spec.multipliers),
+            autonomous=self.spec.autonomous or clocked,
+        )
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         if name.startswith("_"):
@@ -78,7 +87,11 @@ class Lifted(BallKernel):
 
     def terminal_constraints(self, t: Any, x: Sequence[Any], p: Sequence[Any]) -> Any:
         time, own, q = self._parts(t, x, p)
-        return self._of("terminal_constraints")(time, own, q)
+        stated = self._of("terminal_constraints")(time, own, q) if self.constrained else ()
+        if not self.on_reference:
+            return stated
+        curve = self._of("reference")(time, q)
+        return [*(own[i] - curve[i] for i in self.on_reference), *stated]
 
     def control_law(self, t: Any, x: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], bounds: Any) -> Any:
         time, own, q = self._parts(t, x, p)

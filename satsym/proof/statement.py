@@ -187,13 +187,13 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
 def _lifted(statement: Statement, places: Sequence[int], starts: bool) -> Statement:
     """The problem with free parameters among its states, and time if it begins freely or the motion depends on it."""
     spec, t0, tf = statement.spec, statement.t0, statement.tf
-    if any(target.value is None for target in statement.targets.values()):
-        raise BeyondProof("an end on the reference beside free parameters or a free initial time")
+    on_reference = [i for i, target in statement.targets.items() if target.value is None]
     clocked = starts or not spec.autonomous
-    kernel, own = Lifted(statement.case.model, places, clocked), len(spec.states)
+    kernel, own = Lifted(statement.case.model, places, clocked, on_reference), len(spec.states)
     clock = own + len(places) if clocked else None
     free = [*statement.free, *range(own, own + len(places)), *([clock] if starts else [])]
-    targets = dict(statement.targets)
+    targets = {i: target for i, target in statement.targets.items() if target.value is not None}
+    before = len(on_reference)
     if clock is not None and starts and tf is not None:
         targets[clock], tf = Target(tf), None
     if clock is not None and tf is not None:
@@ -206,6 +206,8 @@ def _lifted(statement: Statement, places: Sequence[int], starts: bool) -> Statem
         tf=tf,
         targets=targets,
         free=tuple(i for i in free if i is not None),
+        active=(*range(before), *(before + k for k in statement.active)),
+        limits=tuple(before + k for k in statement.limits),
         clock=clock,
     )
 
