@@ -262,3 +262,27 @@ def test_conditions_on_a_free_parameter_are_refused() -> None:
     proof = prove(replace(case, model=replace(case.model, spec=spec)), lambda: pytest.fail("nothing need be solved"))
     assert proof.status is Outcome.BEYOND
     assert "obey conditions" in proof.reason
+
+
+def test_of_all_stationary_initial_times_before_a_reference_minima_are_proved() -> None:
+    """From 2 to cos(t) at t = 3, in a drift of -sin(t): (2 - cos t0)^2/(2 (3 - t0)), and what the parameter costs."""
+    case = drifting("caught", initial={"q": 2.0}, final={"q": "reference"}, tf=3.0, t0="free", parameters={"a": 1.0})
+    seen = set()
+    with mpmath.workdps(40):
+
+        def cost(begin: Any) -> Any:
+            return (2 - mpmath.cos(begin)) ** 2 / (2 * (3 - begin)) + 2 * mpmath.sin(3)
+
+        for begin in roots(lambda s: mpmath.diff(cost, s), -7, 2.5):
+            times = np.linspace(float(begin), 3.0, 41)
+            pace = float((mpmath.cos(begin) - 2) / (3 - begin))
+            states = 2 + pace * (times - times[0]) + np.cos(times) - np.cos(times[0])
+            given = found_of(case, times, states, np.full(41, pace), (1.0, 0.0))
+            proof = prove(case, lambda given=given: given)
+            least = mpmath.diff(cost, begin, 2) > 0
+            assert proof.status is (Outcome.PROVED if least else Outcome.NOT_PROVED), proof.reason
+            assert holds(proof, cost(begin))
+            centre, radius = number(proof, "time.t0")
+            assert abs(centre - begin) <= radius
+            seen.add(bool(least))
+    assert seen == {True, False}
