@@ -15,7 +15,7 @@ from satsym.proof.shooting import Box, Rows, Segment, Shooting
 from satsym.proof.structure import REMAINDER, TERMS, leap
 
 TRIES = 12
-SETTLED = 1e-8
+SETTLED_CORRECTION = 1e-8
 """A correction smaller than this, relative to the sizes, is followed by one to all digits; a second such ends."""
 
 
@@ -44,11 +44,11 @@ def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], di
         before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=True))
         here = shooting.unknowns(nodes, lengths)
         nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
-        if fine and size < SETTLED:
+        if fine and size < SETTLED_CORRECTION:
             return Place(nodes, lengths)
-        if not size < 1e6 or (before < SETTLED and not fine and size > 0.5 * before):
+        if not size < 1e6 or (before < SETTLED_CORRECTION and not fine and size > 0.5 * before):
             break
-        fine = fine or size < SETTLED
+        fine = fine or size < SETTLED_CORRECTION
     raise NotProved("Newton's method finds no extremal near the answer; it may have another structure")
 
 

@@ -31,7 +31,7 @@ from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
 """How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
-NEAR = 1e-3
+NEAR_ANSWER = 1e-3
 """How far the extremal may be from what was found, in its costates at t0 and its duration, relative to the sizes."""
 COARSE = Order(18, 1e-16)
 SPARE = 8
@@ -184,7 +184,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
     moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
-    if max(*moved, abs(float(horizon.mid()))) > NEAR:
+    if max(*moved, abs(float(horizon.mid()))) > NEAR_ANSWER:
         raise NotProved("the answer is not an extremal: the nearest one has other costates")
     return shooting, place
 

@@ -23,7 +23,7 @@ GROWTH = 20.0
 FINEST = 2.0**-24
 """Fractions of an arc at which nodes are placed are multiples of this."""
 TERMS, REMAINDER = 16, 1e-15
-NEAR = 1e-6
+NEAR_LEVEL = 1e-6
 """How far a control may be from one of its levels, relative to their distance."""
 TOGETHER = 1e-9
 """Nodes of a solver that are so close to a switching time, relative to the horizon, tell nothing of the arcs."""
@@ -137,7 +137,7 @@ def _level(u: float, then: float, levels: Sequence[Ball]) -> int:
     values = [float(v.mid()) for v in levels]
     width = values[-1] - values[0]
     for k, v in enumerate(values):
-        if abs(u - v) < NEAR * width and abs(then - v) < NEAR * width:
+        if abs(u - v) < NEAR_LEVEL * width and abs(then - v) < NEAR_LEVEL * width:
             return k
     return -1
 

@@ -21,7 +21,7 @@ Series = Any
 Key = tuple[str, int]
 """The name of a generated function, and which of its comparisons it is."""
 
-LONGEST = 1000
+LONGEST_PRODUCT = 1000
 """Terms that a constant may be multiplied with."""
 
 
@@ -35,7 +35,7 @@ class NotProved(Exception):
 
 def constant(value: Any) -> Series:
     """A ball as a series of one term, of no limited precision in the variable."""
-    cap, ctx.cap = ctx.cap, LONGEST
+    cap, ctx.cap = ctx.cap, LONGEST_PRODUCT
     try:
         return arb_series([arb(value)])
     finally:
