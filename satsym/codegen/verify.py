@@ -188,7 +188,7 @@ def _ordered(spec: ProblemSpec, place: Arguments) -> bool:
 
 
 def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterator[Arguments]:
-    """For what has bounds, the place with such that hold no control, and with such that hold all; for laws no costates.
+    """Vary a place: bounds so wide that they hold no control, so narrow that they hold all, and for laws zero costates.
 
     What only the one or the other side of a law has would not be seen elsewhere: at bounds of size one laws may always
     be far below them, and costates never vanish. Where they do, what is made of laws may have no derivative.

@@ -224,7 +224,7 @@ class Kernels(Functions):
     def require_separable(self) -> None:
         """Raise BadInput unless the model has a symplectic loop."""
         if not self.spec.separable:
-            reason = "its accelerations do not depend on coordinates alone, by a potential; use RK4"
+            reason = "its accelerations are not derived from a potential in the coordinates alone; use RK4"
             raise BadInput(f"{self.spec.name}: no symplectic integrator: {reason}")
 
     def in_domain(self, x: ArrayLike) -> bool:

@@ -52,7 +52,8 @@ def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function
     """The functions of a module that have conditions, each with what it fills when it is called.
 
     That is, by the number of a condition in the function, the difference of both its sides. Conditions are comparisons,
-    steps, and choices of the smaller or larger number; those that steer an iteration are left out.
+    steps, choices of the smaller or larger number, and zero times a root, which is no number where the law is none.
+    Those that steer an iteration are left out.
     """
     found = {}
     for node in ast.parse(text).body:
@@ -295,6 +296,15 @@ class _Watched(ast.NodeTransformer):
             node.args[0] = self._noted(node.args[0], ast.Constant(0))
         elif function in self.CHOICES:
             node.args[0] = self._noted(*node.args)
+        return node
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        """Watch what a value is no number for where it is negative: ``0.0*sqrt(...)``."""
+        self.generic_visit(node)
+        root = node.right
+        nothing = isinstance(node.left, ast.Constant) and node.left.value == 0.0
+        if nothing and isinstance(root, ast.Call) and ast.unparse(root.func).endswith(".sqrt"):
+            root.args[0] = self._noted(root.args[0], ast.Constant(0))
         return node
 
     def _noted(self, left: ast.expr, right: ast.expr) -> ast.expr:

@@ -53,7 +53,7 @@ def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
 
 
 def _of_linear_models(of: Evaluation) -> Iterator[Relation]:
-    """Matrices, changes of variables, polynomials, closed forms and Riccati's equation."""
+    """Relate matrices, changes of variables, polynomials, closed forms and Riccati solutions of linear models."""
     columns = of.at["t"].shape[-1]
     a, at_rest = of("state_matrix"), {"x": np.zeros_like(of.at["x"]), "u": np.zeros_like(of.at["u"])}
     b = of("input_matrix") if of.has("input_matrix") else np.zeros((len(a), 0, columns))

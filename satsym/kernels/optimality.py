@@ -278,7 +278,7 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
 
 
 def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
-    """Relate a constraint on states alone with its multiplier: what vanishes on the boundary keeps vanishing."""
+    """Relations on the boundary of a state constraint: its rates stay zero under the multiplier and control there."""
     vanishing = of("path_vanishing", u=_constrained_law(of))
     found, terms = _rates_on_boundary(of, which)
     if order > 1:

@@ -329,7 +329,7 @@ def refuse(case: Instance) -> None:
     spec = case.model.spec
     unknown = {f.name for f in fields(case)} - _OF_INSTANCES | {f.name for f in fields(spec)} - _OF_MODELS
     if unknown:
-        raise BeyondProof(f"a feature that proofs do not know ({', '.join(sorted(unknown))})")
+        raise BeyondProof(f"a feature that proofs do not support ({', '.join(sorted(unknown))})")
     if not spec.has_cost:
         raise BeyondProof("a model without a cost")
     orders = {one.order for one in spec.path_constraints}

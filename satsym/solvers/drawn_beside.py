@@ -79,7 +79,7 @@ class Beside:
 
     @property
     def states(self) -> Array:
-        """Shape (n, M)."""
+        """Scaled states at the times, shape (n, M)."""
         return self.z[: len(self.z) // 2]
 
 

@@ -201,7 +201,7 @@ def _least_time(task: Task) -> bool:
 
 
 def _first_arrivals(task: Task, instances: Sequence[Instance]) -> Found:
-    """Extremals of exact arcs, to which nothing arrives earlier."""
+    """Solve instances of minimum time together, by exact arcs; nothing arrives earlier than these extremals."""
     from satsym.solvers.batch.switching.arrivals import first_arrivals
     from satsym.solvers.batch.switching.certificate import minima
 

@@ -33,11 +33,11 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
     names = {s.name for s in moving}
     if found := _first(e, sp.Derivative, sp.Subs):
         return (
-            f"has {found} in it, a derivative that is not carried out; state the rate of a state as that of another "
-            "state, and derivatives of known functions by diff"
+            f"has {found} in it, an unevaluated derivative; introduce a state for each rate, and differentiate known "
+            "functions with diff"
         )
     if found := _first(e, sp.Integral, sp.Sum, sp.Product):
-        return f"has {found} in it, which is not carried out; state a further state whose rate is what is integrated"
+        return f"has {found} in it, which is not evaluated; state a further state whose rate is what is integrated"
     if found := _first(e, AppliedUndef):
         return _unknown(found, names)
     if other := sorted({f.func.__name__ for f in e.atoms(sp.Function)} - _KNOWN):
@@ -45,13 +45,13 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
     corners = [c for c in sorted(e.atoms(*CORNERS), key=str) if c not in magnitudes]
     if jumping := [c for c in corners if c.free_symbols & set(moving)]:
         return (
-            f"has {jumping[0]} in it, whose derivatives jump; state what is smooth, such as sqrt(v**2 + h**2) with a "
-            "small h in place of Abs(v)"
+            f"has {jumping[0]} in it, whose derivatives jump; use a smooth expression, such as sqrt(v**2 + h**2) with "
+            "a small h in place of Abs(v)"
         )
     if open_ended := [c for c in corners if t in c.free_symbols or isinstance(c, sp.Piecewise)]:
         return (
-            f"has {open_ended[0]} in it, which comparisons do not give a value at all times; compare by < and >, "
-            "and end it with (value, True)"
+            f"has {open_ended[0]} in it, whose conditions do not cover every time; use < and >, and "
+            "end it with (value, True)"
         )
     return ""
 

@@ -94,15 +94,23 @@ TOO_EARLY = ("not after", "too far from")
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
 MISSHAPEN = ("it has <n> entries of the wrong number or mixed kinds", "row <i> has <n> numbers")
 UNSUPPORTED = (
-    *("", ", a derivative that is not carried out", ", which is not carried out", ", an unknown function"),
-    *(", a value at another time", ", which comparisons do not give a value at all times", ", whose derivatives jump"),
+    *("", ", an unevaluated derivative", ", which is not evaluated", ", an unknown function"),
+    *(", a value at another time", ", whose conditions do not cover every time", ", whose derivatives jump"),
 )
 UNDECIDED = ("the value of <a>", "the norm of a vector")
+BETTER_THAN = ("whose states stay near it", "whose states stay near it and whose final time is near")
 COMPOSED = (
+    "<a> cannot control the mode s = <b>",
+    *(f"give {which} tf_guess" for which in ("a", "another")),
+    *(
+        f"It is strictly better than all other admissible motions {those}, however different their controls are "
+        "(a strict strong local optimum)."
+        for those in BETTER_THAN
+    ),
     *(f"<a> has <b> in it{what}" for what in UNSUPPORTED),
     "<a> has the function <b> in it, which is not supported",
     "<a> is <b>, a condition, not a number",
-    *(f"for some time nothing decides {what}, and no law is known there" for what in UNDECIDED),
+    *(f"over an interval nothing determines {what}, and no law is known there" for what in UNDECIDED),
     "the entries are not known well enough to decide. Either <verdict>: <reason>; or <other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",

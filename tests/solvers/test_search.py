@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -397,3 +399,23 @@ def test_programmes_end_with_the_work_that_is_allowed() -> None:
     found = nlp.solve(programme, start, limits)
     assert not found.solved
     assert found.iterations <= 5
+
+
+@pytest.mark.parametrize(
+    ("residual", "costs", "came"),
+    [
+        (0.5, [3.0, 2.0, 0.9], (0.9, "exact")),
+        (0.5, [3.0, 2.99, 0.9], (2.99, None)),
+        (1e-3, [3.0, 2.0, 0.9], (3.0, None)),
+        (0.5, [3.0, 1.0], (1.0, None)),
+    ],
+    ids=["falls below", "stays dear", "is resolved", "falls to the same"],
+)
+def test_a_motion_that_only_a_coarse_mesh_makes_dear_is_followed(
+    monkeypatch: pytest.MonkeyPatch, residual: float, costs: list[float], came: tuple[float, str | None]
+) -> None:
+    """Beside an answer of cost 1; the first of the costs is on a mesh with that residual."""
+    found: Any = SimpleNamespace(objective=costs[0])
+    monkeypatch.setattr(order, "_finer", lambda *_: (SimpleNamespace(cost=cost) for cost in costs))
+    monkeypatch.setattr(order, "refined", lambda _: ([], residual))
+    assert order._followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact")) == came

@@ -247,7 +247,7 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
         caught = _verified(derivation, wrong)
         nested = total is not getattr(statement, "value", None)
         effect = not _alone_in_a_condition(statement, total, term)
-        if effect and not caught and _iterated(function, statement):
+        if effect and not caught and (_iterated(function, statement) or _guards_only(function, statement)):
             effect = _changes(text, wrong, function.name, places)
         return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught, effect), wrong
     return None
@@ -306,6 +306,25 @@ def _alone_in_a_condition(statement: ast.stmt, total: ast.expr, term: ast.expr) 
 def _iterated(function: ast.FunctionDef, statement: ast.stmt) -> bool:
     """Whether a statement belongs to an iteration, whose limit may be the same whichever way it is approached."""
     return any(isinstance(node, ast.For) and statement in node.body for node in ast.walk(function))
+
+
+def _guards_only(function: ast.FunctionDef, statement: ast.stmt) -> bool:
+    """Whether what a statement assigns is used only in zero times a root, where nothing but its sign counts."""
+    products = [node for node in ast.walk(function) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)]
+    guards = [node for node in products if ast.unparse(node.left) == "0.0" and "sqrt(" in ast.unparse(node.right)]
+    inside = {id(part) for guard in guards for part in ast.walk(guard)}
+    names, waiting = set[str](), [statement]
+    while waiting:
+        one = waiting.pop()
+        if not isinstance(one, ast.Assign) or not all(isinstance(target, ast.Name) for target in one.targets):
+            return False
+        new = {ast.unparse(target) for target in one.targets} - names
+        names |= new
+        for other in (node for node in ast.walk(function) if isinstance(node, ast.stmt) and node is not function):
+            used = {n.id for n in ast.walk(other) if isinstance(n, ast.Name) and id(n) not in inside} & new
+            if used and other is not one and other not in waiting:
+                waiting.append(other)
+    return True
 
 
 def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]]) -> bool:

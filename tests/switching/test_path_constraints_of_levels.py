@@ -210,7 +210,7 @@ def test_two_controls_that_move_a_constraint_together_are_refused():
     pair = Problem(
         name="pair", title="", model=model, running_cost=1, control_set="box", path_constraints={"limit": v - 1}
     )
-    with pytest.raises(DerivationError, match="u, w move it together"):
+    with pytest.raises(DerivationError, match="u, w act on it together"):
         derive(pair)
 
 

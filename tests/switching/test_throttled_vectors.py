@@ -292,7 +292,7 @@ def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
     text = BETWEEN.replace("vx = 0.0\nvy = 0.0\n", "")
     found = solve(build(tmp_path, pushed("steered", {x: ux, y: uy}), text))
     assert found.status is Status.NOT_CONVERGED
-    assert "for some time nothing decides the norm of a vector" in found.message
+    assert "over an interval nothing determines the norm of a vector" in found.message
     falling = pushed("falling", {x: vx, y: vy, vx: ux, vy: uy - Rational("1.62")})
     down = """
         [initial]
@@ -311,7 +311,7 @@ def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
         """
     found = solve(build(tmp_path, falling, down))
     assert found.status is Status.NOT_CONVERGED
-    assert "for some time nothing decides the norm of a vector" in found.message
+    assert "over an interval nothing determines the norm of a vector" in found.message
 
 
 @pytest.mark.study

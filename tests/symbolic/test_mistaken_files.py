@@ -61,7 +61,7 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "c * speed**2",
             "c * speed**2 + abs(place)",
-            "mine.py:12: stroll: the running cost has Abs(place) in it, whose derivatives jump; state what is smooth",
+            "mine.py:12: stroll: the running cost has Abs(place) in it, whose derivatives jump; use a smooth",
         ),
         (
             "rates={place: speed}",

@@ -34,7 +34,7 @@ def test_a_right_model_is_loaded_and_one_with_a_slip_is_not(seed: int, tmp_path:
     artefacts.write(made, tmp_path)
     assert loading.load(f"./{subject.name}", tmp_path).spec.name == subject.name
     rng, planted = random.Random(f"slips {seed}"), 0
-    for _ in range(3):
+    for _ in range(8):
         if (slip := slips.in_step(derivation, rng)) is not None:
             planted += slip.effect or bool(slip.caught)
             assert slip.caught or not slip.effect, slip
@@ -42,6 +42,8 @@ def test_a_right_model_is_loaded_and_one_with_a_slip_is_not(seed: int, tmp_path:
             changed = slips.in_text(derivation, made[f"{subject.name}.py"], rng)
             planted += changed is not None and (changed[0].effect or bool(changed[0].caught))
             assert changed is None or changed[0].caught or not changed[0].effect, changed[0]
+        if planted >= 4:
+            break
     assert planted >= 2
 
 

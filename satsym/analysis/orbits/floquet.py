@@ -117,10 +117,10 @@ class Floquet:
     @property
     def _meaning(self) -> str:
         return (
-            "The block means: a neighbour with another energy has another period and falls behind or gets ahead, in "
-            "each revolution by as much again. In Lyapunov's sense the orbit is therefore unstable, though distances "
+            "The block means: a neighbour with another energy has another period and falls behind or gets ahead by "
+            "the same amount in each revolution. In Lyapunov's sense the orbit is therefore unstable, though distances "
             "grow along the track alone and in proportion to time, not exponentially as a positive eigenvalue would "
-            "have it. As a curve the neighbour's orbit stays as near as it began: the orbit is orbitally stable."
+            "imply. As a curve the neighbour's orbit stays as near as it began: the orbit is orbitally stable."
         )
 
 

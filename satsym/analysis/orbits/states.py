@@ -68,8 +68,8 @@ def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: A
         shape = np.broadcast_shapes(*(a.shape[1:] for a in vectors), *(a.shape for a in scalars))
     except ValueError:
         raise BadInput(
-            f"position, velocity, mu, duration: shapes {', '.join(str(a.shape) for a in arrays.values())} do not "
-            "broadcast behind the three components; give as many of each, or one for all"
+            f"position, velocity, mu, duration: shapes {', '.join(str(a.shape) for a in arrays.values())} cannot be "
+            "broadcast after the three components; give the same number of each, or one for all"
         ) from None
     r, v = (_stretched(a, shape) for a in vectors)
     m, dt = (np.broadcast_to(a, shape).reshape(-1) for a in scalars)

@@ -95,7 +95,7 @@ class Derived:
         return found | {f"d_{x}": Sym(v) for x, v in self.speeds.items()}
 
     def rate(self, name: str, times: int = 1) -> Node | None:
-        """The name of a derivative by time, or what it is; ``None`` where it has none."""
+        """The time derivative of a quantity: its name, or its formula; ``None`` if it has neither."""
         tree: Node = Sym(name)
         for _ in range(times):
             if isinstance(tree, Sym) and (tree.name in (*self.states, *self.costates) or tree.name in self.others):

@@ -255,7 +255,9 @@ class Bench:
         """The symbol of ours that a symbol of the document means."""
         meaning = self.scope(row).meanings.get(name, Sym(name))
         if not isinstance(meaning, Sym):
-            raise BadInput(f"{shown(name)} means {written(meaning)}: differentiate by, or replace, what is one symbol")
+            raise BadInput(
+                f"{shown(name)} means {written(meaning)}: only a single symbol can be differentiated by or replaced"
+            )
         return meaning.name
 
     def of_row(self, row: Row, kind: type = Sympy, instead: Formula | None = None) -> Any:

@@ -70,7 +70,7 @@ class LetterCursor(Cursor):
         if sign.text not in ("delta", "Delta"):
             return False
         if token.kind == "letter" and self._is("(", 1):
-            raise Unread("a difference of what is taken somewhere, or a factor", sign.at)
+            raise Unread("a difference of values at a place, or a factor in front of a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"

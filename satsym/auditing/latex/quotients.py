@@ -130,7 +130,7 @@ class QuotientCursor(LetterCursor):
         return order, rest, above[0].text == "partial"
 
     def _differentials(self, below: list[Token]) -> list[Letter] | None:
-        """What is differentiated by, as often as it is."""
+        """The variables of differentiation, each repeated by its order."""
         if below and below[0].kind == "word":
             word = below[0].text
             twice = word.endswith("2") or (len(below) > 2 and below[1].text == "^" and below[2].text == "2")

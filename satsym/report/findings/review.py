@@ -139,7 +139,7 @@ class Review:
         return self.texts.counted("audit", "more", len(names) - most + 1, listed=first)
 
     def fact(self, row: Judged) -> str:
-        """What is so instead: the sentence for people where there is one, else the diagnosis."""
+        """What holds instead of a wrong claim: a readable sentence if there is one, else the diagnosis."""
         if row.why and not (row.by_formula and row.form):
             return row.why
         denied = say("denied")

@@ -99,7 +99,7 @@ class _Compiled:
 
 
 def _costing(z: Array) -> Array:
-    """With a row for the cost, none so far."""
+    """Add to states and costates a row for the accumulated cost, which starts at zero."""
     return np.concatenate([z, np.zeros((1, z.shape[1]))])
 
 

@@ -55,7 +55,7 @@ def cold_start(problem: TwoPoint, limits: Limits) -> Start:
 
 
 def _minimum(problem: TwoPoint, line: Curve, limits: Limits) -> Attempt:
-    """The minimum to which a line leads, or why it leads to none."""
+    """The minimum to which the straight line leads as a first guess, or why it leads to none."""
     return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits)
 
 

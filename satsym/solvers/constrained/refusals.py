@@ -67,8 +67,8 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
         if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
-                f"{instance.called}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
-                f"control changes at once, so it is violated right {when}; change the velocity there"
+                f"{instance.called}: {key}: path constraint {one.name} is reached at the rate {rate:.6g}, which no "
+                f"control can change instantly, so it is violated right {when}; change the velocity there"
             )
 
 

@@ -59,7 +59,7 @@ def _affordable(instance: Instance, controls: Controls, k: int) -> float:
 
 
 def _constant(instance: Instance, controls: Controls) -> list[Array]:
-    """Controls at rest, and each of them at both of its bounds; without bounds, as large as time makes it pay."""
+    """Controls at rest, and each alone at both of its bounds, or where it costs as much as time if it has none."""
     rest = resting(controls)
     found = [rest]
     for k in range(controls.count):

@@ -115,4 +115,4 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     if single:
         alone = all(part.branch != "throttled" for part in spec.control_parts)
         what = f"the value of {' or '.join(single)}" if alone else "the value of a control"
-    return f"for some time nothing decides {what}, and no law is known there"
+    return f"over an interval nothing determines {what}, and no law is known there"

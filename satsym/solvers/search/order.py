@@ -1,11 +1,11 @@
-"""What is tried after what: starts one after the other, each on finer meshes, its arcs, and Newton's method.
+"""The order of the search: starts one after the other, each on finer meshes, then its arcs, then Newton's method.
 
-1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through, each solved on a coarse mesh.
-2. What a start came to is solved on finer meshes until its cost settles. Its arcs are read after each mesh
+1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved on a coarse mesh.
+2. The solution of a start is solved again on finer meshes until its cost settles. Its arcs are read after each mesh
    (:mod:`~satsym.solvers.search.reading`).
 3. The first arcs that Newton's method makes exact are the answer: :func:`searched`.
-4. The starts that are left are competitors of an answer, whoever found it: :func:`others`. They end when a number of
-   them in turn has shown nothing new; that number grows with the number of different costs that were found.
+4. The same starts give competitors of an answer, whichever method found it: :func:`others`. The list ends after so many
+   starts in a row that show nothing new; that number grows with the number of different costs found.
 """
 
 from __future__ import annotations
@@ -31,42 +31,43 @@ from satsym.solvers.search.starts import Plan
 Answer = TypeVar("Answer")
 
 FAILING, CONVEX = 8, 2
-"""Starts in turn after which it ends where none has come to anything, in general and where the problem is convex: there
-all starts come to one motion."""
+"""The search ends after so many starts in a row if none at all was solved; fewer are enough if the problem is convex,
+because all starts lead to one motion then."""
 
 DOUBTFUL = 3
-"""Starts in turn that come to nothing, after which it is asked whether any motion arrives."""
+"""Failing starts in a row after which the search asks whether any motion reaches the end."""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
-"""Competitors in turn that show nothing new, after which it ends, and by how many more for each further cost; and in
-turn where ends are drawn, or path constraints part the ways."""
+"""The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
+cost that was found. Where ends are drawn, or path constraints separate the ways, it ends after PATIENCE in a row."""
 
 PROBE, AROUND = 160_000, 600_000
-"""Unknowns times iterations after which they end that all came to one cost, two at least, and where there are path
-constraints."""
+"""Unknowns times iterations after which the list ends if at least two starts were solved and all led to one cost. With
+path constraints it is AROUND."""
 
 BESIDE, ON_FINER_MESH = 120, 200
-"""Iterations of the interior-point code for a start beside an answer, and for a finer mesh."""
+"""Iterations of the interior-point code for a competitor, and for a finer mesh."""
 
-MESHES, SETTLED_COST, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
-"""Finer meshes at most, the change of cost from one to the next that is none, and smoothings of norms on each."""
+MESHES, SETTLED_COST, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
+"""Number of finer meshes at most, relative change of cost from one to the next at which they end, and smoothings of
+norms on each."""
 
 CHEAPER = 1e-9
-"""Relative difference of exact costs that is one."""
+"""Relative difference from which one exact cost is less than another."""
 
-OTHERS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
-"""Motions at the cost of an answer that are made exact at most, the times at which ways are looked at, and the share of
-the range of a state by which those differ that are another way."""
+PARALLELS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
+"""Motions at the cost of an answer that are made exact at most, if they go another way; the number of times at which
+ways are compared; and the share of the range of a state by which two ways differ at least."""
 
-FALLING = 1e-2
-"""Share of its cost by which what costs more than an answer becomes cheaper from one mesh to the next, to be followed.
-"""
+FALLING, RESOLVED = 1e-2, 1e-2
+"""Share of its cost by which a motion that costs more than an answer must become cheaper from one mesh to the next to
+be followed further, and the residual of its coarse mesh, relative to the sizes of states, up to which it is not."""
 
-TRIED = 3
-"""Different costs of which none is made exact, after which it ends."""
+MOST_COSTS = 3
+"""Different costs after which the search ends if none of their motions could be made exact."""
 
 ENDLESS = 2
-"""Starts after which it ends whose duration grows or shrinks as far as it may."""
+"""Starts with the shortest or the longest duration that is allowed, after which the search ends."""
 
 FINER = 0.2
 """Fraction of the work that the finer meshes of one start may take: a wild motion needs ever more intervals."""
@@ -81,9 +82,9 @@ class Tried(Generic[Answer]):
     plan
         How it began.
     cost
-        NaN where it came to nothing.
+        NaN where the start was not solved.
     exact
-        The extremal where that costs less.
+        The extremal, if it costs less than the answer.
     """
 
     plan: Plan
@@ -107,9 +108,9 @@ def searched(
     exact
         Makes a motion an exact extremal, where it can.
     loose
-        A state whose given end follows from those of the others.
+        A state whose given final value follows from those of the others.
     hopeless
-        Asked after a few starts that come to nothing: whether none will.
+        Tells whether no start will lead to an extremal; it is asked after a few that fail.
     """
     costs: list[float] = []
     failing, failed, endless = CONVEX if convex(instance) else FAILING, 0, 0
@@ -126,7 +127,7 @@ def searched(
                     return answer
             costs.append(found.objective)
         failed = 0 if costs else failed + (not plan.loosened)
-        if len(costs) >= TRIED or failed >= failing or number + 1 >= STARTS:
+        if len(costs) >= MOST_COSTS or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():
             break
@@ -143,7 +144,7 @@ def others(
     way: tuple[Array, Array] | None = None,
     hidden: float = 0.0,
 ) -> Iterator[Tried[Answer]]:
-    """What starts come to beside an answer; those that seem to cost less are made exact.
+    """Competitors of an answer: what each start leads to. Those that seem to cost less are made exact.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def others(
     way
         Times and states of the answer, for the coarse mesh.
     hidden
-        The difference of costs that the tolerance of the interior-point code hides.
+        Difference of costs below the accuracy of the interior-point code.
     """
     seen: list[tuple[float, float]] = []  # on the coarse mesh, and what each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
@@ -163,7 +164,7 @@ def others(
     parted = bool(instance.model.spec.path_constraints)
     probe = AROUND if parted else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
-        if plan.arriving:  # these are further starts, not in place of others
+        if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
         else:
             quiet, solved = quiet + 1, solved + found.solved
@@ -185,7 +186,7 @@ def others(
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
         spent = limits.meter.spent
-        # other ways and durations are asked, whatever the first starts come to
+        # starts with other turns and durations are tried whatever the first ones lead to
         further = plan.turns is not None or plan.timed or plan.arriving
         alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
         parted = parted or bool(plan.drawn)
@@ -202,11 +203,11 @@ def _shape(times: Array, x: Array) -> Array:
 
 
 def _another_way(found: Found, cost: float, shapes: list[Array]) -> bool:
-    """Whether a motion costs about as much as an answer, but goes another way than it and others before; it is added.
+    """Whether a motion costs about as much as an answer but goes another way; its shape is added to those known then.
 
     On a coarse mesh nobody can tell which of the two is cheaper.
     """
-    if not 0 < len(shapes) <= OTHERS or abs(found.objective - cost) > SIMILAR * abs(cost):
+    if not 0 < len(shapes) <= PARALLELS or abs(found.objective - cost) > SIMILAR * abs(cost):
         return False
     at = motion(found)
     shape = _shape(at.times, at.x)
@@ -225,9 +226,10 @@ def _followed(
 ) -> tuple[float, Answer | None]:
     """What a motion on a coarse mesh comes to beside an answer of some cost, and the extremal if that costs less.
 
-    What costs more is solved on finer meshes as long as these make it cheaper: a coarse mesh may be all that is dear.
+    A motion that costs more is solved on finer meshes as long as these make it much cheaper: it may only seem dear
+    because the coarse mesh does not resolve it.
     """
-    before, came = float("inf"), found.objective
+    before, came = None, found.objective
     for at in _finer(found, limits):
         came = at.cost
         if came < cost - SIMILAR * abs(cost):
@@ -236,7 +238,7 @@ def _followed(
                 return answer
         elif came <= cost + SIMILAR * abs(cost):
             return cost, None
-        elif not came < before - FALLING * abs(before):
+        elif refined(found)[1] <= RESOLVED if before is None else came >= before - FALLING * abs(before):
             return came, None
         before = came
     return (float("nan") if came < cost else came), None
@@ -261,10 +263,10 @@ def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
 
 
 def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """The solution on other meshes that is near one that was found.
+    """Solve a programme again on other meshes, from a solution on its own.
 
-    Where that began at a smoother one, so does this: next to bounds, controls that are hardly smoothed jump from point
-    to point, and are no start for finer meshes.
+    If the solution was reached from a smoother problem, so is the new one: next to bounds, controls that are hardly
+    smoothed jump from point to point, and are no start for finer meshes.
     """
     begun = found if found.programme.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
     smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
@@ -277,7 +279,7 @@ def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) 
 
 
 def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """The solution on other meshes to which one leads directly."""
+    """Solve a programme on other meshes directly from a solution on its own."""
     old = found.programme
     programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
     start = starts.carried(programme, old, found.unknown)

@@ -50,7 +50,7 @@ class Field:
             self.middle, self.beyond = (low + high) / 2.0, BEYOND_RANGE * (high - low)
 
     def _at(self, control: int, level: int) -> float:
-        """The value of a control at a level."""
+        """The value of a control at its lower bound, at rest or at its upper bound."""
         low, high = (bounds[control] for bounds in self.instance.control_set.switching)
         return high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
 

@@ -56,7 +56,7 @@ def _exactly(reach: Reach, costate: Array, open_: NDArray[np.bool_]) -> Array:
 
 
 def _with_least_effort(reach: Reach, sigma: Array, weight: Array, open_: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Switching functions and weights of |u| that decide on undecided controls as well."""
+    """Switching functions and weights of |u|, so changed that undecided controls take the values of least effort."""
     m, count = len(sigma), reach.count
     levels = reach.levels.reshape(3, m, count)
     middle = (sigma[:, 1:] + sigma[:, :-1]) / 2.0

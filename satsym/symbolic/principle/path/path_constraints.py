@@ -273,8 +273,8 @@ def acting(so_far: Derivation, found: Constraint) -> sp.Symbol:
     (first, *more) = [u for u in symbols_of(so_far.model.controls) if found.rates[-1].has(u)]
     if more:
         raise DerivationError(
-            f"{so_far.name}: path_constraints {found.name}: {', '.join(map(str, (first, *more)))} move it together, "
-            "and H is linear in the controls: which of them keeps to the boundary is not derived",
+            f"{so_far.name}: path_constraints {found.name}: {', '.join(map(str, (first, *more)))} act on it together, "
+            "and H is linear in the controls: which of them holds the motion on the boundary is not derived",
             ("path_constraints",),
         )
     return first
