@@ -120,7 +120,7 @@ def searched(
             if endless >= ENDLESS:
                 break
         elif found.solved and not any(same(found.objective, cost) for cost in costs):
-            one = replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
+            one = _part(limits)
             for at in _finer(found, one):
                 answer = exact(at, one)
                 if answer is not None or limits.expired:
@@ -182,7 +182,7 @@ def others(
             yield Tried(plan, known)
         else:
             quiet = 0
-            came, answer = _followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
+            came, answer = _followed(found, _part(limits), cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
         spent = limits.meter.spent
@@ -193,6 +193,11 @@ def others(
         enough = (PATIENCE if parted else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
         if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:
             break
+
+
+def _part(limits: Limits) -> Limits:
+    """Limits for the finer meshes of one start, which leave work for the others."""
+    return replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
 
 
 def _shape(times: Array, x: Array) -> Array:
