@@ -228,5 +228,5 @@ def test_of_many_the_first_bad_one_is_named():
         kepler.propagate(*ONE[:3], [1.0, 2.0, float("nan")])
     with pytest.raises(BadInput, match=r"^index 1: the motion is radial and meets the centre"):
         kepler.propagate((1.0, 0.0, 0.0), np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.0]]), 1.0, 9.0)
-    with pytest.raises(BadInput, match="do not broadcast"):
+    with pytest.raises(BadInput, match="cannot be broadcast"):
         kepler.propagate(np.ones((3, 2)), np.ones((3, 3)), 1.0, 1.0)
