@@ -85,7 +85,7 @@ def followed(folder: Path) -> Iterator[str]:
     finished(NEXT, folder)
     if names(folder) != {*sets.read(folder).listed, LIST, NOTES}:
         yield f"left over: {sorted(names(folder) - {*sets.read(folder).listed, LIST, NOTES})}"
-    if names(folder) != {"trajectory.npz", "trajectory.csv", LIST, NOTES}:
+    if names(folder) != {"instance.toml", "trajectory.npz", "trajectory.csv", LIST, NOTES}:
         yield f"after the next run: {sorted(names(folder))}"
 
 
