@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from satsym.instance.types import Instance
 
 DRAWN = 8
-"""States at which an inequality is looked at: a derivative that vanishes at all of these vanishes everywhere."""
+"""States and times at which a derivative of an inequality is looked at: one that is the same at all is constant."""
 
 ITERATIONS, LAST_STEP = 60, 1e-14
 """Steps of Newton's method, and the last one's size, relative to the time it leads to."""
@@ -55,19 +55,27 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
 
 
 def never(instance: Instance) -> str:
-    """Why an inequality in time alone holds at no final time; empty where each may hold.
+    """Say why an inequality in time alone holds at no final time; empty where each may hold.
 
-    Where the final time is free and one is never met after the start, it holds there at all times or at none.
+    Where the final time is free, this is proved of an inequality that is linear in time: one that does not hold at a
+    time, and is met at none after the start, never holds. Of others nothing is said.
     """
     names = stated(instance.model).spec.terminal_inequalities
     last = instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
     at = last if instance.tf is None else instance.tf
-    values, slopes, _ = inequalities_at(instance, at, np.ones(len(instance.initial)))
+    x = np.ones(len(instance.initial))
+    values, slopes, _ = inequalities_at(instance, at, x)
     above = values > TIME_TOLERANCE * np.abs(slopes[:, -1] * at)
     for name in sorted(in_time_alone(instance)):
-        if above[names.index(name)] and (instance.tf is not None or _root(instance, name) is None):
-            when = "after the start" if instance.tf is None else f"{instance.tf:.6g} that is given"
-            return f"terminal inequality {name}: it is met at no final time {when}"
+        k = names.index(name)
+        if not above[k]:
+            continue
+        if instance.tf is not None:
+            return f"terminal inequality {name}: it is met at no final time {instance.tf:.6g} that is given"
+        times = instance.t0 + (last - instance.t0) * 10.0 ** np.random.default_rng(0).uniform(-1.0, 1.0, DRAWN)
+        linear = all(inequalities_at(instance, t, x)[1][k, -1] == slopes[k, -1] for t in times)
+        if linear and _root(instance, name) is None:
+            return f"terminal inequality {name}: it is met at no final time after the start"
     return ""
 
 

@@ -19,7 +19,7 @@ from satsym.solvers import iteration
 from satsym.solvers.certificate.end_limits import others_asked
 from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.search import coarse
-from satsym.solvers.search.reading.limits import limits_met
+from satsym.solvers.search.reading.limits import guessed_end, limits_met
 from satsym.solvers.search.solving import searched
 from satsym.status import BadInput, Status
 from satsym.wording import counted
@@ -63,9 +63,10 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
         return replace(nothing, status=Status.INFEASIBLE, message=why)
     if instance.model.spec.path_constraints:
         refuse(instance)
-    trials = Trials(instance, progress, quick, iteration.deadline_of(instance))
-    limits, _ = iteration.watched(instance, None)
+    deadline, (limits, _) = iteration.deadline_of(instance), iteration.watched(instance, None)
     at = coarse.first_motion(instance, limits, STARTS)
+    begun = instance if at is None else guessed_end(instance, at)
+    trials = Trials(begun, progress, quick, deadline)
     found = trials.following({} if at is None else limits_met(instance, at))
     if found is None and not trials.late and (at is not None or not trials.refused):
         found = searched(instance, replace(limits, work=WORK, meter=iteration.Meter())) or trials.following({})
@@ -80,7 +81,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
         found = trials.following(met)  # what the certificate prefers leaves its ranges, or is held by none
     if found is None:
         found = trials.unanswered()
-    own = replace(found.instance, solver=instance.solver, work=instance.work)
+    own = replace(found.instance, solver=instance.solver, work=instance.work, tf_guess=instance.tf_guess)
     return replace(found, instance=own, message=_message(found), wall_s=time.perf_counter() - began)
 
 

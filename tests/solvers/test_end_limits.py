@@ -12,11 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.optimize import minimize
+from sympy import Rational
 
 import satsym
 from satsym.cli.saving import save, trajectory_files
 from satsym.front.solution import Solution
 from satsym.instance import Instance, load
+from satsym.instance.end_time import never
 from satsym.instance.ends import Side
 from satsym.report.results import trajectory
 from satsym.report.results.objects import solution_object
@@ -54,6 +56,7 @@ BACK_BY = Problem(
     terminal_constraints=(x - 1,),
 )
 SQUARED = replace(BACK_BY, name="squared", terminal_inequalities={"late": t**2 - k**2})
+WINDOW = replace(BACK_BY, name="window", terminal_inequalities={"late": Rational(1, 2) - 1 / (1 + (t - 4) ** 2)})
 BRAKED = replace(BACK_BY, name="braked", path_constraints={"brake": -u - 1.2})
 HIGH = Problem(
     name="high",
@@ -188,6 +191,29 @@ def test_a_latest_time_that_is_none_is_said():
     assert "late: it is met at no final time 2 that is given" in past.to_dict()["message"]
     in_time = certified(BACK_BY, parameters={"k": 3.0}, tf=2.0, **given)
     assert ends(in_time) == {"late": None}
+
+
+@pytest.mark.parametrize(("c", "latest"), [(0.5, 3.0), (0.01, 5.0)])
+def test_a_window_of_final_times_far_from_the_guess_is_found(c: float, latest: float):
+    """c T + 6 / T^3 is least at T = (18 / c)^(1/4), before the window from 3 to 5 or after it.
+
+    Newton's method from the guess of one leaves the bump that states the window, on either side.
+    """
+    given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}, "tf": "free", "parameters": {"c": c, "k": 1.0}}
+    found = certified(WINDOW, **given)
+    assert found.objective == pytest.approx(c * latest + 6.0 / latest**3, rel=1e-10)
+    assert ends(found) == {"late": "upper"}
+
+
+def test_an_inequality_in_time_of_which_nothing_is_proved_is_not_called_infeasible():
+    """(T - 2)^2 + 1 <= 0 holds never; that Newton's method finds no root shows nothing of it."""
+    given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}, "tf": "free", "parameters": {"c": 0.5, "k": 1.0}}
+    nowhere = replace(BACK_BY, name="nowhere", terminal_inequalities={"late": (t - 2) ** 2 + 1})
+    instance = satsym.Instance.of(nowhere, **given).case
+    assert never(instance) == ""
+    assert never(satsym.Instance.of(WINDOW, **given).case) == ""
+    given["parameters"] = {"c": 0.5, "k": -1.0}
+    assert "no final time after the start" in never(satsym.Instance.of(BACK_BY, **given).case)
 
 
 def test_a_method_that_finds_nothing_leaves_the_answer_to_the_search():

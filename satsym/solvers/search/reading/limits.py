@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -53,6 +54,11 @@ def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
     return {name: side for (name, side), by in beyond(instance.meeting({}), at.times, at.x).items() if by > -NEAR_LIMIT}
 
 
+def guessed_end(instance: Instance, at: Motion) -> Instance:
+    """Return the instance with the end of a motion as its guess of a free final time, next to which limits are met."""
+    return instance if instance.tf is not None else replace(instance, tf_guess=float(at.times[-1]))
+
+
 def exact_within(instance: Instance, at: Motion, exact: Callable[[Instance], Solution | None]) -> Solution | None:
     """The extremal whose limits of the end are those that a motion meets, if it is beyond no other one.
 
@@ -62,7 +68,7 @@ def exact_within(instance: Instance, at: Motion, exact: Callable[[Instance], Sol
         Finds the extremal near the motion of an instance whose limits are met or left.
     """
     try:
-        found = exact(instance.meeting(limits_met(instance, at)))
+        found = exact(guessed_end(instance, at).meeting(limits_met(instance, at)))
     except BadInput:  # a time that is none
         return None
     if found is None or max(beyond(found.instance, found.times, found.x).values(), default=0.0) > BEYOND_LIMIT:
