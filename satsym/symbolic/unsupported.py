@@ -18,6 +18,11 @@ FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh
 _KNOWN = {*FUNCTIONS, *(kind.__name__ for kind in (*CORNERS, *MINIMISERS))}
 
 
+def unknown_functions(e: sp.Basic) -> list[str]:
+    """Return the sympy names of functions in an expression that derivations may not use, in alphabetical order."""
+    return sorted({f.func.__name__ for f in e.atoms(sp.Function)} - _KNOWN)
+
+
 def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection[sp.Expr]) -> str:
     """What is wrong with an expression and what to do about it, or nothing.
 
@@ -40,7 +45,7 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
         return f"has {found} in it, which is not evaluated; state a further state whose rate is what is integrated"
     if found := _first(e, AppliedUndef):
         return _unknown(found, names)
-    if other := sorted({f.func.__name__ for f in e.atoms(sp.Function)} - _KNOWN):
+    if other := unknown_functions(e):
         return f"has the function {other[0]} in it, which is not supported; there are {', '.join(FUNCTIONS)} and sqrt"
     corners = [c for c in sorted(e.atoms(*CORNERS), key=str) if c not in magnitudes]
     if jumping := [c for c in corners if c.free_symbols & set(moving)]:

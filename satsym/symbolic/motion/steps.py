@@ -13,6 +13,7 @@ from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of, t
 from satsym.symbolic.motion.central_force import inertial_velocity, uncontrolled_force
+from satsym.symbolic.unsupported import unknown_functions
 
 _PLANES = {
     2: {n.ANGULAR_MOMENTUM.name: (0, 1)},
@@ -242,7 +243,8 @@ def _antiderivative(function: sp.Expr, by: sp.Symbol) -> sp.Expr | None:
         quotient = simplify(function / sp.diff(w, by)).subs(w, new)
         if not quotient.has(by):
             outer = sp.integrate(quotient, new)
-            return None if outer.has(sp.Integral) else outer.xreplace({new: w})
+            # sympy answers by functions such as expint, of which nothing here makes numbers
+            return None if outer.has(sp.Integral) or unknown_functions(outer) else outer.xreplace({new: w})
     if function.is_Add:
         terms = [_antiderivative(term, by) for term in function.args]
         return None if None in terms else sp.Add(*terms)
