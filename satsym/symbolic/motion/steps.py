@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations
 from typing import Any
 
 import sympy as sp
@@ -218,6 +219,11 @@ def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | 
 
 def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
     """The potential of one generalised force."""
+    crossed = [(sp.diff(generalised[p], q), sp.diff(generalised[q], p)) for p, q in combinations(generalised, 2)]
+    one, other = (numeric([pair[k] for pair in crossed]) for k in range(2))
+    moving = set(generalised).union(*(f.free_symbols for f in generalised.values()))
+    if crossed and not compare("curl", moving, lambda point: (one(point), other(point))).passed:
+        return None
     # an antiderivative that holds for positive coordinates holds for all, which the comparison below confirms
     positive = {q: sp.Dummy(q.name, positive=True) for q in generalised}
     found = sp.Integer(0)
