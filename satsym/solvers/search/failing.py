@@ -55,18 +55,22 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
             return Status.INFEASIBLE, against
     if instance.tf is None:  # of ends that are out of reach nothing is said: another duration may reach them
         return _endless(instance, limits) or (Status.NOT_CONVERGED, message)
-    if reason := _undecided(instance, limits):
-        return Status.NOT_CONVERGED, reason
-    if compared := [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]:
-        several = f"H may have several minimisers in {', '.join(compared)}"
-        advice = "where two of them stay equally good there is no optimum (chattering)"
-        return Status.NOT_CONVERGED, f"{message}; {several}, and {advice}"
-    near = tried(partial(nearest, instance, limits))
-    if near is None or near.arrives or limits.expired:
+    several = [name for part in instance.model.spec.control_parts if part.ends for name in part.controls]
+    near = None if several else tried(partial(nearest, instance, limits))
+    if near is None or near.arrives:  # else no start leads to a motion of which anything could be undecided
+        by_jumps = f"{message}; {_jumping(several)}" if several else message
+        return Status.NOT_CONVERGED, _undecided(instance, limits) or by_jumps
+    if limits.expired:
         return Status.NOT_CONVERGED, message
     if near.undecided or (early and near.distance <= FAR_OFF):
         return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls may reach it"
     return Status.INFEASIBLE, f"{near.message}; {message}"
+
+
+def _jumping(controls: list[str]) -> str:
+    """What is said of controls whose Hamiltonian may have several minimisers."""
+    advice = "where two of them stay equally good there is no optimum (chattering)"
+    return f"H may have several minimisers in {', '.join(controls)}, and {advice}"
 
 
 def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
