@@ -85,7 +85,7 @@ def follows(case: Instance, costates: tuple[float, ...], times: Array) -> tuple[
     return z, np.asarray(model.control_law_batch(times, z[:3], z[3:], p, bounds))
 
 
-@pytest.mark.study
+@pytest.mark.slow
 def test_levelling_in_least_time_jumps_twice(tmp_path: Path) -> None:
     """The first extremal that is found is the slow one."""
     found = levelled(tmp_path, 1, HURRIED)

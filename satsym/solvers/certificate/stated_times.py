@@ -118,7 +118,8 @@ def _off_jumps(solution: Solution) -> float:
 def _off_bounds(solution: Solution) -> float:
     """Largest distance of the law from its bound at a stated time; 1 where a bound is met and no time is stated.
 
-    Between nodes, states and costates are the cubics with their values and rates at both.
+    Between nodes, states and costates are the cubics with their values and rates at both. A control that jumps from
+    bound to bound has its law on neither when it jumps, and the time of the jump is compared as such.
     """
     instance, times = solution.instance, solution.times
     within, lasting = instance.control_set, float(times[-1] - times[0])
@@ -127,6 +128,8 @@ def _off_bounds(solution: Solution) -> float:
     problem = two_point(replace(instance, t0=float(times[0]), tf=float(times[-1]), tf_guess=None), lasting)
     scaled, tau = between(solution, at) / problem.scale.both, (at - times[0]) / lasting
     room = within.excess(problem.control(tau, scaled, problem.theta, bounded=False))
+    for event in solution.events:
+        room[:, len(times) :][:, np.abs(stated - event.t) <= TIMES_APART * lasting] = 0.0
     low, high = (np.asarray(one).ravel() for one in within.around(len(solution.u)))
     size = float(np.max(np.where(np.isfinite(high - low), high - low, 0.0), initial=0.0)) or 1.0
     nodes, met = room[:, : len(times)], np.abs(room[:, len(times) :]).min(axis=0, initial=np.inf)
