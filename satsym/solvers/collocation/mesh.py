@@ -39,9 +39,11 @@ def along(problem: TwoPoint, tau: Array, x: Array, theta: Array) -> Array:
         Extra unknowns.
     """
     n = problem.states
+    coasting = np.concatenate([x, np.zeros_like(x)])
     with np.errstate(all="ignore"):
-        slopes = problem.jacobian(tau, np.concatenate([x, np.zeros_like(x)]), theta)[:n, :n]
-    slopes = np.where(np.isfinite(slopes), slopes, 0.0)  # some laws have no derivatives where costates vanish
+        slopes = problem.jacobian(tau, coasting, theta)[:n, :n]
+        if np.isfinite(problem.rates(tau, coasting, theta)).all():
+            slopes = np.where(np.isfinite(slopes), slopes, 0.0)  # some laws have no derivatives where costates vanish
     speed = np.abs(np.linalg.eigvals(slopes.transpose(2, 0, 1))).max(axis=1)
     speed = np.maximum(speed, speed.mean() / 2.0)
     speed[1:-1] = np.maximum(speed[1:-1], np.maximum(speed[:-2], speed[2:]))

@@ -63,8 +63,10 @@ FALLING, RESOLVED = 1e-2, 1e-2
 """Share of its cost by which a motion that costs more than an answer must become cheaper from one mesh to the next to
 be followed further, and the residual of its coarse mesh, relative to the sizes of states, up to which it is not."""
 
-MOST_COSTS = 3
-"""Different costs after which the search ends if none of their motions could be made exact."""
+MOST_COSTS, KEPT_COST = 3, 0.5
+"""Different costs after which the search ends if none of their motions could be made exact. A motion whose cost finer
+meshes change by more than this share was none, as the coarse mesh stepped over something; of these it takes twice as
+many."""
 
 ENDLESS = 2
 """Starts with the shortest or the longest duration that is allowed, after which the search ends."""
@@ -113,21 +115,22 @@ def searched(
         Tells whether no start will lead to an extremal; it is asked after a few that fail.
     """
     costs: list[float] = []
-    failing, failed, endless = CONVEX if convex(instance) else FAILING, 0, 0
+    failing, failed, endless, kept = CONVEX if convex(instance) else FAILING, 0, 0, 0
     for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
         if found.solved and at_edge(found):
             endless += 1
             if endless >= ENDLESS:
                 break
         elif found.solved and not any(same(found.objective, cost) for cost in costs):
-            one = _part(limits)
+            one, last = _part(limits), found.objective
             for at in _finer(found, one):
-                answer = exact(at, one)
+                answer, last = exact(at, one), at.cost
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
+            kept += abs(last - found.objective) <= KEPT_COST * abs(found.objective)
         failed = 0 if costs else failed + (not plan.loosened)
-        if len(costs) >= MOST_COSTS or failed >= failing or number + 1 >= STARTS:
+        if kept >= MOST_COSTS or len(costs) >= 2 * MOST_COSTS or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():
             break
