@@ -35,6 +35,10 @@ of ends that it meets, relative to sizes."""
 AT_BOUND = 0.02
 """Share of the width of its range by which a programme's control is off a bound at which it is."""
 
+NEARLY = 0.03
+"""Share by which switching functions are raised and lowered: arcs in which they hardly pass the weight of a magnitude
+may be shorter than an interval of the mesh, on which they then do not reach it."""
+
 CLOSE_SWITCHES = 0.02
 """Share of the time between the first and the last switch by which switching times of guesses differ that are one."""
 
@@ -106,9 +110,11 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
     plain = guess(instance, seen)
     if not instance.model.spec.throttled:
         yield plain
-        off, seen = _off_bounds(instance, seen)
+        off, rounded = _off_bounds(instance, seen)
         if off.any():
-            yield guess(instance, seen, off)
+            yield guess(instance, rounded, off)
+        for factor in (1.0 + NEARLY, 1.0 - NEARLY) if seen.weight.any() else ():
+            yield guess(instance, replace(seen, sigma=factor * seen.sigma))
         return
     read = read_norm(at)
     if read is not None and any(read[0]):  # burns that are shorter than an interval are not read
