@@ -21,17 +21,26 @@ and by how much a step is shortened that goes further."""
 FAR_ENOUGH, SMALLEST_ERROR, LARGEST_ERROR = 0.9, 1e-3, 1e-2
 """Share of the way that is far enough; between which errors of a step it keeps its length."""
 
+SWINGING = 10.0
+"""Time scales of a motion that no constant control moves far enough."""
+
 SCALES = 10.0 ** np.arange(-12.0, 7.0)
 """Magnitudes of controls without bounds that are looked at."""
 
 
 def first_duration(instance: Instance, controls: Controls) -> float:
-    """The duration that is given or guessed, or else the least in which constant controls have moved every state."""
+    """The duration that is given or guessed, or else the least in which constant controls have moved every state.
+
+    Where none of them moves any state far enough, the motion has to swing, for several of its time scales.
+    """
     if instance.tf is not None:
         return instance.tf - instance.t0
     if instance.tf_guess is not None:
         return instance.tf_guess - instance.t0
-    return _moved(instance, controls) or _time_scale(instance)
+    moved = _moved(instance, controls)
+    if np.isfinite(moved) and moved > 0.0:
+        return moved
+    return _time_scale(instance) * (SWINGING if moved > 0.0 else 1.0)
 
 
 def _time_scale(instance: Instance) -> float:
@@ -39,12 +48,13 @@ def _time_scale(instance: Instance) -> float:
     return tried(lambda: time_scale(instance)) or 1.0
 
 
-def _moved(instance: Instance, controls: Controls) -> float | None:
+def _moved(instance: Instance, controls: Controls) -> float:
+    """When the last state has moved far enough that does; infinite where none does, zero where none is to move."""
     start = np.array(instance.initial)
     goal = np.abs(wanted(instance, instance.t0) - start)
     first = _reached(instance, controls, np.array(_constant(instance, controls)).T, start, goal)
     found = first[(goal > 0.0) & np.isfinite(first)]
-    return float(found.max()) if len(found) else None
+    return float(found.max()) if len(found) else np.inf if (goal > 0.0).any() else 0.0
 
 
 def _affordable(instance: Instance, controls: Controls, k: int) -> float:
