@@ -17,11 +17,12 @@ from satsym.solvers.search.feasibility import contradiction
 from satsym.solvers.search.nearest import nearest
 from satsym.solvers.switching.linear.by_reach import unreachable
 from satsym.solvers.switching.solving import NOT_FOUND
-from satsym.solvers.switching.throttled import switched
+from satsym.solvers.switching.throttled import signs, switched
 from satsym.status import Status
 
-BETWEEN, LASTING = 0.05, 0.35
-"""Share of the width of its range by which a norm is off its bounds, and of the time for which nothing decides it."""
+BETWEEN, FAINT, LASTING = 0.05, 1e-2, 0.35
+"""Share of the width of its range by which a norm is off its bounds, share of the cost of a norm below which its
+switching function decides nothing, and share of the time for which nothing decides it."""
 
 LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
 """Multiples of the first guess of a free duration at which costs are looked at where no extremal is found."""
@@ -112,7 +113,10 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     low, high = (np.array(bounds)[:, None] for bounds in instance.control_set.switching)
     filled = (switched(instance, at.u) - low) / np.where(high > low, high - low, 1.0)
     between = (filled > BETWEEN) & (filled < 1.0 - BETWEEN)
-    if not (between @ at.steps > LASTING * at.steps.sum()).any():
+    sigma, priced = (signs(instance, at.times, at.x, costates)[0] for costates in (at.lam, np.zeros_like(at.lam)))
+    with np.errstate(all="ignore"):  # where norms cost nothing nothing is faint
+        faint = (np.abs(sigma) <= FAINT * np.abs(priced).max(axis=1, keepdims=True))[:, 1:] & (sigma != 0.0)[:, 1:]
+    if not ((between | faint) @ at.steps > LASTING * at.steps.sum()).any():
         return ""
     single = [c for part in spec.control_parts if part.branch == "switched" for c in part.controls]
     what = "the norm of a vector"
