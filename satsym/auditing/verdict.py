@@ -20,8 +20,7 @@ from satsym.auditing.propositions.reading import shape
 from satsym.auditing.propositions.values import in_words
 from satsym.auditing.sentences import joined, say, sentence, stated
 from satsym.formula import budget
-from satsym.formula.cells import Formula, names_in
-from satsym.formula.tree import ONE, Mul, Neg, Node, Num, Sym
+from satsym.formula.tree import ONE, Formula, Mul, Neg, Node, Num, Sym, names_in
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas

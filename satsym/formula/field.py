@@ -308,13 +308,6 @@ def _circular(name: str, turn: int) -> int:
 
 def rank(rows: list[list[int]]) -> int:
     """The rank of a matrix of numbers modulo the prime."""
-    rest, found = [list(row) for row in rows], 0
-    for column in range(len(rows[0]) if rows else 0):
-        pivot = next((row for row in rest if row[column] % PRIME), None)
-        if pivot is None:
-            continue
-        rest.remove(pivot)
-        found += 1
-        scale = pow(pivot[column], -1, PRIME)
-        rest = [[(e - row[column] * scale * p) % PRIME for e, p in zip(row, pivot, strict=True)] for row in rest]
-    return found
+    from flint import nmod_mat
+
+    return int(nmod_mat(len(rows), len(rows[0]) if rows else 0, [e % PRIME for row in rows for e in row], PRIME).rank())

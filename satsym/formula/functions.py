@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from satsym.formula.evaluation import Engine, Operation
-from satsym.formula.runge_kutta import classical_weights
 from satsym.formula.tree import Call, Grid, Node, Sym, Text, constant
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Value, plain, square, stacked, transposed, without
 from satsym.status import BadInput
@@ -110,6 +109,22 @@ def _jacobian(engine: Engine[S], tree: Call) -> Value:
     if column.shape[1] != 1:
         raise BadInput("jacobian(...) takes a column")
     return Matrix(tuple(tuple(engine.derivative(row[0], name) for name in names) for row in column.rows))
+
+
+def classical_weights() -> tuple[Fraction, ...]:
+    """Weights of the classical Runge-Kutta method, solved from the conditions of its order.
+
+    With the nodes 0, 1/2, 1/2, 1 and each stage built on the one before it, the conditions sum b = 1, sum b c = 1/2,
+    sum b c^2 = 1/3 and sum b_i a_ij c_j = 1/6 of order three have one solution; it is of order four (Hairer, Norsett
+    and Wanner, Solving Ordinary Differential Equations I, II.1).
+    """
+    from flint import fmpq, fmpq_mat
+
+    c = [fmpq(0), fmpq(1, 2), fmpq(1, 2), fmpq(1)]
+    chained = [fmpq(0), fmpq(0), c[2] * c[1], c[3] * c[2]]
+    conditions = fmpq_mat([[fmpq(1)] * 4, c, [node**2 for node in c], chained])
+    found = conditions.solve(fmpq_mat(4, 1, [fmpq(1), fmpq(1, 2), fmpq(1, 3), fmpq(1, 6)]))
+    return tuple(Fraction(int(b.p), int(b.q)) for b in found.entries())
 
 
 def _increment(engine: Engine[S], tree: Call) -> Value:

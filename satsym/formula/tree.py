@@ -6,10 +6,12 @@ is a quotient. So an edit of the tree is an edit of the print.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar, overload
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +110,10 @@ class Equality:
     rhs: Node
 
 
+Formula: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
+"""What is printed: an expression, an equality, or the rows of a matrix."""
+
+
 def children(node: Node) -> tuple[Node, ...]:
     """The parts of a node, in the order in which they are printed."""
     if isinstance(node, Neg):
@@ -183,11 +189,6 @@ def symbols(node: Node) -> set[str]:
     return {part.name for _, part in walk(node) if isinstance(part, Sym)}
 
 
-def calls(node: Node) -> Iterator[Call]:
-    """Function calls that occur, from the outside inwards."""
-    return (part for _, part in walk(node) if isinstance(part, Call))
-
-
 def size(node: Node) -> int:
     """Number of nodes."""
     return sum(1 for _ in walk(node))
@@ -225,3 +226,40 @@ def constant(node: Node) -> Fraction | None:
     if isinstance(node, Pow) and values[1].denominator == 1 and abs(values[1]) <= 100:
         return values[0] ** int(values[1]) if values[0] or values[1] > 0 else None
     return None
+
+
+def cells(formula: Formula | None) -> list[Node]:
+    """An expression, both sides of an equality, or the entries of a matrix; nothing of nothing."""
+    if formula is None:
+        return []
+    if isinstance(formula, tuple):
+        return [entry for line in formula for entry in line]
+    return [formula.lhs, formula.rhs] if isinstance(formula, Equality) else [formula]
+
+
+def shaped(entries: Sequence[T], columns: int) -> tuple[tuple[T, ...], ...]:
+    """Entries of a matrix, row by row, as its rows."""
+    return tuple(tuple(entries[i : i + columns]) for i in range(0, len(entries), columns))
+
+
+@overload
+def each(formula: Node | Equality, function: Callable[[Node], Node]) -> Node | Equality: ...
+@overload
+def each(formula: Formula, function: Callable[[Node], Node]) -> Formula: ...
+def each(formula: Formula, function: Callable[[Node], Node]) -> Formula:
+    """The formula with another expression in the place of each part."""
+    if isinstance(formula, tuple):
+        return tuple(tuple(map(function, line)) for line in formula)
+    if isinstance(formula, Equality):
+        return Equality(function(formula.lhs), function(formula.rhs))
+    return function(formula)
+
+
+def names_in(formula: Formula | None) -> set[str]:
+    """Names of all symbols."""
+    return set().union(*map(symbols, cells(formula)))
+
+
+def calls_in(formula: Formula | None) -> Iterator[Call]:
+    """All calls of functions, from the outside inwards."""
+    return (part for cell in cells(formula) for _, part in walk(cell) if isinstance(part, Call))

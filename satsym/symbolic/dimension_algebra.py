@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -17,10 +17,6 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 """Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
-_PRESERVING = (sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink)
-"""What needs arguments of one dimension and returns it."""
-
-
 _TOLD = {
     "unknown": "uses {0}, whose dimension is not known",
     "unequal": "puts {0} of dimension {1} beside {2} of dimension {3}",
@@ -64,50 +60,11 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return known[e.name]
     if e.is_number:
         return None if e == 0 else PLAIN
-    if isinstance(e, _PRESERVING):
-        return _common(e.args, known)
-    if e.is_Mul:
-        return product(dimension_of(a, known) for a in e.args)
-    if e.is_Pow:
-        _plain(e.exp, known)
-        return power_of(dimension_of(e.base, known), e.exp)
-    if isinstance(e, sp.Abs):
-        return dimension_of(e.args[0], known)
-    if isinstance(e, minimisers.SignedClip):
-        slope, weight, smoothing, *limits = e.args
-        return _common((slope / smoothing, weight / smoothing, *limits), known)
-    if isinstance(e, minimisers.Switch | minimisers.SignedSwitch):
-        slope, weight, *limits = e.args
-        _common((slope, weight), known)
-        return _common(limits, known)
-    if isinstance(e, roots.Convex):
-        return dimension_of(e.args[0], known)
-    if isinstance(e, pieces.Until):
-        dimension_of(e.args[0], known)
-    if isinstance(e, roots.Choice | pieces.Until):
-        return _common(e.args[1:], known)
-    if isinstance(e, roots.Vertex):
-        return _common((e.args[1] / e.args[0], *e.args[2:]), known)
-    if isinstance(e, roots.Argmin):
-        ends, coefficients = [end for end in e.args[:2] if not end.is_infinite], e.args[2:]
-        return _common((*ends, *(a / b for a, b in pairwise(coefficients) if b != 0 and a != 0)), known)
-    if isinstance(e, roots.Root):  # what it is a value of; nothing tells where it has no ends
-        return _common((end for end in e.args[:2] if not end.is_infinite), known)
-    if isinstance(e, sp.Piecewise):
-        for comparison in e.atoms(sp.core.relational.Relational):
-            _common(comparison.args, known)
-        return _common([branch for branch, _ in e.args], known)
-    if isinstance(e, minimisers.Stretch):
-        norm_squared, _, length = (dimension_of(a, known) for a in e.args)
-        return over(length, power_of(norm_squared, sp.Rational(1, 2)))
-    if isinstance(e, minimisers.Shorten | minimisers.Within):
-        norm_squared, *limits = e.args
-        _common((norm_squared, *(limit**2 for limit in limits)), known)
-    elif isinstance(e, sp.atan2 | roots.Bearing):
-        _common(e.args, known)
-    elif not isinstance(e, sp.sign):
-        for argument in e.args:
-            _plain(argument, known, e.func.__name__)
+    for kinds, rule in _RULES:
+        if isinstance(e, kinds):
+            return rule(e, known)
+    for argument in e.args:
+        _plain(argument, known, e.func.__name__)
     return PLAIN
 
 
@@ -163,3 +120,78 @@ def power_of(dimension: Dimension | None, exponent: sp.Expr) -> Dimension | None
 def over(dimension: Dimension | None, other: Dimension | None) -> Dimension | None:
     """The dimension of a quotient."""
     return product((dimension, power_of(other, sp.Integer(-1))))
+
+
+def _of_power(e: sp.Pow, known: Known) -> Dimension | None:
+    _plain(e.exp, known)
+    return power_of(dimension_of(e.base, known), e.exp)
+
+
+def _of_signed_clip(e: sp.Expr, known: Known) -> Dimension | None:
+    slope, weight, smoothing, *limits = e.args
+    return _common((slope / smoothing, weight / smoothing, *limits), known)
+
+
+def _of_switch(e: sp.Expr, known: Known) -> Dimension | None:
+    slope, weight, *limits = e.args
+    _common((slope, weight), known)
+    return _common(limits, known)
+
+
+def _of_until(e: sp.Expr, known: Known) -> Dimension | None:
+    dimension_of(e.args[0], known)
+    return _common(e.args[1:], known)
+
+
+def _of_argmin(e: sp.Expr, known: Known) -> Dimension | None:
+    ratios = [a / b for a, b in pairwise(e.args[2:]) if b != 0 and a != 0]
+    return _common((*_ends(e), *ratios), known)
+
+
+def _ends(e: sp.Expr) -> list[sp.Expr]:
+    """The ends of an interval that are finite: the first two arguments of what is sought in it."""
+    return [end for end in e.args[:2] if not end.is_infinite]
+
+
+def _of_piecewise(e: sp.Piecewise, known: Known) -> Dimension | None:
+    for comparison in e.atoms(sp.core.relational.Relational):
+        _common(comparison.args, known)
+    return _common([branch for branch, _ in e.args], known)
+
+
+def _of_stretch(e: sp.Expr, known: Known) -> Dimension | None:
+    norm_squared, _, length = (dimension_of(a, known) for a in e.args)
+    return over(length, power_of(norm_squared, sp.Rational(1, 2)))
+
+
+def _of_share(e: sp.Expr, known: Known) -> Dimension | None:
+    """A plain number, of a squared norm beside limits of the norm."""
+    norm_squared, *limits = e.args
+    _common((norm_squared, *(limit**2 for limit in limits)), known)
+    return PLAIN
+
+
+def _of_angle(e: sp.Expr, known: Known) -> Dimension | None:
+    _common(e.args, known)
+    return PLAIN
+
+
+_RULES: tuple[tuple[tuple[type, ...], Callable[[Any, Known], Dimension | None]], ...] = (
+    ((sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink), lambda e, known: _common(e.args, known)),
+    ((sp.Mul,), lambda e, known: product(dimension_of(a, known) for a in e.args)),
+    ((sp.Pow,), _of_power),
+    ((sp.Abs, roots.Convex), lambda e, known: dimension_of(e.args[0], known)),
+    ((minimisers.SignedClip,), _of_signed_clip),
+    ((minimisers.Switch, minimisers.SignedSwitch), _of_switch),
+    ((pieces.Until,), _of_until),
+    ((roots.Choice,), lambda e, known: _common(e.args[1:], known)),
+    ((roots.Vertex,), lambda e, known: _common((e.args[1] / e.args[0], *e.args[2:]), known)),
+    ((roots.Argmin,), _of_argmin),
+    ((roots.Root,), lambda e, known: _common(_ends(e), known)),  # nothing tells where it has no ends
+    ((sp.Piecewise,), _of_piecewise),
+    ((minimisers.Stretch,), _of_stretch),
+    ((minimisers.Shorten, minimisers.Within), _of_share),
+    ((sp.atan2, roots.Bearing), _of_angle),
+    ((sp.sign,), lambda _, __: PLAIN),
+)
+"""Classes of expressions, and the rule of each; what is in none of them needs plain numbers, and is one."""

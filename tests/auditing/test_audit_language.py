@@ -12,8 +12,8 @@ from hypothesis import assume, given
 
 from satsym.formula import field
 from satsym.formula.calculus import Calculus, derivative
+from satsym.formula.functions import classical_weights
 from satsym.formula.reading import expression, statement
-from satsym.formula.runge_kutta import classical_weights
 from satsym.formula.tree import (
     Add,
     Call,

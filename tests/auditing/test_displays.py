@@ -14,8 +14,7 @@ from satsym.auditing.latex.tokens import Unread, tokens
 from satsym.auditing.latex.words import NOT_COMPARED
 from satsym.auditing.latex.writing import in_latex
 from satsym.formula import reading as safe
-from satsym.formula.cells import calls_in
-from satsym.formula.tree import Equality, Node, symbols
+from satsym.formula.tree import Equality, Node, calls_in, symbols
 from satsym.formula.writing import written
 
 FOLDER = Path(__file__).parent / "displays"

@@ -32,7 +32,6 @@ from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range
 from satsym.auditing.run import audit
 from satsym.formula import field
-from satsym.formula.cells import each, names_in
 from satsym.formula.tree import (
     Add,
     Call,
@@ -45,6 +44,8 @@ from satsym.formula.tree import (
     Pow,
     Sym,
     Text,
+    each,
+    names_in,
     number,
     replaced,
     substituted,

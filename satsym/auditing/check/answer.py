@@ -21,8 +21,7 @@ from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
 from satsym.auditing.latex.words import FUNCTIONS, RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
-from satsym.formula.cells import cells, names_in
-from satsym.formula.tree import ZERO, Call, Equality, Grid, Node, Sym, substituted, symbols, walk
+from satsym.formula.tree import ZERO, Call, Equality, Grid, Node, Sym, cells, names_in, substituted, symbols, walk
 from satsym.records import shelf
 from satsym.status import BadInput
 

@@ -11,7 +11,7 @@ from satsym.auditing.latex.words import NOT_COMPARED, NOT_NUMBERS
 from satsym.formula.calculus import derivative, difference, product, total
 from satsym.formula.field import BY_TERMS, NoValue, Nowhere, Point, Undecided, points_for
 from satsym.formula.reading import FUNCTIONS
-from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls, mapped, substituted, symbols
+from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls_in, mapped, substituted, symbols
 from satsym.records import record
 from satsym.records.record import Record
 from satsym.status import BadInput
@@ -286,5 +286,5 @@ def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
 def is_plain(tree: Node) -> bool:
     """Whether a tree is made of arithmetic and elementary functions alone."""
     return symbols(tree).isdisjoint(NOT_NUMBERS) and all(
-        call.function in FUNCTIONS and call.function not in _NOT_PLAIN for call in calls(tree)
+        call.function in FUNCTIONS and call.function not in _NOT_PLAIN for call in calls_in(tree)
     )

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from satsym.auditing.check.derived import Target
-from satsym.formula.cells import calls_in, cells, each
-from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, symbols
+from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, calls_in, cells, each, mapped, symbols
 
 _AT_THE_END = frozenset(map(Sym, ("t_f", "tf", "T", "t1", "t_1")))
 _AT_THE_BEGINNING = frozenset((ZERO, Sym("t_0"), Sym("t0")))

@@ -16,8 +16,7 @@ from satsym.auditing.ledger.schema import DocumentTable, RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.sentences import Said, in_indonesian
 from satsym.formula import budget
-from satsym.formula.cells import cells, each, names_in
-from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, mapped, size, substituted
+from satsym.formula.tree import ZERO, Call, Equality, Node, Sym, cells, each, mapped, names_in, size, substituted
 from satsym.formula.weight import Scales
 from satsym.formula.writing import written
 from satsym.status import BadInput

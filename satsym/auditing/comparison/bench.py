@@ -12,9 +12,8 @@ from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.scopes import Scope, self_named
 from satsym.formula.budget import Allowance, Limit, OverBudget
 from satsym.formula.calculus import Calculus
-from satsym.formula.cells import Formula, each, names_in
 from satsym.formula.field import Undecided
-from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
+from satsym.formula.tree import Equality, Formula, Node, Sym, Text, each, names_in, substituted, symbols, walk
 from satsym.formula.values import Matrix, Relation, Sources, Value
 from satsym.formula.writing import written
 from satsym.records import record, shelf

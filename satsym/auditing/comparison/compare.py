@@ -9,8 +9,7 @@ from satsym.auditing.comparison.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.sentences import say
 from satsym.formula.bound import unbound
-from satsym.formula.cells import Formula
-from satsym.formula.tree import ZERO, Equality, Node, Sym, symbols
+from satsym.formula.tree import ZERO, Equality, Formula, Node, Sym, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas

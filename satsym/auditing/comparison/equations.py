@@ -13,7 +13,7 @@ from satsym.formula import field
 from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product, raised
-from satsym.formula.tree import Add, Call, Equality, Neg, Node, Sym, calls, number, substituted, symbols, walk
+from satsym.formula.tree import Add, Call, Equality, Neg, Node, Sym, calls_in, number, substituted, symbols, walk
 from satsym.formula.values import Matrix
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -129,7 +129,9 @@ class Multiple(Plan):
         """Whether the quotient of the differences may be made of positive symbols alone: then only these change it."""
         positive = self.bench.names.positive
         parts = [substituted(cell, self.meanings) for cell in cells]
-        for call in (call for part in (*parts, self._aim) for call in calls(part) if call.function in field.BY_TERMS):
+        for call in (
+            call for part in (*parts, self._aim) for call in calls_in(part) if call.function in field.BY_TERMS
+        ):
             inside = symbols(call)
             if inside & positive and inside - positive and any(isinstance(part, Add) for _, part in walk(call)):
                 return True  # a factor of it may be made of positive symbols, and has other values at each point

@@ -11,9 +11,8 @@ from satsym.auditing.ledger.contents import Row
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product
-from satsym.formula.cells import shaped
 from satsym.formula.evaluation import Engine
-from satsym.formula.tree import Node, Sym
+from satsym.formula.tree import Node, Sym, shaped
 from satsym.formula.values import Matrix
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas

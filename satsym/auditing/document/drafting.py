@@ -28,8 +28,7 @@ from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.tokens import Token, Unread, tokens
 from satsym.formula import reading as safe
 from satsym.formula.calculus import derivative, difference
-from satsym.formula.cells import each
-from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Sym, Text, substituted, symbols
+from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Sym, Text, each, substituted, symbols
 from satsym.formula.writing import written
 from satsym.records import record, shelf
 from satsym.status import BadInput

@@ -12,8 +12,7 @@ from satsym.auditing.diagnosis.smallest_edit import remedy, wrong_formula
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.sentences import Said, joined, say
-from satsym.formula.cells import Formula, cells, shaped
-from satsym.formula.tree import Equality, Grid, Node
+from satsym.formula.tree import Equality, Formula, Grid, Node, cells, shaped
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import library
 

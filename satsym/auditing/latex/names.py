@@ -6,8 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.formula.cells import cells
-from satsym.formula.tree import Pow, Sym, walk
+from satsym.formula.tree import Pow, Sym, cells, walk
 
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.words import COUNTERS
-from satsym.formula.cells import each
 from satsym.formula.tree import (
     Add,
     Call,
@@ -22,6 +21,7 @@ from satsym.formula.tree import (
     Pow,
     Sym,
     constant,
+    each,
     substituted,
     symbols,
 )

@@ -12,8 +12,7 @@ from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.ledger.vocabulary import is_address
 from satsym.auditing.propositions.reading import Proposition
 from satsym.auditing.sentences import Said
-from satsym.formula.cells import Formula, calls_in, cells
-from satsym.formula.tree import Call, Equality, Node, Text, walk
+from satsym.formula.tree import Call, Equality, Formula, Node, Text, calls_in, cells, walk
 
 
 @dataclass(frozen=True)

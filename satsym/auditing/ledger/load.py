@@ -21,8 +21,7 @@ from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, 
 from satsym.auditing.ledger.scopes import Scope, WrongScope
 from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
-from satsym.formula.cells import calls_in
-from satsym.formula.tree import Node, substituted
+from satsym.formula.tree import Node, calls_in, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files
 from satsym.records import shelf

@@ -10,8 +10,7 @@ from satsym.auditing.ledger import vocabulary
 from satsym.auditing.ledger.schema import RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.formula import reading
-from satsym.formula.cells import Formula, each, names_in
-from satsym.formula.tree import Equality, Node, Text, substituted
+from satsym.formula.tree import Equality, Formula, Node, Text, each, names_in, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from satsym.formula import reading
-from satsym.formula.tree import Node, Sym, calls, substituted
+from satsym.formula.tree import Node, Sym, calls_in, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -93,7 +93,7 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
             meanings[key] = Scales().checked(substituted(reading.expression(value, judging=True), derived))
         except BadInput as error:
             raise WrongScope(name, key, str(error)) from None
-        if any(call.function == "row" for call in calls(meanings[key])):
+        if any(call.function == "row" for call in calls_in(meanings[key])):
             raise WrongScope(name, key, "a notation cannot depend on a row")
     for key, entries in orders.items():
         for entry in entries:

@@ -8,8 +8,7 @@ from functools import cache
 from typing import Any
 
 from satsym import source_files
-from satsym.formula.cells import Formula, cells
-from satsym.formula.tree import Call, Sym, Text, walk
+from satsym.formula.tree import Call, Formula, Sym, Text, cells, walk
 from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion

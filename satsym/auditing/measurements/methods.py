@@ -18,7 +18,7 @@ from satsym.arrays import Array, kept
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
 from satsym.auditing.propositions.values import Record, Undecided, undecided_if_refused
-from satsym.formula.runge_kutta import classical_weights
+from satsym.formula.functions import classical_weights
 from satsym.status import BadInput
 
 _MARK = re.compile(r"(\w+)_([nij])(1|0h|0|h)?")
