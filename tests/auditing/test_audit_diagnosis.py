@@ -14,8 +14,7 @@ from satsym import auditing
 from satsym.auditing.comparison.bench import Bench, Both, Formula
 from satsym.auditing.comparison.compare import plans
 from satsym.auditing.comparison.plan import Plan
-from satsym.auditing.diagnosis.edits import Change, in_exponent, mean_edits
-from satsym.auditing.diagnosis.rewriting import times
+from satsym.auditing.diagnosis.edits import Change, in_exponent, mean_edits, times
 from satsym.auditing.diagnosis.smallest_edit import Remedy, remedy
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.ledger.scopes import Scope

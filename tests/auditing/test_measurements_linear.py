@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.auditing.measurements import earth, formulas, linear, linear_motions, listings, matrices, regulators
+from satsym.auditing.measurements import earth, formulas, linear, linear_motions, matrices, programs, regulators
 from satsym.auditing.measurements import words as all_words
 from satsym.auditing.propositions.values import Record, Undecided, numbers
 from satsym.status import BadInput
@@ -157,7 +157,7 @@ def test_orbits_of_the_earth() -> None:
 
 
 def test_signs_and_calls_of_a_line() -> None:
-    assert listings.count("plot([a[1], b)", "[") == 2
+    assert programs.count("plot([a[1], b)", "[") == 2
 
 
 def test_the_dual_is_observed_where_the_system_is_controlled() -> None:

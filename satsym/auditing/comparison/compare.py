@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from satsym.auditing.comparison.bench import Bench, Both
-from satsym.auditing.comparison.equations import Equal, Multiple
-from satsym.auditing.comparison.matrices import EqualMatrix, SameRoots, Spans
+from satsym.auditing.comparison.equations import Equal, EqualMatrix, Multiple, SameRoots, Spans
 from satsym.auditing.comparison.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
+from satsym.auditing.ledger.scopes import CONSTANTS
 from satsym.auditing.sentences import say
-from satsym.formula.bound import unbound
-from satsym.formula.tree import ZERO, Equality, Formula, Node, Sym, symbols
+from satsym.formula.tree import ZERO, Equality, Formula, Node, Sym, names_in, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
@@ -49,7 +48,7 @@ def _of_relation(bench: Bench, row: Row, printed: Node | Equality, target: Both)
             return [Multiple(bench, row, Equality(printed, ZERO), target)]
         return [Equal(bench, row, (printed,), ("",), (rhs,))]
     meanings = bench.meanings(row)
-    if unbound(printed.lhs, meanings) | unbound(printed.rhs, meanings):
+    if names_in(printed) - {*meanings, *CONSTANTS}:
         raise BadInput("a symbol for a matrix stands in an equation between numbers")
     if ZERO not in (relation.lhs, relation.rhs):
         for mine, other in ((printed.lhs, printed.rhs), (printed.rhs, printed.lhs)):

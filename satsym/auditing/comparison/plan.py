@@ -16,11 +16,43 @@ from satsym.auditing.comparison.bench import Bench, Both
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.sentences import Said
 from satsym.formula import field
-from satsym.formula.bound import BoundPoint
-from satsym.formula.tree import Node, symbols
+from satsym.formula.field import BY_TERMS, Nowhere, Point
+from satsym.formula.tree import Call, Node, Sym, substituted, symbols
 from satsym.formula.values import Matrix
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas
+
+
+class BoundPoint(Point):
+    """A point for formulas in the symbols of a document.
+
+    Parameters
+    ----------
+    base
+        The point for formulas in our names.
+    meanings
+        The document's symbols -> what they mean in our names.
+    """
+
+    def __init__(self, base: Point, meanings: Mapping[str, Node]) -> None:
+        super().__init__("", (), base.strict)
+        self.base = base
+        self._meanings = meanings
+
+    def value_of_call(self, node: Call) -> int:
+        """Angles and exponents are taken apart in our names."""
+        if node.function in BY_TERMS:
+            return self.base.value(substituted(node, self._meanings))
+        return super().value_of_call(node)
+
+    def symbol(self, name: str) -> int:
+        """The value of what a symbol of the document means."""
+        if name in self._meanings:
+            return self.base.value(self._meanings[name])
+        if name in ("I", "pi"):
+            return self.base.value(Sym(name))
+        raise Nowhere(f"{name} means a matrix")
+
 
 Cells: TypeAlias = Sequence[Node]
 QUICK = 2

@@ -14,13 +14,19 @@ from itertools import combinations
 import numpy as np
 
 from satsym.auditing.comparison.equations import Equal
-from satsym.auditing.comparison.plan import Never, Plan
-from satsym.auditing.diagnosis.edits import Change, Edit, mean_edits, repeated_edits, single_edits
+from satsym.auditing.comparison.plan import BoundPoint, Never, Plan
+from satsym.auditing.diagnosis.edits import (
+    Change,
+    Edit,
+    mean_edits,
+    over_symbol,
+    repeated_edits,
+    single_edits,
+    times_symbol,
+)
 from satsym.auditing.diagnosis.lacking import mended_terms
-from satsym.auditing.diagnosis.rewriting import over_symbol, times_symbol
 from satsym.auditing.sentences import Said, joined, say, sentence, tables
 from satsym.formula import field
-from satsym.formula.bound import BoundPoint
 from satsym.formula.tree import Add, Neg, Node, Sym, replaced, size
 from satsym.formula.writing import written
 from satsym.symbolic.lookup.formulas import NotAFormula

@@ -14,8 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.program.library import BINARY, COMPARED, Module, Run, builtins, modules
-from satsym.auditing.program.sizes import broadcast, extent, formatted, indexed, made
+from satsym.auditing.program.library import (
+    BINARY,
+    COMPARED,
+    Module,
+    Run,
+    broadcast,
+    builtins,
+    extent,
+    formatted,
+    indexed,
+    made,
+    modules,
+)
 from satsym.auditing.program.text import Program, Stops
 from satsym.formula import budget
 from satsym.formula.budget import OverBudget
