@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -16,9 +15,9 @@ from satsym.auditing.check.matrices import matrix_answer
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.nearest import likeness
 from satsym.auditing.latex.grammar import CONSTANT, Reading, read
-from satsym.auditing.latex.letters import Letter, of_word
-from satsym.auditing.latex.tokens import Macros, Token, plain_tokens, tokens
-from satsym.auditing.latex.words import FUNCTIONS, RELATIONS
+from satsym.auditing.latex.letters import Letter
+from satsym.auditing.latex.tokens import Macros, plain_tokens, tokens
+from satsym.auditing.latex.words import RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
 from satsym.formula.tree import ZERO, Call, Equality, Grid, Node, Sym, cells, names_in, substituted, symbols, walk
@@ -65,24 +64,8 @@ def _read(text: str, latex: bool, macros: Macros | None, meanings: Meanings, giv
     if latex:
         inner = text.strip().strip("$")
         return read(tokens(inner, macros), inner, names=meanings.spelled(given))
-    found = [part for token in plain_tokens(text) for part in _words(token, meanings, given)]
-    return read(found, text, plain=True)
-
-
-def _words(token: Token, meanings: Meanings, given: Mapping[Letter, str]) -> list[Token]:
-    """A word of plain notation; one that is no name as the letters that it is made of, if all of these are known."""
-    text = token.text
-    if token.kind != "word" or len(text) == 1 or text in FUNCTIONS or "_" in text:
-        return [token]
-    if text[0] == "d" and re.fullmatch(r"d2?[A-Za-z]\w*", text):
-        return [token]
-    letter = of_word(text)
-    if meanings.tree(letter, given) is not None or not text.isalpha():
-        return [token]
-    singles = [Letter(one) for one in text]
-    if any(meanings.tree(one, given) is None for one in singles):
-        return [token]
-    return [Token("word", one, token.at + k) for k, one in enumerate(text)]
+    found = plain_tokens(text, lambda letter: meanings.tree(letter, given) is not None)
+    return read(found, text)
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,17 +42,15 @@ class Cursor(ABC):
         Where the letters are entered.
     start
         The place of the first character of the formula.
-    plain
-        Whether names have several letters.
     """
 
-    def __init__(self, found: Sequence[Token], reading: Reading, start: int, plain: bool, depth: int = 0) -> None:
-        self._found, self._reading, self._start, self._plain, self._depth = found, reading, start, plain, depth
+    def __init__(self, found: Sequence[Token], reading: Reading, start: int, depth: int = 0) -> None:
+        self._found, self._reading, self._start, self._depth = found, reading, start, depth
         self._i = 0
 
     def _of(self, part: Sequence[Token]) -> Self:
         """A cursor of its own for a part."""
-        return type(self)(part, self._reading, self._start, self._plain, self._depth + 1)
+        return type(self)(part, self._reading, self._start, self._depth + 1)
 
     @abstractmethod
     def _inner(self, part: Sequence[Token], at: int) -> Node:
@@ -115,22 +113,13 @@ class Cursor(ABC):
 
     def _script(self) -> list[Token]:
         """What stands behind ``^`` or ``_``."""
-        if self._plain:
-            begin = self._i
-            if self._is("-") or self._is("+"):
-                self._i += 1
-            if self._is("("):
-                self._bracket_end()
-            else:
-                self._take()
-            return list(self._found[begin : self._i])
         token = self._take()
         if token.kind == "open":
             end = group_end(self._found, self._i - 1)
             inside = list(self._found[self._i : end - 1])
             self._i = end
             return inside
-        if token.kind == "number" and len(token.text) > 1 and not self._plain:
+        if token.kind == "number" and len(token.text) > 1:
             rest = Token("number", token.text[1:], token.at + 1)
             self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
             return [Token("number", token.text[0], token.at)]

@@ -15,7 +15,7 @@ from math import factorial
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.enclosed import EnclosedCursor
-from satsym.auditing.latex.letters import GREEK, Letter, of_word
+from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
@@ -31,9 +31,7 @@ CONSTANT = "constant"
 """What is equated with this does not change in time."""
 
 
-def read(
-    found: Sequence[Token], text: str, start: int = 0, plain: bool = False, names: Collection[str] = ()
-) -> Reading:
+def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[str] = ()) -> Reading:
     """Read the equations and expressions of a formula.
 
     Parameters
@@ -42,8 +40,6 @@ def read(
         Its tokens.
     text, start
         What they were made of, and the place of its first character: how letters are printed is taken from there.
-    plain
-        Whether names have several letters.
     names
         Names of several letters that are known, and may be printed without being set upright.
 
@@ -53,9 +49,9 @@ def read(
         At the first thing that is not in the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
-    reading = _read(kept, Reading([]), start, plain)
+    reading = _read(kept, Reading([]), start)
     if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
-        reading = _read(kept, Reading([], known=reading.places), start, plain)
+        reading = _read(kept, Reading([], known=reading.places), start)
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
@@ -63,10 +59,10 @@ def read(
     return reading
 
 
-def _read(kept: Sequence[Token], reading: Reading, start: int, plain: bool) -> Reading:
+def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
     for line in lines(kept):
         refuse_spelled_name(line.sides)
-        sides = [Parser(part, reading, start, plain).side() for part in line.sides]
+        sides = [Parser(part, reading, start).side() for part in line.sides]
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
@@ -82,7 +78,7 @@ class Parser(EnclosedCursor):
     def side(self) -> Node:
         """The whole side, which may be a list."""
         parts = split(self._found, lambda token: token.kind == "sign" and token.text == ",")
-        if len(parts) < 2 or self._plain:
+        if len(parts) < 2:
             return self.whole()
         return Call("list", tuple(self._inner(part, self._start) for part in parts))
 
@@ -134,16 +130,16 @@ class Parser(EnclosedCursor):
                 else:
                     before = chain[-1]
                     chain.append(self._signed_factor())
-                    scalar = self._plain or any(constant(side) is not None for side in (before, chain[-1]))
+                    scalar = any(constant(side) is not None for side in (before, chain[-1]))
                     if token.text == "times" and not scalar and not isinstance(before, Grid):
                         raise Unread("a product, or one of vectors; set vectors bold, or write \\cdot", token.at)
             elif token.kind == "macro" and token.text == "otimes" and not argument:
                 self._i += 1
                 chain[-1] = Call("tensor", (chain[-1], self._signed_factor()))
             elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
-                if argument and not self._plain:
+                if argument:
                     break
-                if not self._plain and self._bare_end == self._i:
+                if self._bare_end == self._i:
                     raise Unread("what a function is taken of, a slash behind it, needs brackets", token.at)
                 self._i += 1
                 following = self._peek()
@@ -153,7 +149,7 @@ class Parser(EnclosedCursor):
                 unit = self._peek()
                 if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
                     raise Unread("a unit behind a slash is not read", unit.at)
-                if unit is not None and not self._plain and self._may_be_divided_by(unit, chain, divisor):
+                if unit is not None and self._may_be_divided_by(unit, chain, divisor):
                     raise Unread("what a slash divides by is not clear without brackets", token.at)
                 chain = [Div(product_of(chain), divisor)]
             elif argument and not self._continues_argument(token, chain[-1]):
@@ -175,7 +171,7 @@ class Parser(EnclosedCursor):
         return self._factor()
 
     def _begins_factor(self, token: Token) -> bool:
-        if token.kind in ("letter", "number", "word", "open", "begin"):
+        if token.kind in ("letter", "number", "open", "begin"):
             return True
         if token.kind == "sign":
             return token.text in "([" or (token.text == "|")
@@ -192,7 +188,7 @@ class Parser(EnclosedCursor):
         if token is None:
             self._take()
         assert token is not None
-        if not self._plain and (self._is("^") or self._is("_")):
+        if self._is("^") or self._is("_"):
             return self._powers(self._in_a_frame())
         found = self._derivative(token)
         if isinstance(found, Call) and found.function == "diff" and self._is("("):
@@ -209,7 +205,7 @@ class Parser(EnclosedCursor):
                 at = self._take().at
                 known = isinstance(base, Sym) and base.name in self._reading.letters
                 base = self._raised(base, self._script(), at)
-                if known and self._is("(") and isinstance(base, Pow | Call) and not self._plain:
+                if known and self._is("(") and isinstance(base, Pow | Call):
                     self._timed_behind_power()
             elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
                 self._i += 2
@@ -232,7 +228,7 @@ class Parser(EnclosedCursor):
     def _atom(self) -> Node:
         token = self._take()
         if token.kind == "number":
-            if token.text == "0" and self._is("_") and not self._plain:  # the size of a zero matrix
+            if token.text == "0" and self._is("_"):  # the size of a zero matrix
                 self._i += 1
                 self._script()
             return Num(Fraction(token.text))
@@ -240,7 +236,7 @@ class Parser(EnclosedCursor):
             self._i -= 1
             at = token.at
             inner = self._group()
-            if not inner and self._is("^") and not self._plain:
+            if not inner and self._is("^"):
                 return self._in_a_frame()
             if not inner:
                 return self._factor()
@@ -256,8 +252,6 @@ class Parser(EnclosedCursor):
             token.kind == "macro" and token.text in ("lvert", "lVert", "|", "vert", "Vert")
         ):
             return self._size(token)
-        if token.kind == "word":
-            return self._word(token)
         if token.kind == "macro":
             return self._macro(token)
         if token.kind == "letter":
@@ -269,7 +263,7 @@ class Parser(EnclosedCursor):
             if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
                 raise Unread("twice the same letter in front of an index may be one name", token.at)
             after = self._peek()
-            beside = after is not None and after.at == token.at + 1 and not self._plain
+            beside = after is not None and after.at == token.at + 1
             if token.text == "d" and beside and after is not None and (after.kind == "letter" or after.text in GREEK):
                 raise Unread("a differential is not read", token.at)
             self._i -= 1
@@ -349,28 +343,3 @@ class Parser(EnclosedCursor):
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
-
-    def _word(self, token: Token) -> Node:
-        """A name in plain notation, or a function."""
-        text = token.text
-        if text in FUNCTIONS and self._is("("):
-            return self._function(FUNCTIONS[text], token)
-        if text in words.NUMBERED_FUNCTIONS:
-            return self._function(FUNCTIONS[text], token)
-        letter = of_word(text)
-        while self._is("'"):
-            self._i += 1
-            dotted = letter.dotted()
-            if dotted is None:
-                raise Unread("too many primes", token.at)
-            letter = dotted
-        symbol, begin = self._symbol(letter, token.at), self._i
-        if self._is("("):
-            end = self._bracket_end()
-            time = "".join(t.text for t in self._found[begin + 1 : end])
-            if time in words.TIMES_OF_ANGLES:
-                return symbol
-            if time in words.AT_A_TIME:
-                return Call("value", (symbol, self._inner(self._found[begin + 1 : end], token.at)))
-            self._i = begin
-        return symbol

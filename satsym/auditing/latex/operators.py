@@ -141,7 +141,7 @@ class OperatorCursor(QuotientCursor):
 
     def _function(self, name: str, token: Token) -> Node:
         power: Node | None = None
-        if self._is("^") and not self._plain:
+        if self._is("^"):
             at = self._take().at
             script = self._script()
             power = self._inner(script, at)
@@ -186,13 +186,13 @@ class OperatorCursor(QuotientCursor):
         begin = self._i
         arguments = self._arguments()
         inner = arguments[0] if len(arguments) == 1 else None
-        if square and not self._plain and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
+        if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets, which may be one name, are not read", at)
-        if len(arguments) > 1 and begin and not self._plain:
+        if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
             if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
                 raise Unread("what something is taken at, in brackets behind it, is not read", at)
-        if len(arguments) > 1 and not self._plain and not square and self._is("("):
+        if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
             return Call("value", (listed, *self._arguments()))
         if len(arguments) > 1:
@@ -274,11 +274,11 @@ class OperatorCursor(QuotientCursor):
         exponent = self._inner(script, at)
         value = constant(exponent)
         number = isinstance(base, Num | Add | Mul | Div | Neg) or base == Sym("pi")
-        if value is None and number and not self._plain:
+        if value is None and number:
             return Call("power", (base, exponent))
-        if base == Sym("e") and not self._plain and len(script) == 1 and script[0].text in "ijklmn":
+        if base == Sym("e") and len(script) == 1 and script[0].text in "ijklmn":
             raise Unread("a power of e may be one of a number, or an exponential", at)
-        if isinstance(base, Sym) and base.name == "e" and not self._plain and value not in words.OF_ECCENTRICITIES:
+        if isinstance(base, Sym) and base.name == "e" and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:
             raise Unread("an exponent that is not a number is not read", at)

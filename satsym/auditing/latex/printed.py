@@ -92,9 +92,9 @@ class LetterCursor(Cursor):
     def _scripts(self, letter: Letter) -> Letter:
         """The letter with its index, stars and primes; a power is left where it is."""
         while True:
-            if self._is("^") and not self._plain:
+            if self._is("^"):
                 self._index_first()
-            if self._is("_") and not self._plain:
+            if self._is("_"):
                 at = self._take().at
                 script = self._script()
                 if not script:
@@ -185,7 +185,7 @@ class LetterCursor(Cursor):
                 i = end
             elif token.kind == "macro" and (token.text in GREEK or token.text in INDICES):
                 said.append(f" {token.text} ")
-            elif token.kind in ("letter", "number", "word"):
+            elif token.kind in ("letter", "number"):
                 said.append(token.text)
             elif token.text in ("times", ","):
                 said.append(" by " if token.text == "times" else " ")
@@ -196,12 +196,12 @@ class LetterCursor(Cursor):
     def _symbol(self, letter: Letter, at: int) -> Node:
         name = letter.name
         if letter.base == "pi" and letter == Letter("pi"):
-            if self._plain is False and self._is("(") and self._is_place_next():
+            if self._is("(") and self._is_place_next():
                 raise Unread("pi may be a function here, or a number", at)
             return Sym("pi")
         if not is_name(name):
             raise Unread("this letter is not read", at)
-        places = self._taken_at(letter) if self._plain is False else ()
+        places = self._taken_at(letter)
         self._reading.letters.setdefault(name, letter)
         return Call("value", (Sym(name), *places)) if places else Sym(name)
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from satsym.auditing.latex.letters import Letter, is_name, of_word
+from satsym.auditing.latex.letters import Letter, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.formula.tree import Call, Mul, Node, Sym, constant
@@ -21,7 +20,7 @@ class QuotientCursor(LetterCursor):
         if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
             self._i += 1
             parts = self._group(), self._group()
-        elif is_differential(token) or (token.kind == "word" and token.text.startswith("d")):
+        elif is_differential(token):
             parts = self._slashed()
         if parts is not None and (tree := self._quotient(*parts)) is not None:
             return tree
@@ -34,19 +33,16 @@ class QuotientCursor(LetterCursor):
         if slash is None or any(self._found[k].text in "+-=" for k in range(self._i, slash)):
             return None
         below = self._found[slash + 1 : slash + 2]
-        if not below or not (is_differential(below[0]) or (below[0].kind == "word" and below[0].text[0] == "d")):
+        if not below or not is_differential(below[0]):
             return None
         above = list(self._found[self._i : slash])
         self._i = slash + 1
         start = self._i
-        if self._found[start].kind == "word":
-            self._i += 1
-        else:
-            while is_differential(self._peek()):
-                rest = list(self._found[self._i :])
-                self._i += len(rest) - len(after_differential(rest))
-                if self._letter() is None:
-                    return None
+        while is_differential(self._peek()):
+            rest = list(self._found[self._i :])
+            self._i += len(rest) - len(after_differential(rest))
+            if self._letter() is None:
+                return None
         if self._is("^"):
             self._i += 1
             self._script()
@@ -81,7 +77,7 @@ class QuotientCursor(LetterCursor):
             return self._bracket()
         at = self._found[min(self._i, len(self._found) - 1)].at
         found = self._product()
-        if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1 and not self._plain:
+        if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1:
             raise Unread("what is differentiated is not clear without brackets", at)
         return found
 
@@ -100,24 +96,6 @@ class QuotientCursor(LetterCursor):
 
     def _order(self, above: list[Token]) -> tuple[int, list[Token], bool] | None:
         """The order of a derivative, of what (empty where that follows), and whether it is partial."""
-        if above and above[0].kind == "word":
-            word = above[0].text
-            if word == "d":
-                rest, order = above[1:], 1
-                if len(rest) > 1 and rest[0].text == "^":
-                    order, rest = int(rest[1].text) if rest[1].text.isdigit() else 1, rest[2:]
-                return order, rest, False
-            if not word.startswith("d"):
-                return None
-            return (
-                (2, [replace(above[0], text=word[2:])], False)
-                if word[1:2] == "2" and word[2:]
-                else (
-                    1,
-                    [replace(above[0], text=word[1:]), *above[1:]],
-                    False,
-                )
-            )
         if not above or not is_differential(above[0]):
             return None
         rest, order = after_differential(above), 1
@@ -131,14 +109,6 @@ class QuotientCursor(LetterCursor):
 
     def _differentials(self, below: list[Token]) -> list[Letter] | None:
         """The variables of differentiation, each repeated by its order."""
-        if below and below[0].kind == "word":
-            word = below[0].text
-            twice = word.endswith("2") or (len(below) > 2 and below[1].text == "^" and below[2].text == "2")
-            if not word.startswith("d") or len(word) < 2:
-                return None
-            return [of_word(word[1:].removesuffix("2") if word.endswith("2") and word[1:2] == "t" else word[1:])] * (
-                2 if twice else 1
-            )
         found: list[Letter] = []
         inner = self._of(below)
         while inner._i < len(below):
@@ -168,7 +138,7 @@ def is_differential(token: Token | None) -> bool:
     if token is None:
         return False
     return (token.kind == "letter" and token.text == "d") or (
-        token.kind == "macro" and token.text in ("partial", "mathrm", "dd", "diff", "text", "operatorname", "rm")
+        token.kind == "macro" and token.text in ("partial", "mathrm", "d", "dd", "diff", "text", "operatorname", "rm")
     )
 
 

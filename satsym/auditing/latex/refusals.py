@@ -18,11 +18,11 @@ class RefusalCursor(OperatorCursor):
     """Refuses at its place what the grammar does not read."""
 
     def _is_function(self, token: Token) -> bool:
-        return token.kind in ("macro", "word") and token.text in FUNCTIONS and token.text != "d"
+        return token.kind == "macro" and token.text in FUNCTIONS and token.text != "d"
 
     def _continues_argument(self, token: Token, last: Node) -> bool:
         r"""Whether what a function is taken of goes on: ``2\theta``, ``\omega t``, ``kx``; not ``\theta v``."""
-        if token.kind not in ("letter", "word", "macro") or (token.kind == "macro" and token.text not in GREEK):
+        if token.kind not in ("letter", "macro") or (token.kind == "macro" and token.text not in GREEK):
             return isinstance(last, Num) and token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS)
         if self._is_function(token) or (token.text == "e" and self._is("^", 1)):
             return False
@@ -31,8 +31,6 @@ class RefusalCursor(OperatorCursor):
         letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
         stem = letter.base if letter is not None else ""
         time = token.text in words.TIMES_OF_ANGLES
-        if self._plain:
-            return time or (stem in FREQUENCIES and token.text in words.PLACES)
         if (time and stem not in words.ANGLES) or (stem in FREQUENCIES and token.text in words.PLACES):
             return True
         if time or (len(stem) == 1) or (stem in GREEK and token.text in GREEK):
@@ -48,8 +46,6 @@ class RefusalCursor(OperatorCursor):
 
     def _refuse_behind(self, last: Node, token: Token) -> None:
         """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
-        if self._plain:
-            return
         before, after = self._found[self._i - 1], self._peek(1)
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
@@ -78,8 +74,6 @@ class RefusalCursor(OperatorCursor):
 
     def _refuse_spelled_function(self, token: Token) -> None:
         """Refuse letters that are the name of a function without its backslash."""
-        if self._plain:
-            return
         begin = self._i
         for word in words.SPELLED:
             if self._spells(word):
@@ -88,7 +82,7 @@ class RefusalCursor(OperatorCursor):
 
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
         """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
-        if len(above) < 2 or self._plain or above[1].text in ("^", "_"):
+        if len(above) < 2 or above[1].text in ("^", "_"):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
             raise Unread("a derivative of this kind is not read", at)

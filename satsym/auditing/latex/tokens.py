@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from satsym.auditing.latex.letters import Letter, of_word
+from satsym.auditing.latex.words import FUNCTIONS, NUMBERED_FUNCTIONS
 from satsym.formula.reading import MAX_DEPTH
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -30,8 +32,8 @@ class Unread(BadInput):
 class Token:
     """A piece of a formula.
 
-    ``kind`` is ``letter``, ``number``, ``macro``, ``word`` (a name of several letters), ``sign`` (any other character),
-    ``open``, ``close``, ``begin`` or ``end`` (of an environment); ``at`` is the character where it begins.
+    ``kind`` is ``letter``, ``number``, ``macro``, ``sign`` (any other character), ``open``, ``close``, ``begin`` or
+    ``end`` (of an environment); ``at`` is the character where it begins.
     """
 
     kind: str
@@ -224,7 +226,7 @@ def _characters(text: str, at: int) -> list[Token]:
     found = []
     for character in text:
         if character in _SUBSTITUTES:
-            found += [replace(token, at=at) for token in _pieces(_SUBSTITUTES[character], 0)]
+            found += _placed(_SUBSTITUTES[character], at)
         elif character in _GREEK:
             found.append(Token("macro", _GREEK[character], at))
         elif character.isascii() and character.isalpha():
@@ -236,12 +238,19 @@ def _characters(text: str, at: int) -> list[Token]:
 
 _PLAIN = re.compile(
     r"\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2}(?![A-Za-z0-9_.]))?)"
-    r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)|(?P<power>\*\*)|(?P<sign>[^\sA-Za-z0-9]))"
+    r"|(?P<above>d(?:\^?(?P<order>[2-4]))?(?P<of>[A-Za-z]\w*)?(?= */ *d[A-Za-z]))"
+    r"|(?<=/)(?P<below>d(?P<by>t(?=\^?[2-4])|[A-Za-z]\w*)(?:\^?(?P<times>[2-4]))?)"
+    r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)(?P<primes>'*)"
+    r"|(?P<power>(?:\*\*|\^)\s*[-+]?)|(?P<sign>[^\sA-Za-z0-9]))"
 )
+"""Pieces of plain notation; a quotient of differentials is two of them, ``d2x`` before the slash and ``dt2`` behind."""
 
 
-def plain_tokens(text: str) -> list[Token]:
+def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
     """The tokens of a formula in plain notation, ``2n*x_dot`` or ``2 n x_dot``, where names have several letters.
+
+    Names, functions and quotients of differentials become what stands for them in LaTeX; a word that is not known,
+    while all its letters are, becomes a product of these.
 
     Raises
     ------
@@ -253,19 +262,60 @@ def plain_tokens(text: str) -> list[Token]:
     if broken := _BROKEN.search(text):
         raise Unread("a character that is none; save the text as UTF-8", broken.start())
     found: list[Token] = []
-    position, end = 0, len(text.rstrip())
-    while position < end:
-        match = _PLAIN.match(text, position)
-        assert match is not None
-        assert match.lastgroup is not None
-        kind, value, at = match.lastgroup, match[match.lastgroup], match.start(match.lastgroup)
-        if kind == "power":
-            found.append(Token("sign", "^", at))
+    for match in _PLAIN.finditer(re.sub(r"/\s+(?=d[A-Za-z])", "/", text.rstrip())):
+        kind = next(name for name in ("number", "above", "below", "word", "power", "sign") if match[name] is not None)
+        value, at = match[kind], match.start(kind)
+        if kind == "above":
+            found += _placed(f"d{_order(match['order'])} {of_word(match['of']).latex if match['of'] else ''}", at)
+        elif kind == "below":
+            found += _placed(f"d {of_word(match['by']).latex}{_order(match['times'])}", at)
+        elif kind == "word":
+            found += _word(value, len(match["primes"]), at, text[match.end() :].lstrip()[:1], is_known)
         elif kind == "sign":
-            found += [Token("word", t.text, at) if t.kind == "macro" else t for t in _characters(value, at)]
+            found += _characters(value, at)
+        elif kind == "power":
+            found += [Token("sign", "^", at), *([Token("sign", value[-1], at)] if value[-1] in "+-" else [])]
         else:
-            found.append(Token(kind, value, at))
-        position = match.end()
+            found.append(Token("number", value, at))
     if len(found) > MAX_TOKENS:
         raise Unread(f"more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
+    return _exponents_grouped(found)
+
+
+def _order(digit: str | None) -> str:
+    return f"^{digit}" if digit else ""
+
+
+def _exponents_grouped(found: list[Token]) -> list[Token]:
+    """The tokens with braces around exponents that have a sign or brackets."""
+    for i in [k for k, token in enumerate(found[:-1]) if token.text == "^"][::-1]:
+        last = first = i + 1 + (found[i + 1].text in "+-")
+        depth = 0
+        while last < len(found):
+            depth += (found[last].text == "(") - (found[last].text == ")")
+            last += 1
+            if depth <= 0:
+                break
+        bracketed = first == i + 1 and found[first].text == "("
+        if first > i + 1 or bracketed:
+            inside = found[first + 1 : last - 1] if bracketed else found[i + 1 : last]
+            found[i + 1 : last] = [Token("open", "{", found[i].at), *inside, Token("close", "}", found[i].at)]
     return found
+
+
+def _word(word: str, primes: int, at: int, behind: str, is_known: Callable[[Letter], bool]) -> list[Token]:
+    """A name in plain notation, or a function."""
+    if word in FUNCTIONS and (behind == "(" or word in NUMBERED_FUNCTIONS):
+        return _placed(rf"\operatorname{{{word}}}", at) if word == "sqrt" else [Token("macro", word, at)]
+    letter = of_word(word).dotted(primes)
+    if letter is None:
+        raise Unread("too many primes", at)
+    singles = [Letter(one) for one in word]
+    if not primes and word.isalpha() and not is_known(letter) and all(map(is_known, singles)):
+        return [Token("letter", one, at + k) for k, one in enumerate(word)]
+    return _placed(letter.latex, at)
+
+
+def _placed(latex: str, at: int) -> list[Token]:
+    """Tokens of LaTeX that stands for something at a place."""
+    return [replace(token, at=at) for token in _pieces(latex, 0)]
