@@ -8,6 +8,9 @@ from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.formula.tree import Pow, Sym, cells, walk
 
+_LONG_WORD = 5
+"""Letters side by side, vowels among them, that are taken for a word."""
+
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
     """Where letters stand side by side, without spaces: places of the first one and behind the last."""
@@ -50,6 +53,9 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     for part in line:
         for first, last in _runs(part):
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
+            grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
+            if len(name) >= _LONG_WORD and not grouped and sum(letter in "aeiou" for letter in name) > 1:
+                raise Unread("words between formulas are not read", part[first].at)
             if name.isupper() and [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "(":
                 raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]

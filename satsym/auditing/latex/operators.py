@@ -188,6 +188,9 @@ class OperatorCursor(QuotientCursor):
         inner = arguments[0] if len(arguments) == 1 else None
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets, which may be one name, are not read", at)
+        parted = any(token.text == "quad" for token in self._found[begin : self._i])
+        if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
+            raise Unread("a bracket with a comma, which may be one of fields, is not read", at)
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
             if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
@@ -196,7 +199,6 @@ class OperatorCursor(QuotientCursor):
             listed = Grid(tuple(arguments))
             return Call("value", (listed, *self._arguments()))
         if len(arguments) > 1:
-            parted = any(token.text == "quad" for token in self._found[begin : self._i])
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
             raise Unread("an empty bracket", at)
@@ -207,6 +209,13 @@ class OperatorCursor(QuotientCursor):
                 self._script()
                 return Call("skew", (arguments[0],))
         return arguments[0]
+
+    def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
+        """Whether a bracket that was gone past is no vector: not by itself, nor transposed, or a bracket is in it."""
+        nested = [isinstance(argument, Grid) for argument in arguments]
+        behind = self._peek()
+        alone = begin == 0 and (behind is None or behind.text in ("|", "vert", "rvert"))
+        return (any(nested) and not all(nested)) or not (alone or self._is("^"))
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Whether a bracket holds one letter, and one stands in front of it, as in an expectation."""
@@ -257,7 +266,7 @@ class OperatorCursor(QuotientCursor):
         words_inside = "".join(t.text for t in inside)
         if words_inside in words.TIMES_OF_ANGLES:
             return
-        if words_inside in words.AT_A_TIME or self._place(inside) is not None:
+        if words_inside in words.AT_A_TIME or self._place(inside) is not None or self._is_taken(inside):
             raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
         self._i = begin
 

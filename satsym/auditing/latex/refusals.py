@@ -9,8 +9,8 @@ from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.operators import OperatorCursor, product_of
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import ACCENTS, FREQUENCIES, FUNCTIONS, MARKS
-from satsym.formula.tree import Node, Num, Sym, constant
+from satsym.auditing.latex.words import ACCENTS, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
+from satsym.formula.tree import Node, Num, Pow, Sym, constant
 from satsym.wording import printable
 
 
@@ -57,7 +57,13 @@ class RefusalCursor(OperatorCursor):
             power = self._peek(2) if after is not None and after.text in "+-" else after
             if power is not None and power.kind == "number" and power.at <= token.at + 2:
                 raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
-        letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
+        stem = last.base if isinstance(last, Pow) else last
+        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        if letter is not None and letter.base == "L" and letter.index in FIELDS:
+            raise Unread("a derivative along a field is not read", token.at)
+        applied = token.text in FIELDS and token.at == before.at + 1 and self._is("(", 1)
+        if letter is not None and letter.base in OPERATORS and applied:
+            raise Unread("an operator in front of a function, or a product", token.at)
         if letter is not None and token.text in ("[", "{") and token.kind in ("sign", "macro"):
             alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
             if letter.style == "cal" or alone:
@@ -94,7 +100,8 @@ class RefusalCursor(OperatorCursor):
         behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
         taken = behind is not None and self._begins_factor(behind)
         places = [t.at for t in self._peek_group() if t.kind == "letter"]
-        parted = macro.startswith(("text", "mbox")) and any(b > a + 1 for a, b in pairwise(places))
+        space = 1 if macro.startswith(("text", "mbox")) else 2  # elsewhere a space has to be set: "\\ "
+        parted = any(b > a + space for a, b in pairwise(places)) and word.isalpha()
         if word.lower() in words.SAID or parted:
             raise Unread("words between formulas are not read", at)
         if word == "d" and taken:

@@ -221,7 +221,8 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
         for piece in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
     ]
-    for before, after in pairwise(part for part in parts if part):
+    listed = any(token.text in ELLIPSES for token in found)
+    for before, after in pairwise(part for part in parts if part and not listed):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
             raise Unread("a comma in a number may part thousands or decimals", after[0].at - 1)
@@ -229,20 +230,20 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     if not any(_has_relation(part) for part in kept):
         return kept
     done: list[list[Token]] = []
-    listed: list[Token] = []
+    pending: list[Token] = []
     for place, part in enumerate(kept):
         if _has_relation(part):
             first = next(name for token in part if (name := _sign(token)))
-            if listed and first != "element":
+            if pending and first != "element":
                 raise Unread("a comma has no meaning here", _between(found, kept))
-            done.append([*listed, *part])
-            listed = []
+            done.append([*pending, *part])
+            pending = []
         elif done and _goes_on_as_list(done[-1], kept[place:]):
             done[-1] += [Token("sign", ",", part[0].at), *part]
         elif done and _is_remark(part):
             continue
         elif any(_has_relation(later) for later in kept[place:]):
-            listed += [*part, Token("sign", ",", part[-1].at)]
+            pending += [*part, Token("sign", ",", part[-1].at)]
         else:
             raise Unread("a comma has no meaning here", _between(found, kept))
     return done

@@ -120,6 +120,8 @@ COUNTERS = frozenset("i j k l m n N M K".split())
 """Letters of which the number of a member of a sequence is made."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())
 """Letters for which a bracket behind them is no factor where time and something else stand in it."""
+FIELDS, OPERATORS = frozenset("f g h F G X".split()), frozenset("D H J".split())
+"""Letters of functions along which something is differentiated, and of what is applied to functions."""
 ANGLES = frozenset("theta vartheta phi varphi psi E M".split())
 """Letters of angles, of which time is no factor."""
 OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))
