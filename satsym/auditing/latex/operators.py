@@ -11,7 +11,7 @@ from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import MATRICES, OPTIMA
+from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
 from satsym.formula.tree import Add, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
 from satsym.wording import printable
@@ -218,13 +218,14 @@ class OperatorCursor(QuotientCursor):
         return (any(nested) and not all(nested)) or not (alone or self._is("^"))
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
-        """Whether a bracket holds one letter, and one stands in front of it, as in an expectation."""
+        """Whether a bracket holds one letter or function, and a letter stands in front of it, as in an expectation."""
         inside = self._found[begin + 1 : self._i - 1]
         if self._is_taken(inside):
             return begin > 0 and self._found[begin - 1].kind in ("letter", "close")
         letter = self._letter_in(inside)
         alone = letter is not None and letter == letter.plain and not letter.dots
-        return alone and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
+        called = len(inside) > 1 and inside[0].kind == "macro" and inside[0].text in FUNCTIONS
+        return (alone or called) and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
 
     def _may_be_a_name(self, inner: Node | None) -> bool:
         if not isinstance(inner, Mul):

@@ -232,7 +232,13 @@ class LetterCursor(Cursor):
         sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
         if not sure and not self._is_shift(letter, inside):
             barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
-            if barred or letter.style == "cal" or (self._is_product(inside) and not self._is_factor(letter, inside)):
+            turned = letter.base.isupper() and len(inside) == 2 and inside[0].text == "-" and inside[1].text in GREEK
+            if (
+                barred
+                or turned
+                or letter.style == "cal"
+                or (self._is_product(inside) and not self._is_factor(letter, inside))
+            ):
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
             return ()

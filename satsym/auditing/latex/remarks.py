@@ -59,7 +59,7 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         ):
             if token.text == " " or token.text.isspace():
                 kept.append(replace(token, text=" "))
-        elif token.kind == "macro" and token.text in UPRIGHT and i < len(found) and _is_spoken(found, i, depth):
+        elif token.kind == "macro" and token.text in UPRIGHT and _is_spoken(found, i, depth, kept):
             i = group_end(found, i)
             if depth and i < len(found) and found[i].text == ")":  # the bracket is one of the words
                 kept.pop()
@@ -129,9 +129,10 @@ def _underset(found: Sequence[Token], i: int) -> list[Token]:
     return [Token("macro", word, at), Token("sign", "_", at), *found[i:end]]
 
 
-def _is_spoken(found: Sequence[Token], i: int, depth: int) -> bool:
+def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
     """Whether the group at a place is words of plain language, outside of brackets or all that stands in one."""
-    if found[i].kind != "open":
+    index = any(token.text in "^_" for token in kept[-2:-1] if kept[-1].kind == "open")
+    if index or i >= len(found) or found[i].kind != "open":
         return False
     end = group_end(found, i)
     inside = [t for t in found[i + 1 : end - 1] if t.text not in "~$"]
