@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
@@ -20,6 +20,7 @@ from satsym.formula.tree import (
     Num,
     Pow,
     Sym,
+    cells,
     constant,
     each,
     substituted,
@@ -38,6 +39,10 @@ _SIGNS |= {"much_greater": r"\gg", "similar": r"\sim", "proportional": r"\propto
 _SIGNS |= {"not_element": r"\notin"}
 _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argmax": r"\arg\max"}
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
+_ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
+_ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
+_ENCLOSED |= {"braces": (r"\left\{", r"\right\}")}
+_BETWEEN = {"cross": r" \times ", "dot": r" \cdot ", "tensor": r" \otimes "}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
 _RUNS_ON = re.compile(
@@ -49,159 +54,165 @@ _RUNS_ON = re.compile(
 
 def in_latex(letters: Mapping[str, str]) -> Writer:
     """Writes in LaTeX, with these letters by name."""
-
-    def formula(tree: Node | Equality) -> str:
-        if isinstance(tree, Equality):
-            return f"{_tex(tree.lhs, letters)[0]} = {_tex(tree.rhs, letters)[0]}"
-        return _tex(tree, letters)[0]
-
-    return formula
+    tex = _Tex(letters)
+    return lambda tree: " = ".join(tex.of(side)[0] for side in cells(tree))
 
 
 def in_plain(letters: Mapping[str, str]) -> Writer:
     """Writes in plain notation, with ``^`` for powers."""
-
-    def formula(tree: Node | Equality) -> str:
-        return written(_renamed(tree, letters)).replace("**", "^")
-
-    return formula
-
-
-def _renamed(tree: Node | Equality, letters: Mapping[str, str]) -> Node | Equality:
     names: dict[str, Node] = {name: Sym(text) for name, text in letters.items()}
-    return each(tree, lambda side: substituted(side, names))
+    return lambda tree: written(each(tree, lambda side: substituted(side, names))).replace("**", "^")
 
 
-def _tex(node: Node, letters: Mapping[str, str]) -> tuple[str, int]:
-    """The LaTeX of a node, and how tightly it binds."""
+class _Tex:
+    """Writes nodes in LaTeX; each method gives the text, and how tightly it binds."""
 
-    def bound(part: Node, least: int) -> str:
-        text, binding = _tex(part, letters)
+    def __init__(self, letters: Mapping[str, str]) -> None:
+        self._letters = letters
+
+    def of(self, node: Node) -> tuple[str, int]:
+        if isinstance(node, Num):
+            text = written(node)
+            value = node.value
+            return (rf"\frac{{{value.numerator}}}{{{value.denominator}}}" if "/" in text else text), _ATOM
+        if isinstance(node, Sym):
+            return self._letters.get(node.name) or _WORDS.get(node.name, node.name), _ATOM
+        if isinstance(node, Neg):
+            return f"-{self._bound(node.operand, _PRODUCT)}", _SUM
+        if isinstance(node, Add):
+            return self._sum(node), _SUM
+        if isinstance(node, Mul):
+            return self._product(node), _PRODUCT
+        if isinstance(node, Div):
+            return rf"\frac{{{self._whole(node.numerator)}}}{{{self._whole(node.denominator)}}}", _ATOM
+        if isinstance(node, Pow):
+            return self._power(node), _PRODUCT
+        if isinstance(node, Grid):
+            return self._grid(node), _ATOM
+        return self._call(node) if isinstance(node, Call) else (written(node), _ATOM)
+
+    def _whole(self, node: Node) -> str:
+        return self.of(node)[0]
+
+    def _bound(self, node: Node, least: int) -> str:
+        text, binding = self.of(node)
         return text if binding >= least else rf"\left({text}\right)"
 
-    def whole(part: Node) -> str:
-        return _tex(part, letters)[0]
+    def _listed(self, nodes: Iterable[Node]) -> str:
+        return ", ".join(map(self._whole, nodes))
 
-    if isinstance(node, Num):
-        text = written(node)
-        return (rf"\frac{{{node.value.numerator}}}{{{node.value.denominator}}}" if "/" in text else text), _ATOM
-    if isinstance(node, Sym):
-        return letters.get(node.name) or _WORDS.get(node.name, node.name), _ATOM
-    if isinstance(node, Neg):
-        return f"-{bound(node.operand, _PRODUCT)}", _SUM
-    if isinstance(node, Add):
-        said = bound(node.terms[0], _SUM)
+    def _sum(self, node: Add) -> str:
+        said = self._bound(node.terms[0], _SUM)
         for term in node.terms[1:]:
             inner = term.operand if isinstance(term, Neg) else term
-            said += f" {'-' if isinstance(term, Neg) else '+'} {bound(inner, _PRODUCT)}"
-        return said, _SUM
-    if isinstance(node, Mul):
-        pieces = [bound(factor, _PRODUCT) for factor in node.factors]
+            said += f" {'-' if isinstance(term, Neg) else '+'} {self._bound(inner, _PRODUCT)}"
+        return said
+
+    def _product(self, node: Mul) -> str:
+        pieces = [self._bound(factor, _PRODUCT) for factor in node.factors]
         for k, (before, piece) in enumerate(pairwise(pieces)):
             if _RUNS_ON.search(f"{before}|{piece} "):  # sin x y would be read as sin(xy)
                 pieces[k] = rf"\left({before}\right)"
-        said = pieces[0]
-        for piece in pieces[1:]:
-            said += rf" \cdot {piece}" if piece[:1].isdigit() else f" {piece}"
-        return said, _PRODUCT
-    if isinstance(node, Div):
-        return rf"\frac{{{whole(node.numerator)}}}{{{whole(node.denominator)}}}", _ATOM
-    if isinstance(node, Pow):
-        return _power(node, letters), _PRODUCT
-    if isinstance(node, Grid) and not any(isinstance(entry, Grid) for entry in node.entries):
-        return rf"\left[{', '.join(map(whole, node.entries))}\right]", _ATOM
-    if isinstance(node, Grid):
-        return rf"\begin{{pmatrix}} {_rows(node, letters)} \end{{pmatrix}}", _ATOM
-    if not isinstance(node, Call):
-        return written(node), _ATOM
-    arguments = ", ".join(map(whole, node.arguments))
-    special = {
-        "sqrt": rf"\sqrt{{{arguments}}}",
-        "exp": f"e^{{{arguments}}}",
-        "abs": f"|{arguments}|",
-        "norm": rf"\|{arguments}\|",
-        "d": rf"\frac{{d}}{{dt}}\left({arguments}\right)",
-        "transpose": rf"{bound(node.arguments[0], _ATOM)}^{{\mathsf T}}" if node.arguments else "",
-        "skew": rf"\left[{arguments}\right]_{{\times}}",
-        "list": arguments,
-        "braces": rf"\left\{{{arguments}\right\}}",
-    }
-    if node.function == "diff" and len(node.arguments) == 2:
-        by = whole(node.arguments[1])
-        return rf"\frac{{\partial {whole(node.arguments[0])}}}{{\partial {by}}}", _ATOM
-    if node.function in ("cross", "dot") and len(node.arguments) == 2:
-        sign = {"cross": r"\times", "dot": r"\cdot"}[node.function]
-        return rf"{bound(node.arguments[0], _ATOM)} {sign} {bound(node.arguments[1], _ATOM)}", _PRODUCT
-    if node.function == "sum":
-        limits = [whole(part) for part in node.arguments[1:]]
-        below = f"_{{{'='.join(limits[:2])}}}" if limits else ""
-        above = f"^{{{limits[2]}}}" if len(limits) > 2 else ""
-        return rf"\sum{below}{above} {bound(node.arguments[0], _PRODUCT)}", _SUM
-    if node.function == "integral" and len(node.arguments) > 1:
-        inside, by, *limits = map(whole, node.arguments)
+        return pieces[0] + "".join(rf" \cdot {piece}" if piece[:1].isdigit() else f" {piece}" for piece in pieces[1:])
+
+    def _power(self, node: Pow) -> str:
+        (text, binding), exponent = self.of(node.base), self._whole(node.exponent)
+        if constant(node.exponent) is not None and len(exponent) > 1:
+            exponent = f"{{{exponent}}}"
+        if binding < _ATOM or isinstance(node.base, Div) or "^" in text:
+            text = rf"\left({text}\right)"
+        return f"{text}^{exponent}"
+
+    def _grid(self, node: Grid) -> str:
+        if not any(isinstance(entry, Grid) for entry in node.entries):
+            return rf"\left[{self._listed(node.entries)}\right]"
+        rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in node.entries]
+        body = r" \\ ".join(" & ".join(map(self._whole, row)) for row in rows)
+        return rf"\begin{{pmatrix}} {body} \end{{pmatrix}}"
+
+    def _call(self, node: Call) -> tuple[str, int]:
+        name, arguments = node.function, node.arguments
+        if name in _ENCLOSED:
+            before, behind = _ENCLOSED[name]
+            return f"{before}{self._listed(arguments)}{behind}", _ATOM
+        if name in _SIGNS:
+            return f"{self._whole(arguments[0])} {_SIGNS[name]} {self._listed(arguments[1:])}", _SUM
+        if name in _OPTIMA:
+            below = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
+            return rf"{_OPTIMA[name]}{below} \left({self._whole(arguments[0])}\right)", _SUM
+        if name in _BETWEEN:
+            return _BETWEEN[name].join(self._bound(argument, _ATOM) for argument in arguments), _PRODUCT
+        if name in _WRITERS:
+            return _WRITERS[name](self, arguments)
+        known = _NAMES.get(name) or (rf"\{name}" if name in _KNOWN else rf"\operatorname{{{name}}}")
+        if len(arguments) == 1 and isinstance(arguments[0], Sym) and not known.startswith(r"\operatorname"):
+            return f"{known} {self._whole(arguments[0])}", _PRODUCT
+        return rf"{known}\left({self._listed(arguments)}\right)", _ATOM
+
+    def _transpose(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        return rf"{self._bound(arguments[0], _ATOM)}^{{\mathsf T}}", _ATOM
+
+    def _diff(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, by = self._bound(arguments[0], _PRODUCT), self._whole(arguments[1])
+        return rf"\frac{{\partial {of}}}{{\partial {by}}}", _ATOM
+
+    def _sum_over(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        first, *limits = arguments
+        related = [limit for limit in limits if isinstance(limit, Call) and limit.function in _SIGNS]
+        if related:
+            return rf"\sum_{{{self._listed(related)}}} {self._bound(first, _PRODUCT)}", _SUM
+        below = f"_{{{'='.join(map(self._whole, limits[:2]))}}}" if limits else ""
+        above = f"^{{{self._whole(limits[2])}}}" if len(limits) > 2 else ""
+        return rf"\sum{below}{above} {self._bound(first, _PRODUCT)}", _SUM
+
+    def _integral(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        inside, by, *limits = map(self._whole, arguments)
         ends = "".join(f"{sign}{{{end}}}" for sign, end in zip("_^", limits, strict=False))
         return rf"\int{ends} {inside} \, d{by}", _SUM
-    if (found := _read_only(node, whole, bound)) is not None:
-        return found
-    if node.function in special:
-        return special[node.function], _ATOM
-    name = _NAMES.get(node.function) or (rf"\{node.function}" if node.function in _KNOWN else "")
-    name = name or rf"\operatorname{{{node.function}}}"
-    simple = len(node.arguments) == 1 and isinstance(node.arguments[0], Sym) and not name.startswith("\\operator")
-    return (f"{name} {arguments}" if simple else rf"{name}\left({arguments}\right)"), _PRODUCT if simple else _ATOM
 
+    def _limit(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, letter, end = arguments
+        return rf"\lim_{{{self._whole(letter)} \to {self._whole(end)}}} {self._bound(of, _PRODUCT)}", _SUM
 
-def _read_only(node: Call, whole: Callable[[Node], str], bound: Callable[[Node, int], str]) -> tuple[str, int] | None:
-    """The LaTeX of what is read and held against nothing; ``None`` for anything else."""
-    first, *rest = node.arguments
-    others = ", ".join(map(whole, rest))
-    if node.function in _SIGNS:
-        return f"{whole(first)} {_SIGNS[node.function]} {others}", _SUM
-    if node.function in _OPTIMA:
-        below = f"_{{{others}}}" if rest else ""
-        return rf"{_OPTIMA[node.function]}{below} \left({whole(first)}\right)", _SUM
-    if node.function == "limit":
-        return rf"\lim_{{{whole(rest[0])} \to {whole(rest[1])}}} {bound(first, _PRODUCT)}", _SUM
-    if node.function == "gradient":
-        by = f"_{{{others}}}" if rest else ""
-        return rf"\nabla{by} {bound(first, _ATOM)}", _PRODUCT
-    if node.function == "value" and isinstance(first, Sym) and len(rest) == 1 and _counts(rest[0]):
-        return rf"{whole(first)}\left[{others}\right]", _ATOM
-    if node.function == "value" and isinstance(first, Sym):
-        return rf"{whole(first)}\left({others}\right)", _ATOM
-    if node.function == "value":
-        return rf"{bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
-    if node.function == "power":
-        return rf"{whole(first) if isinstance(first, Num) else bound(first, _ATOM + 1)}^{{{others}}}", _PRODUCT
-    if node.function == "tensor":
-        return rf"{bound(first, _ATOM)} \otimes {bound(rest[0], _ATOM)}", _PRODUCT
-    if node.function == "both":
-        steps = [
-            f"{_SIGNS[part.function]} {whole(part.arguments[1])}" for part in node.arguments if isinstance(part, Call)
-        ]
-        return f"{whole(first.arguments[0]) if isinstance(first, Call) else ''} {' '.join(steps)}", _SUM
-    if node.function == "cases":
-        rows = [f"{whole(value)} & {whole(when)}" for value, when in zip(node.arguments[::2], rest[::2], strict=True)]
-        body = r" \\ ".join(rows)
+    def _gradient(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        by = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
+        return rf"\nabla{by} {self._bound(arguments[0], _ATOM)}", _PRODUCT
+
+    def _value(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        first, *places = arguments
+        others = self._listed(places)
+        if not isinstance(first, Sym):
+            return rf"{self._bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
+        inside = symbols(places[0]) if len(places) == 1 else set()
+        counts = inside and inside <= COUNTERS  # the number of a member of a sequence
+        return self._whole(first) + (rf"\left[{others}\right]" if counts else rf"\left({others}\right)"), _ATOM
+
+    def _any_power(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        base, exponent = arguments
+        text = self._whole(base) if isinstance(base, Num) else self._bound(base, _ATOM + 1)
+        return rf"{text}^{{{self._whole(exponent)}}}", _PRODUCT
+
+    def _both(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        steps = [part for part in arguments if isinstance(part, Call)]
+        said = "".join(f" {_SIGNS[part.function]} {self._whole(part.arguments[1])}" for part in steps)
+        return f"{self._whole(steps[0].arguments[0])}{said}", _SUM
+
+    def _cases(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        pairs = zip(arguments[::2], arguments[1::2], strict=True)
+        body = r" \\ ".join(f"{self._whole(value)} & {self._whole(when)}" for value, when in pairs)
         return rf"\begin{{cases}} {body} \end{{cases}}", _ATOM
-    return None
 
 
-def _counts(node: Node) -> bool:
-    """Whether something is the number of a member of a sequence."""
-    return bool(symbols(node)) and symbols(node) <= COUNTERS
-
-
-def _power(node: Pow, letters: Mapping[str, str]) -> str:
-    text, binding = _tex(node.base, letters)
-    exponent = _tex(node.exponent, letters)[0]
-    if constant(node.exponent) is not None and len(exponent) > 1:
-        exponent = f"{{{exponent}}}"
-    if binding < _ATOM or isinstance(node.base, Div) or "^" in text:
-        text = rf"\left({text}\right)"
-    return f"{text}^{exponent}"
-
-
-def _rows(node: Grid, letters: Mapping[str, str]) -> str:
-    rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in node.entries]
-    return r" \\ ".join(" & ".join(_tex(cell, letters)[0] for cell in row) for row in rows)
+_WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
+    "transpose": _Tex._transpose,
+    "diff": _Tex._diff,
+    "sum": _Tex._sum_over,
+    "integral": _Tex._integral,
+    "limit": _Tex._limit,
+    "gradient": _Tex._gradient,
+    "value": _Tex._value,
+    "power": _Tex._any_power,
+    "both": _Tex._both,
+    "cases": _Tex._cases,
+}
+"""Functions that are not written as a name in front of brackets, and how each is."""
