@@ -33,7 +33,7 @@ class Engine(ABC, Generic[S]):
     """What calls mean, by name, besides those of elementary functions."""
 
     def __init__(self, sources: Sources[S]) -> None:
-        self._sources = sources
+        self.sources = sources
 
     @abstractmethod
     def number(self, value: Fraction) -> S:
@@ -84,9 +84,9 @@ class Engine(ABC, Generic[S]):
         if isinstance(tree, Num):
             return self.number(tree.value)
         if isinstance(tree, Sym):
-            return self._sources.name(tree.name)
+            return self.sources.name(tree.name)
         if isinstance(tree, Text):
-            return self._sources.address(tree.value)
+            return self.sources.address(tree.value)
         if isinstance(tree, Grid):
             return self._grid(tree)
         if isinstance(tree, Neg):
@@ -178,7 +178,7 @@ class Engine(ABC, Generic[S]):
 
     def _scaled(self, factor: S, operand: Value) -> Value:
         if isinstance(operand, Matrix):
-            return Matrix(tuple(tuple(self.multiply([factor, entry]) for entry in row) for row in operand.rows))
+            return operand.mapped(lambda entry: self.multiply([factor, entry]))
         return self.multiply([factor, plain(operand)])
 
     def _power(self, base: Value, exponent: Fraction) -> Value:
@@ -209,25 +209,12 @@ class Engine(ABC, Generic[S]):
             raise BadInput("an expression stands where an equation is needed")
         return found
 
-    def printed(self, key: str) -> Value:
-        """What a row prints."""
-        return self._sources.row(key)
-
-    def symbol(self, name: str) -> str:
-        """Our symbol of a name."""
-        return self._sources.symbol(name)
-
     def along(self, expression: S) -> S:
         """The derivative of an expression by time, along the motion."""
         terms = [self.derivative(expression, "t")]
-        for name, rate in self._sources.rates().items():
-            terms.append(self.multiply([self.derivative(expression, name), self._sources.name(rate)]))
+        for name, rate in self.sources.rates().items():
+            terms.append(self.multiply([self.derivative(expression, name), self.sources.name(rate)]))
         return self.add(terms)
-
-    def at(self, address: str) -> Value:
-        """A derived thing; of an equation, its right-hand side."""
-        found = self._sources.address(address)
-        return found.rhs if isinstance(found, Relation) else found
 
     def solution(self, expression: Value, by: str) -> S:
         """The only root of what is linear in a symbol."""

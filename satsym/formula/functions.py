@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 
 from satsym.formula.evaluation import Engine, Operation
 from satsym.formula.tree import Call, Grid, Node, Sym, Text, constant
@@ -16,7 +17,7 @@ MOST_ARGUMENTS = 20
 def _symbol(engine: Engine[S], tree: Node) -> str:
     if not isinstance(tree, Sym):
         raise BadInput("a plain symbol is needed here")
-    return engine.symbol(tree.name)
+    return engine.sources.symbol(tree.name)
 
 
 def _index(tree: Node, size: int) -> int:
@@ -32,32 +33,31 @@ def _place(engine: Engine[S], tree: Call) -> tuple[Matrix[S], int, int]:
 
 
 def _row(engine: Engine[S], tree: Call) -> Value:
-    return engine.printed(" ".join(part.value for part in tree.arguments if isinstance(part, Text)))
+    return engine.sources.row(" ".join(part.value for part in tree.arguments if isinstance(part, Text)))
 
 
 def _at(engine: Engine[S], tree: Call) -> Value:
     (address,) = tree.arguments
-    return engine.at(address.value if isinstance(address, Text) else "")
+    return engine.operand(address) if isinstance(address, Text) else engine.sources.address("")
 
 
 def _diff(engine: Engine[S], tree: Call) -> Value:
     found = engine.operand(tree.arguments[0])
     for by in [_symbol(engine, argument) for argument in tree.arguments[1:]]:
         if isinstance(found, Matrix):
-            found = Matrix(tuple(tuple(engine.derivative(entry, by) for entry in row) for row in found.rows))
+            found = found.mapped(partial(engine.derivative, by=by))
         else:
             found = engine.derivative(plain(found), by)
     return found
 
 
 def _subs(engine: Engine[S], tree: Call) -> Value:
-    values = {engine.symbol(name): engine.scalar(value) for name, value in tree.named}
+    values = {engine.sources.symbol(name): engine.scalar(value) for name, value in tree.named}
+    put_in = partial(engine.substitute, values=values)
     found = engine.value(tree.arguments[0])
     if isinstance(found, Matrix):
-        return Matrix(tuple(tuple(engine.substitute(entry, values) for entry in row) for row in found.rows))
-    if isinstance(found, Relation):
-        return Relation(engine.substitute(found.lhs, values), engine.substitute(found.rhs, values))
-    return engine.substitute(plain(found), values)
+        return found.mapped(put_in)
+    return Relation(put_in(found.lhs), put_in(found.rhs)) if isinstance(found, Relation) else put_in(plain(found))
 
 
 def _norm(engine: Engine[S], tree: Call) -> Value:
@@ -73,18 +73,9 @@ def _entry(engine: Engine[S], tree: Call) -> Value:
     return matrix.rows[i][j]
 
 
-def _minor(engine: Engine[S], tree: Call) -> Value:
-    matrix, i, j = _place(engine, tree)
-    return without(matrix, i, j)
-
-
 def _zeros(engine: Engine[S], tree: Call) -> Value:
     sizes = [_index(argument, MOST_ARGUMENTS) + 1 for argument in tree.arguments]
     return Matrix(tuple((engine.number(Fraction(0)),) * sizes[-1] for _ in range(sizes[0])))
-
-
-def _eye(engine: Engine[S], tree: Call) -> Value:
-    return engine.identity(_index(tree.arguments[0], MOST_ARGUMENTS) + 1)
 
 
 def _reached(engine: Engine[S], tree: Call) -> Value:
@@ -133,16 +124,8 @@ def _increment(engine: Engine[S], tree: Call) -> Value:
     return engine.add([engine.multiply([engine.number(w), k]) for w, k in zip(weights, slopes, strict=True)])
 
 
-def _solve(engine: Engine[S], tree: Call) -> Value:
-    return engine.solution(engine.value(tree.arguments[0]), _symbol(engine, tree.arguments[1]))
-
-
 def _stack(engine: Engine[S], tree: Call, beside: bool) -> Value:
     return stacked([engine.matrix(argument) for argument in tree.arguments], beside=beside)
-
-
-def _characteristic(engine: Engine[S], tree: Call) -> Value:
-    return engine.characteristic(engine.matrix(tree.arguments[0]), engine.scalar(tree.arguments[1]))
 
 
 OPERATIONS: Mapping[str, Operation] = {
@@ -153,19 +136,24 @@ OPERATIONS: Mapping[str, Operation] = {
     "diff": Operation(_diff, 2, MOST_ARGUMENTS),
     "d": Operation(lambda engine, tree: engine.along(engine.scalar(tree.arguments[0]))),  # by time, along the motion
     "subs": Operation(_subs),  # subs(e, x=..., y=...), all at once
-    "solve": Operation(_solve, 2, 2),  # the only solution of a linear equation for a symbol
+    # the only solution of a linear equation for a symbol
+    "solve": Operation(lambda e, tree: e.solution(e.value(tree.arguments[0]), _symbol(e, tree.arguments[1])), 2, 2),
     "matrix": Operation(lambda engine, tree: engine.matrix(tree.arguments[0])),
     "norm": Operation(_norm),
     "entry": Operation(_entry, 3, 3),
-    "minor": Operation(_minor, 3, 3),  # without a row and a column, counted from one
+    "minor": Operation(
+        lambda engine, tree: without(*_place(engine, tree)), 3, 3
+    ),  # without a row and a column, counted from one
     "transpose": Operation(lambda engine, tree: transposed(engine.matrix(tree.arguments[0]))),
     "det": Operation(lambda engine, tree: engine.determinant(engine.matrix(tree.arguments[0]))),
     "rank": Operation(lambda engine, tree: engine.number(Fraction(engine.rank(engine.matrix(tree.arguments[0]))))),
     "inverse": Operation(lambda engine, tree: engine.inverse(engine.matrix(tree.arguments[0]))),
-    "charpoly": Operation(_characteristic, 2, 2),  # det(x I - A)
+    "charpoly": Operation(  # det(x I - A)
+        lambda e, tree: e.characteristic(e.matrix(tree.arguments[0]), e.scalar(tree.arguments[1])), 2, 2
+    ),
     "eigenvalues": Operation(lambda engine, tree: Roots(engine.matrix(tree.arguments[0]))),  # repeated ones, too
     "nullspace": Operation(lambda engine, tree: Kernel(engine.matrix(tree.arguments[0]))),  # a basis, as columns
-    "eye": Operation(_eye),
+    "eye": Operation(lambda engine, tree: engine.identity(_index(tree.arguments[0], MOST_ARGUMENTS) + 1)),
     "zeros": Operation(_zeros, 1, 2),
     "hstack": Operation(lambda engine, tree: _stack(engine, tree, beside=True), 1, MOST_ARGUMENTS),
     "vstack": Operation(lambda engine, tree: _stack(engine, tree, beside=False), 1, MOST_ARGUMENTS),

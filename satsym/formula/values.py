@@ -27,6 +27,10 @@ class Matrix(Generic[S]):
         """All of them, row by row."""
         return [entry for row in self.rows for entry in row]
 
+    def mapped(self, function: Callable[[S], S]) -> Matrix[S]:
+        """The matrix with another entry in the place of each."""
+        return Matrix(tuple(tuple(map(function, row)) for row in self.rows))
+
 
 @dataclass(frozen=True)
 class Relation(Generic[S]):

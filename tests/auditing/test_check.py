@@ -41,6 +41,12 @@ RIGHT = [
     ("polar_orbit", r"\dot x_1 = x_2", "polar_orbit:first_order.r"),
     ("polar_orbit", r"\lambda_r = k_1 r - k_1\sigma", "polar_orbit:boundary_conditions.lambda_r"),
     ("polar_orbit", r"u_2^* = -\frac{\lambda_{\dot\theta}}{c_2 r}", "polar_orbit:stationarity.u2_hat"),
+    ("polar_orbit", "r^2 theta_dot^(1) = const", "polar_orbit:first_order.theta_dot"),
+    ("polar_orbit", "d(r^2 theta_dot)/dt = r u2", "polar_orbit:first_order.theta_dot"),
+    ("polar_orbit", "d lambda_r/dt = -dH/dr", "polar_orbit:costate_equations.r"),
+    ("hill", "d2z/dt2 = -n^2 z", "hill:first_order.zeta_dot"),
+    ("hill", r"\dot x = v", "hill:first_order.xi"),
+    ("clohessy_wiltshire", r"\dot x = v", "clohessy_wiltshire:first_order.x1"),
     ("van_der_pol", "x1' = x2", "van_der_pol:first_order.x1"),
 ]
 

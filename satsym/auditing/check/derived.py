@@ -16,7 +16,7 @@ from satsym.records import record
 from satsym.records.record import Record
 from satsym.status import BadInput
 
-_GIVEN = ("reference", "boundary_conditions", "boundary_residual", "deviations", "stationarity", "parameter_demands")
+_GIVEN = ("reference", "reference_condition", "boundary_conditions", "boundary_residual", "deviations", "stationarity")
 """Steps that state what holds somewhere, not everywhere."""
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps that are named first where several state the same."""

@@ -161,6 +161,9 @@ class Meanings:
             likely += derived.states[at : at + 1]
         if letter.base in ("u", "a", "f", "T", "F", "U", "w", "gamma") and not moving:
             likely += derived.controls[at : at + 1] if at is not None else derived.controls
+        if letter.base == "v" and not moving:
+            speeds = [speed for x, speed in derived.speeds.items() if x in derived.states]
+            likely += speeds[at : at + 1] if at is not None else speeds
         constants = [n for n, entry in names.items() if entry.kind in ("parameter", "constant") and n not in used]
         if letter.base in _RATES:
             likely += [n for n in constants if (names[n].dimension or {}) == {"[time]": "-1"}]
