@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import TypeAlias
 
 from satsym.formula.tree import Add, Div, Mul, Neg, Node, Num, Pow, Sym, constant
@@ -109,8 +110,14 @@ def _times(one: Mapping[Monomial, Complex], other: Mapping[Monomial, Complex]) -
 def _joined(one: Monomial, other: Monomial) -> Monomial:
     powers = dict(one)
     for name, power in other:
-        powers[name] = powers.get(name, Fraction(0)) + power
+        powers[name] = powers[name] + power if name in powers else power
     return tuple(sorted((name, power) for name, power in powers.items() if power))
+
+
+@lru_cache(maxsize=100_000)
+def over(one: Monomial, other: Monomial) -> Monomial:
+    """The quotient of two products."""
+    return _joined(one, tuple((name, -power) for name, power in other))
 
 
 def _enter(total: dict[Monomial, Complex], key: Monomial, coefficient: Complex) -> None:

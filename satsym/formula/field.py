@@ -17,7 +17,6 @@ import hashlib
 from collections.abc import Collection, Iterable
 from fractions import Fraction
 from functools import lru_cache
-from typing import TypeAlias
 
 from satsym.formula.angles import HALF_TURNS, PARTS, Terms, TooManyTerms, terms_of
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant
@@ -213,9 +212,6 @@ def _terms(node: Node) -> Terms:
         return terms_of(node)
     except TooManyTerms as error:
         raise Nowhere(str(error)) from None
-
-
-Zero: TypeAlias = bool | None
 
 
 def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.nearest import likeness
 from satsym.auditing.latex.grammar import CONSTANT, Reading, read
 from satsym.auditing.latex.letters import Letter
-from satsym.auditing.latex.tokens import Macros, plain_tokens, tokens
+from satsym.auditing.latex.tokens import plain_tokens, tokens
 from satsym.auditing.latex.words import RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
@@ -40,15 +40,13 @@ _ODD = 0.03
 """Likeness that one step of oddity of a guess counts for."""
 
 
-def check(
-    text: str, model: str, let: Sequence[str] = (), free: bool = False, macros: Macros | None = None
-) -> list[Answer]:
+def check(text: str, model: str, let: Sequence[str] = (), free: bool = False) -> list[Answer]:
     """Check the equations of a formula; see :func:`satsym.check`."""
     derived = Derived(shelf.find(model))
     meanings = Meanings(derived)
     given = given_letters(let, derived)
     latex = "\\" in text or "{" in text or "$" in text
-    reading = _read(text, latex, macros, meanings, given)
+    reading = _read(text, latex, meanings, given)
     subject = Subject(derived, meanings, reading, given, free, latex)
     return [subject.answer(statement) for statement in reading.statements]
 
@@ -60,10 +58,10 @@ def check_in(text: str, model: str, folder: Path, let: Sequence[str] = (), free:
         return check(text, name, let, free)
 
 
-def _read(text: str, latex: bool, macros: Macros | None, meanings: Meanings, given: Mapping[Letter, str]) -> Reading:
+def _read(text: str, latex: bool, meanings: Meanings, given: Mapping[Letter, str]) -> Reading:
     if latex:
         inner = text.strip().strip("$")
-        return read(tokens(inner, macros), inner, names=meanings.spelled(given))
+        return read(tokens(inner), inner, names=meanings.spelled(given))
     found = plain_tokens(text, lambda letter: meanings.tree(letter, given) is not None)
     return read(found, text)
 
@@ -78,7 +76,6 @@ class Subject:
     given: Mapping[Letter, str]
     free: bool
     latex: bool
-    names: dict[str, str] = field(default_factory=dict)
 
     @cached_property
     def letters(self) -> dict[str, Letter]:

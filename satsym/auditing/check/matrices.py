@@ -82,30 +82,20 @@ def _rows(side: Node) -> Rows | None:
 
 def _matrices(derived: Derived, label: str) -> Iterator[tuple[str, Rows]]:
     """Addresses with the entries of matrices; those of the printed name first."""
-    found: list[tuple[str, Rows]] = []
+    places = []
     for step in derived.record.steps:
-        for equation in step.equations:
-            if isinstance(equation.rhs, list):
-                address = f"{derived.record.name}:{step.name}.{equation.name}"
-                try:
-                    value = record.look_up(derived.record, address)
-                except BadInput:
-                    continue
-                if isinstance(value, Equated) and isinstance(value.rhs, Matrix):
-                    found.append((address, value.rhs.rows))
-        for prefix in dict.fromkeys(equation.name.partition("_")[0] for equation in step.equations):
-            address = f"{derived.record.name}:{step.name}.{prefix}"
-            try:
-                family = record.look_up(derived.record, address)
-            except BadInput:
-                continue
-            if isinstance(family, Family):
-                found.append((address, family.entries))
-    for address in (f"{derived.record.name}:{record.DECLARED}.{name}" for name in derived.record.declared):
+        places += [f"{step.name}.{equation.name}" for equation in step.equations if isinstance(equation.rhs, list)]
+        families = dict.fromkeys(equation.name.partition("_")[0] for equation in step.equations)
+        places += [f"{step.name}.{family}" for family in families]
+    places += [f"{record.DECLARED}.{name}" for name in derived.record.declared]
+    found: list[tuple[str, Rows]] = []
+    for address in (f"{derived.record.name}:{place}" for place in places):
         try:
-            declared = record.look_up(derived.record, address)
+            value = record.look_up(derived.record, address)
         except BadInput:
             continue
-        if isinstance(declared, Family):
-            found.append((address, declared.entries))
+        if isinstance(value, Family):
+            found.append((address, value.entries))
+        elif isinstance(value, Equated) and isinstance(value.rhs, Matrix):
+            found.append((address, value.rhs.rows))
     yield from sorted(found, key=lambda entry: entry[0].rpartition(".")[2] != label)

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
+from typing import Any
 
-from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
+from satsym.formula.angles import Complex, Monomial, TooManyTerms, over, terms_of
 from satsym.formula.tree import Node
 
 _MOST_SHIFTS = 24
@@ -20,12 +21,9 @@ def terms(tree: Node) -> Mapping[Monomial, Complex]:
         found = terms_of(tree).coefficients
     except (TooManyTerms, RecursionError):
         return {}
-    return {tuple((name, _whole(power)) for name, power in key): value for key, value in found.items()}
-
-
-def _whole(power: Fraction) -> Fraction:
-    """An exponent, as an integer where it is one: these are added and compared many times quicker."""
-    return power if power.denominator != 1 else power.numerator  # type: ignore[return-value]
+    # whole exponents as integers: these are added and compared many times quicker
+    whole: Any = {key: tuple((n, p if p.denominator != 1 else p.numerator) for n, p in key) for key in found}
+    return {whole[key]: value for key, value in found.items()}
 
 
 def likeness(printed: Node, target: Node, least: float = 0.0) -> float:
@@ -43,13 +41,13 @@ def likeness(printed: Node, target: Node, least: float = 0.0) -> float:
     best = 0.0
     shifts: dict[tuple[Monomial, Fraction], None] = {}
     for a, b in product((a for a, (real, imaginary) in one.items() if real and not imaginary), other):
-        shifts[_over(a, b), other[b][0] / one[a][0]] = None
+        shifts[over(a, b), other[b][0] / one[a][0]] = None
         if len(shifts) == _MOST_SHIFTS:
             break
     for shift, scale in shifts:
         shared = 0.0
         for a, (real, imaginary) in one.items():
-            there = other.get(_over(a, shift))
+            there = other.get(over(a, shift))
             if there is not None:
                 same = there == (real * scale, imaginary * scale)
                 shared += 1.0 if same else 0.6
@@ -60,11 +58,3 @@ def likeness(printed: Node, target: Node, least: float = 0.0) -> float:
 @lru_cache(maxsize=20_000)
 def _letters(tree: Node) -> frozenset[str]:
     return frozenset(name for key in terms(tree) for name, _ in key)
-
-
-@lru_cache(maxsize=100_000)
-def _over(one: Monomial, other: Monomial) -> Monomial:
-    powers = dict(one)
-    for name, power in other:
-        powers[name] = powers.get(name, 0) - power
-    return tuple(sorted((name, power) for name, power in powers.items() if power))

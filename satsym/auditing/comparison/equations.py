@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +10,7 @@ from satsym.auditing.comparison.bench import Bench, Both
 from satsym.auditing.comparison.plan import BoundPoint, Cells, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.formula import field
-from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
+from satsym.formula.angles import Complex, Monomial, TooManyTerms, over, terms_of
 from satsym.formula.calculus import difference, product, raised
 from satsym.formula.evaluation import Engine
 from satsym.formula.tree import (
@@ -189,13 +188,10 @@ def _quotient(one: tuple[Monomial, Complex], other: tuple[Monomial, Complex], po
     (above, (a, a_imaginary)), (below, (b, b_imaginary)) = one, other
     if a_imaginary or b_imaginary:
         return None
-    powers = dict(above)
-    for name, power in below:
-        powers[name] = powers.get(name, Fraction(0)) - power
-    kept = {name: power for name, power in powers.items() if power}
-    if not all(name in positive for name in kept):
+    kept = over(above, below)
+    if not all(name in positive for name, _ in kept):
         return None
-    return product([number(a / b), *(raised(Sym(name), power) for name, power in sorted(kept.items()))])
+    return product([number(a / b), *(raised(Sym(name), power) for name, power in kept)])
 
 
 class SameRoots(Plan):
