@@ -225,6 +225,7 @@ class OperatorCursor(QuotientCursor):
         letter = self._letter_in(inside)
         alone = letter is not None and letter == letter.plain and not letter.dots
         called = len(inside) > 1 and inside[0].kind == "macro" and inside[0].text in FUNCTIONS
+        called = called and len(split(inside, lambda token: token.kind == "sign" and token.text in "+-")) == 1
         return (alone or called) and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
 
     def _may_be_a_name(self, inner: Node | None) -> bool:

@@ -233,12 +233,9 @@ class LetterCursor(Cursor):
         if not sure and not self._is_shift(letter, inside):
             barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
             turned = letter.base.isupper() and len(inside) == 2 and inside[0].text == "-" and inside[1].text in GREEK
-            if (
-                barred
-                or turned
-                or letter.style == "cal"
-                or (self._is_product(inside) and not self._is_factor(letter, inside))
-            ):
+            taken = self._is_product(inside) and not self._is_factor(letter, inside)
+            order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
+            if barred or turned or taken or order or letter.style == "cal":
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
             return ()
