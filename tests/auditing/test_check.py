@@ -148,6 +148,12 @@ def test_what_is_said_of_one_end_is_held_against_the_conditions_there(formula: s
     assert not address or found.address == f"polar_orbit:{address}"
 
 
+@pytest.mark.parametrize("text", ["x" * 19999, "x^(" * 6000, "d" + "a" * 9000 + " " * 9000 + "/", "x = " + "1" * 15000])
+def test_hostile_plain_notation_is_refused_in_one_line(text: str) -> None:
+    with pytest.raises(BadInput, match=r"more than .* \(character [0-9]+\)\Z"):
+        satsym.check(text, "hill")
+
+
 @pytest.mark.parametrize(("entry", "verdict"), [("-n^2", "right"), ("n^2", "wrong")])
 def test_matrices_are_compared_entry_by_entry(entry: str, verdict: str) -> None:
     rows = [

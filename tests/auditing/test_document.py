@@ -161,6 +161,7 @@ HOSTILE = [
     (r"\input{../../etc/passwd}", "is not in the folder"),
     (r"\input{paper}", "goes round in a circle"),
     (r"$$\csname x\endcsname = 1$$", "is not read here"),
+    ("$$x = " + "1" * 15000 + "$$", "more than 30 digits"),
 ]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.words import FUNCTIONS, NUMBERED_FUNCTIONS
-from satsym.formula.reading import MAX_DEPTH
+from satsym.formula.reading import MAX_DEPTH, MAX_DIGITS
 from satsym.status import BadInput
 from satsym.wording import printable
 
@@ -103,9 +103,15 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
         if depth > MAX_DEPTH or depth < 0:
             why = f"groups are nested more than {MAX_DEPTH} deep" if depth > 0 else "this closes nothing"
             raise Unread(why, token.at)
+        _refuse_long(token)
     if depth:
         raise Unread("a group is not closed", start + len(text.rstrip()))
     return found
+
+
+def _refuse_long(token: Token) -> None:
+    if token.kind == "number" and len(token.text) > MAX_DIGITS:
+        raise Unread(f"a number has more than {MAX_DIGITS} digits", token.at)
 
 
 def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Token]:
@@ -239,11 +245,12 @@ def _characters(text: str, at: int) -> list[Token]:
 _PLAIN = re.compile(
     r"\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2}(?![A-Za-z0-9_.]))?)"
     r"|(?P<above>d(?:\^?(?P<order>[2-4]))?(?P<of>[A-Za-z]\w*)?(?= */ *d[A-Za-z]))"
-    r"|(?<=/)(?P<below>d(?P<by>t(?=\^?[2-4])|[A-Za-z]\w*)(?:\^?(?P<times>[2-4]))?)"
     r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)(?P<primes>'*)"
     r"|(?P<power>(?:\*\*|\^)\s*[-+]?)|(?P<sign>[^\sA-Za-z0-9]))"
 )
-"""Pieces of plain notation; a quotient of differentials is two of them, ``d2x`` before the slash and ``dt2`` behind."""
+"""Pieces of plain notation; ``d2x`` is one in front of a slash that has a differential behind it."""
+_BELOW = re.compile(r"d(?:(?P<time>t)(?P<times>[2-4])|(?P<by>[A-Za-z]\w*))")
+"""What a slash divides by in a quotient of differentials; ``dt2`` is the square of one."""
 
 
 def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
@@ -262,13 +269,13 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
     if broken := _BROKEN.search(text):
         raise Unread("a character that is none; save the text as UTF-8", broken.start())
     found: list[Token] = []
-    for match in _PLAIN.finditer(re.sub(r"/\s+(?=d[A-Za-z])", "/", text.rstrip())):
-        kind = next(name for name in ("number", "above", "below", "word", "power", "sign") if match[name] is not None)
+    for match in _PLAIN.finditer(text.rstrip()):
+        kind = next(name for name in ("number", "above", "word", "power", "sign") if match[name] is not None)
         value, at = match[kind], match.start(kind)
         if kind == "above":
             found += _placed(f"d{_order(match['order'])} {of_word(match['of']).latex if match['of'] else ''}", at)
-        elif kind == "below":
-            found += _placed(f"d {of_word(match['by']).latex}{_order(match['times'])}", at)
+        elif kind == "word" and found and found[-1].text == "/" and (below := _BELOW.fullmatch(value)):
+            found += _placed(f"d {of_word(below['time'] or below['by']).latex}{_order(below['times'])}", at)
         elif kind == "word":
             found += _word(value, len(match["primes"]), at, text[match.end() :].lstrip()[:1], is_known)
         elif kind == "sign":
@@ -277,6 +284,7 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
             found += [Token("sign", "^", at), *([Token("sign", value[-1], at)] if value[-1] in "+-" else [])]
         else:
             found.append(Token("number", value, at))
+            _refuse_long(found[-1])
     if len(found) > MAX_TOKENS:
         raise Unread(f"more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
     return _exponents_grouped(found)
