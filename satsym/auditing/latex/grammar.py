@@ -6,7 +6,7 @@ letter may be a function of time (``x(t)``); derivatives are printed as dots, qu
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -111,57 +111,59 @@ class Parser(EnclosedCursor):
 
     def _product(self, argument: bool = False) -> Node:
         """A term; of a function without brackets, what it is taken of."""
-        result = self._signed_factor()
-        chain: list[Node] = [result]
-        crossed = ""
-        while True:
-            token = self._peek()
-            if token is None:
+        chain, crossed = [self._signed_factor()], ""
+        while (token := self._peek()) is not None:
+            times = (token.kind == "sign" and token.text == "*") or (
+                token.kind == "macro" and token.text in words.TIMES
+            )
+            over = (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div")
+            if argument and (times or over or not self._continues_argument(token, chain[-1])):
                 break
-            if (token.kind == "sign" and token.text == "*") or (token.kind == "macro" and token.text in words.TIMES):
-                if argument:
-                    break
-                self._i += 1
-                if (product := words.OF_VECTORS.get(token.text)) and self._is_vector(chain[-1]):
-                    if crossed and "cross" in (product, crossed):
-                        raise Unread("products of vectors one after the other, without brackets", token.at)
-                    crossed = product
-                    chain[-1] = self._of_vectors(product, chain[-1], token)
-                else:
-                    before = chain[-1]
-                    chain.append(self._signed_factor())
-                    scalar = any(constant(side) is not None for side in (before, chain[-1]))
-                    if token.text == "times" and not scalar and not isinstance(before, Grid):
-                        raise Unread("a product, or one of vectors; set vectors bold, or write \\cdot", token.at)
-            elif token.kind == "macro" and token.text == "otimes" and not argument:
+            if times:
+                crossed = self._times(token, chain, crossed)
+            elif over:
+                chain = [self._over(token, chain)]
+            elif macro and text == "otimes":
                 self._i += 1
                 chain[-1] = Call("tensor", (chain[-1], self._signed_factor()))
-            elif (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div"):
-                if argument:
-                    break
-                if self._bare_end == self._i:
-                    raise Unread("what a function is taken of, a slash behind it, needs brackets", token.at)
-                self._i += 1
-                following = self._peek()
-                if token.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
-                    raise Unread("a colon is not read here", token.at)
-                divisor = self._signed_factor()
-                unit = self._peek()
-                if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
-                    raise Unread("a unit behind a slash is not read", unit.at)
-                if unit is not None and self._may_be_divided_by(unit, chain, divisor):
-                    raise Unread("what a slash divides by is not clear without brackets", token.at)
-                chain = [Div(product_of(chain), divisor)]
-            elif argument and not self._continues_argument(token, chain[-1]):
-                break
             elif self._begins_factor(token):
                 self._refuse_behind(chain[-1], token)
-                if token.text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
+                if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
                     raise Unread("an ellipsis between factors is not read", token.at)
                 chain.append(self._factor())
             else:
                 break
         return product_of(chain)
+
+    def _times(self, sign: Token, chain: list[Node], crossed: str) -> str:
+        """Read what a sign of multiplication is in front of, into a product; which product of vectors was last."""
+        self._i += 1
+        before, product = chain[-1], words.OF_VECTORS.get(sign.text)
+        if product and self._is_vector(before):
+            if crossed and "cross" in (product, crossed):
+                raise Unread("products of vectors one after the other, without brackets", sign.at)
+            chain[-1] = self._of_vectors(product, before, sign)
+            return product
+        chain.append(self._signed_factor())
+        scalar = any(constant(side) is not None for side in (before, chain[-1]))
+        if sign.text == "times" and not scalar and not isinstance(before, Grid):
+            raise Unread("a product, or one of vectors; set vectors bold, or write \\cdot", sign.at)
+        return crossed
+
+    def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
+        """A product divided by the factor behind a slash."""
+        if self._bare_end == self._i:
+            raise Unread("what a function is taken of, a slash behind it, needs brackets", slash.at)
+        self._i += 1
+        following = self._peek()
+        if slash.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
+            raise Unread("a colon is not read here", slash.at)
+        divisor, unit = self._signed_factor(), self._peek()
+        if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
+            raise Unread("a unit behind a slash is not read", unit.at)
+        if unit is not None and self._may_be_divided_by(unit, chain, divisor):
+            raise Unread("what a slash divides by is not clear without brackets", slash.at)
+        return Div(product_of(chain), divisor)
 
     def _signed_factor(self) -> Node:
         if self._is("-") or self._is("+"):
@@ -276,18 +278,10 @@ class Parser(EnclosedCursor):
 
     def _macro(self, token: Token) -> Node:
         name = token.text
-        if name in words.ROOTS:
-            return self._root()
         if name in words.ELLIPSES or name == "infty":
             return Sym("infinity" if name == "infty" else "ellipsis")
-        if name == "nabla":
-            return self._gradient(token)
         if name == "lim" or (name in words.OPTIMA and self._is("_")):
             return self._optimum(token)
-        if name == "sum":
-            return self._sum_over(token)
-        if name == "int":
-            return self._integral(token)
         if name in ("frac", "tfrac", "dfrac", "cfrac"):
             above, below = self._group(), self._group()
             self._refuse_derivative(above, below, token.at)
@@ -300,38 +294,15 @@ class Parser(EnclosedCursor):
             return inner
         if name in words.STYLES and (zero := self._peek_number()) is not None:
             return zero
-        if name in ("{", "}", "lbrace", "rbrace", "langle", "rangle", "lbrack", "rbrack"):
-            if name in ("{", "lbrace", "lbrack"):
-                return self._braces(token)
+        if name in ("}", "rbrace", "langle", "rangle", "rbrack"):
             raise Unread(f'"\\{name}" is not read here', token.at)
+        if name in _READERS:
+            return _READERS[name](self, token)
         if name in FUNCTIONS:
             return self._function(FUNCTIONS[name], token)
-        if name in words.UPRIGHT:
-            self._i -= 1
-            group = self._peek_group()
-            word = "".join(t.text for t in group)
-            if (found := self._named(name, word, len(group))) is not None:
-                return found
-            if word != "constantvector":
-                self._refuse_word(name, word.strip(), token.at)
-            if word in FUNCTIONS or word in words.OPTIMA:
-                behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
-                if word in words.OPTIMA and behind < len(self._found) and self._found[behind].text == "_":
-                    self._i = behind
-                    return self._optimum(replace(token, text=word))
-            if word in FUNCTIONS and len(word) > 1 and word != "diff":
-                self._i += 1
-                self._group()
-                return self._function(FUNCTIONS[word], token)
-            if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
-                self._i += 1
-                self._group()
-                if self._is("."):
-                    self._i += 1
-                self._reading.constants = True
-                return Sym(CONSTANT)
-        else:
-            self._i -= 1
+        self._i -= 1
+        if name in words.UPRIGHT and (found := self._upright(token)) is not None:
+            return found
         letter = self._letter()
         if letter is None:
             self._refuse()
@@ -343,3 +314,34 @@ class Parser(EnclosedCursor):
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
+
+    def _upright(self, token: Token) -> Node | None:
+        """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
+        group = self._peek_group()
+        word = "".join(t.text for t in group)
+        if (found := self._named(token.text, word, len(group))) is not None:
+            return found
+        if word != "constantvector":
+            self._refuse_word(token.text, word.strip(), token.at)
+        behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
+        if word in words.OPTIMA and behind < len(self._found) and self._found[behind].text == "_":
+            self._i = behind
+            return self._optimum(replace(token, text=word))
+        if word in FUNCTIONS and len(word) > 1 and word != "diff":
+            self._i = behind
+            return self._function(FUNCTIONS[word], token)
+        if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
+            self._i = behind + (behind < len(self._found) and self._found[behind].text == ".")
+            self._reading.constants = True
+            return Sym(CONSTANT)
+        return None
+
+
+_READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
+    "sqrt": lambda parser, _: parser._root(),
+    "nabla": Parser._gradient,
+    "sum": Parser._sum_over,
+    "int": Parser._integral,
+    **dict.fromkeys(("{", "lbrace", "lbrack"), Parser._braces),
+}
+"""Macros that begin something, and what reads it."""

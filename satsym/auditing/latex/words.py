@@ -107,7 +107,6 @@ ATOMS = (
     frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack lim nabla infty".split())
     | ELLIPSES
 )
-ROOTS = frozenset(("sqrt",))
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that are misread as products of letters where their backslash is lost, longer names first."""
 UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf arg sup inf grad div rot curl cov var mod".split())
