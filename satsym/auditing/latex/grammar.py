@@ -113,10 +113,9 @@ class Parser(EnclosedCursor):
         """A term; of a function without brackets, what it is taken of."""
         chain, crossed = [self._signed_factor()], ""
         while (token := self._peek()) is not None:
-            times = (token.kind == "sign" and token.text == "*") or (
-                token.kind == "macro" and token.text in words.TIMES
-            )
-            over = (token.kind == "sign" and token.text in "/:") or (token.kind == "macro" and token.text == "div")
+            text, sign, macro = token.text, token.kind == "sign", token.kind == "macro"
+            times = (sign and text == "*") or (macro and text in words.TIMES)
+            over = (sign and text in "/:") or (macro and text == "div")
             if argument and (times or over or not self._continues_argument(token, chain[-1])):
                 break
             if times:
