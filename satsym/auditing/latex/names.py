@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.words import SAID
 from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
@@ -54,6 +55,8 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
         for first, last in _runs(part):
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
+            if name in SAID and len(name) == len(part):
+                raise Unread("words between formulas are not read", part[first].at)
             if len(name) >= _LONG_WORD and not grouped and sum(letter in "aeiou" for letter in name) > 1:
                 raise Unread("words between formulas are not read", part[first].at)
             if name.isupper() and [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "(":

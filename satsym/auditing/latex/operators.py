@@ -149,6 +149,8 @@ class OperatorCursor(QuotientCursor):
                 if name not in ("sin", "cos", "tan"):
                     raise Unread("an inverse function of this name is not read", at)
                 name, power = f"a{name}", None
+        if name == "atan" and self._is("2", kind="number") and self._is("(", 1):
+            self._i, name = self._i + 1, "atan2"
         if self._is("_") and name in ("log", "min", "max"):
             raise Unread(f"an index of {name} is not read", self._take().at)
         if self._is("(") or self._is("["):

@@ -235,7 +235,8 @@ class LetterCursor(Cursor):
             turned = letter.base.isupper() and len(inside) == 2 and inside[0].text == "-" and inside[1].text in GREEK
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
-            if barred or turned or taken or order or letter.style == "cal":
+            transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
+            if barred or turned or taken or order or transposed or letter.style == "cal":
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
             return ()

@@ -97,6 +97,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
     depth, bracket, i = 0, 0, 0
     systems: list[bool] = []
     broken = False
+    gaps: list[tuple[int, int]] = []
     while i < len(found):
         token = found[i]
         i += 1
@@ -137,7 +138,9 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 if broken or (i < len(found) and found[i].text == "+"):
                     continue
                 rows[-1].append(replace(token, text="quad"))  # parts the entries of a row
-            elif not inside and depth == 0 and token.text != " " and not _asks(rows[-1]) and not _goes_on(rows[-1]):
+            elif not inside and depth == 0 and token.text == " ":
+                gaps.append((len(rows) - 1, len(rows[-1])))
+            elif not inside and depth == 0 and not _asks(rows[-1]) and not _goes_on(rows[-1]):
                 rows.append([])
         else:
             broken = False
@@ -145,7 +148,18 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
             bracket = max(0, bracket + (token.text in "([") - (token.text in ")]")) if token.kind == "sign" else bracket
             rows[-1].append(token)
         places += [line] * (len(rows) - len(places))
+    for k, gap in gaps:
+        _refuse_gap(rows[k], gap)
     return [(place, row) for place, row in zip(places, rows, strict=True) if row]
+
+
+def _refuse_gap(row: Sequence[Token], gap: int) -> None:
+    """Refuse a space that may stand between two equations, or between factors of a side that both share."""
+    before, behind = row[:gap], row[gap:]
+    if _has_relation(before) and _has_relation(behind):
+        ends = before[-1], behind[0]
+        if not any(_sign(token) or token.text in TIMES | {"+", "-", ",", ";", "&", "/", ":"} for token in ends):
+            raise Unread("a space between equations, or between factors", behind[0].at)
 
 
 def _is_brace(row: Sequence[Token]) -> bool:
