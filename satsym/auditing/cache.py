@@ -11,14 +11,12 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from multiprocessing import get_context
 from pathlib import Path
-from queue import Empty
-from typing import Any
 
 import msgspec
 
@@ -35,8 +33,6 @@ _READ = (("satsym.generated", "*.json"), ("satsym.generated", "*.py"), ("satsym"
 
 _DERIVING = 30
 """How many rows are judged, about, while a derivation is derived."""
-_LOOK = 0.1
-"""Seconds after which it is looked whether a process has ended."""
 _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
 
 
@@ -62,54 +58,32 @@ def audit_all(
     *,
     fresh: bool = False,
 ) -> dict[str, list[Judged]]:
-    """As :func:`audit`, of several documents by key; those that are not kept in a process for each processor."""
+    """As :func:`audit`, of several documents by key; those that are not kept in a process for each processor.
+
+    It is announced which documents are not ready yet.
+    """
     found = {} if fresh or items else {x.document.key: rows for x in ledgers if (rows := _read(_place(x))) is not None}
     left = sorted((x for x in ledgers if x.document.key not in found), key=_work, reverse=True)
     processes = min(os.cpu_count() or 1, len(left))
     if items or processes < 2:
         found |= {ledger.document.key: audit(ledger, items, announce, fresh=fresh) for ledger in left}
     else:
-        context = get_context("spawn")
-        queue = context.Queue()
-        with ProcessPoolExecutor(processes, context, _telling, (queue,)) as pool:
-            running = {ledger.document.key: pool.submit(_judged, ledger) for ledger in left}
-            _follow(list(running.values()), queue, announce)
-            found |= {key: future.result() for key, future in running.items()}
+        with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
+            running = {pool.submit(audit, ledger, fresh=True): ledger.document.key for ledger in left}
+            announce(", ".join(running.values()))
+            try:
+                for done in as_completed(running):
+                    found[running[done]] = done.result()
+                    announce(", ".join(key for key in running.values() if key not in found))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
     return {ledger.document.key: found[ledger.document.key] for ledger in ledgers}
 
 
 def _work(ledger: Ledger) -> int:
     """About how much there is to do, in rows: what takes longest is begun first."""
     return len(ledger.rows) + _DERIVING * len(ledger.models)
-
-
-def _follow(running: Sequence[Future[list[Judged]]], queue: Any, announce: Callable[[str], None]) -> None:
-    """Announce what the processes tell, until all have ended or one has failed."""
-    last: dict[str, str] = {}
-    while not all(future.done() for future in running):
-        if any(future.done() and future.exception() for future in running):
-            for future in running:
-                future.cancel()
-        try:
-            document, _, row = queue.get(timeout=_LOOK).partition(": ")
-        except Empty:
-            continue
-        last[document] = f"{document} {row.partition(',')[0].removeprefix('row ')}"
-        announce("; ".join(last.values()))
-
-
-_tell: list[Any] = []
-"""Where a process puts what is announced."""
-
-
-def _telling(queue: Any) -> None:
-    queue.cancel_join_thread()  # what nobody reads any more does not keep the process from ending
-    _tell.append(queue)
-
-
-def _judged(ledger: Ledger) -> list[Judged]:
-    """All rows of a ledger, in a process of its own."""
-    return audit(ledger, (), _tell[0].put, fresh=True)
 
 
 def _place(ledger: Ledger) -> Path:
