@@ -27,16 +27,9 @@ _CODE = re.compile(
 _QUOTE = re.compile(r"(?:(?<=\n\n)|(?<=\A)|(?<=\n))(?:[ \t]{0,3}>)+(?=[^\n]*(?:\n[ \t]{0,3}>|\n\n|\n?\Z))")
 _INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
 _NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
-_DISPLAY = re.compile(
-    rf"\\begin\{{(?P<env>(?:{_NUMBERED})\*?|displaymath|math)\}}(?P<body>.*?)\\end\{{(?P=env)\}}"
-    r"|\\\[(?P<brackets>.*?)\\\]|(?<!\\)\$\$(?P<dollars>.*?)(?<!\\)\$\$"
-    r"|^[ \t]*(?P<rail>```+|:::+) *\{?math\}?[^\n]*\n(?P<options>(?:[ \t]*:[a-z-]+:[^\n]*\n)*)(?P<fence>.*?)"
-    r"^[ \t]*(?P=rail)[ \t]*$",
-    re.DOTALL | re.MULTILINE,
-)
 _OPENING = re.compile(
-    rf"(?P<env>\\begin\{{((?:{_NUMBERED})\*?|displaymath|math)\}})|(?P<brackets>\\\[)|(?P<dollars>(?<!\\)\$\$)"
-    r"|^[ \t]*(?P<fence>```+|:::+) *\{?math",
+    rf"(?P<env>\\begin\{{(?P<name>(?:{_NUMBERED})\*?|displaymath|math)\}})|(?P<brackets>\\\[)|(?P<dollars>(?<!\\)\$\$)"
+    r"|^[ \t]*(?P<fence>```+|:::+) *\{?math\}?[^\n]*\n(?P<options>(?:[ \t]*:[a-z-]+:[^\n]*\n)*)",
     re.MULTILINE,
 )
 _SECTION = re.compile(
@@ -121,19 +114,18 @@ def displays(source: Source) -> Iterator[Display]:
     counted, heading = 0, ""
     seen: set[str] = set()
     markdown = source.path.suffix.lower() in _MARKDOWN
-    for found, match in enumerate(_blocks(text, markdown)):
+    for found, (match, body) in enumerate(_blocks(text, markdown)):
         if found >= MOST_DISPLAYS:
             raise BadInput(f"{source.place(match.start())}: more than {MOST_DISPLAYS} displays; split the document")
-        kind = match.lastgroup if match["env"] is None else "body"
-        body, start = match[kind or 0], match.start(kind or 0)
+        environment, start = match["name"] or "", match.end()
         k = bisect_right(sections, match.start(), key=lambda entry: entry[0]) - 1
         number, title = sections[k][1:] if k >= 0 else ("", "")
         head = number.partition(".")[0] if within or chapters else ""
         if head != heading:
             counted, heading = 0, head
-        numbered = match["env"] is not None and not match["env"].endswith("*") and "math" not in match["env"][1:]
+        numbered = bool(environment) and not environment.endswith("*") and "math" not in environment[1:]
         refers = tuple(_REFERENCE.findall(text, max(0, match.start() - _NEAR_CHARACTERS), match.start()))
-        for row_start, row in _equations(body, match["env"] or ""):
+        for row_start, row in _equations(body, environment):
             label = _LABEL.search(row) or _OPTION.search(match["options"] or "")
             tag = _TAG.search(row)
             item = ""
@@ -158,35 +150,37 @@ def displays(source: Source) -> Iterator[Display]:
                 label[1] if label else "",
                 section,
                 refers,
-                _columns(match["env"]) or ("split" if kind == "fence" and "&" in row else ""),
+                _columns(environment) or ("split" if match["fence"] and "&" in row else ""),
             )
 
 
-def _blocks(text: str, markdown: bool) -> Iterator[re.Match[str]]:
-    """The displays of a text as matches; time is linear in its length, also where nothing is closed."""
-    nearest: dict[str, int] = {}
+def _blocks(text: str, markdown: bool) -> Iterator[tuple[re.Match[str], str]]:
+    """How displays begin, and what is in them; in linear time, also where nothing is closed."""
+    nearest: dict[str, tuple[int, int]] = {}
     position = 0
     while opening := _OPENING.search(text, position):
-        position, kind = opening.end(), opening.lastgroup or ""
+        position = opening.end()
+        kind = next(kind for kind in ("env", "brackets", "dollars", "fence") if opening[kind] is not None)
         closing = {
             "env": re.escape(opening[0].replace("begin", "end", 1)),
             "brackets": r"\\\]",
             "dollars": r"(?<!\\)\$\$",
             "fence": rf"(?m:^[ \t]*{opening['fence']}[ \t]*$)",
         }[kind]
-        if nearest.get(closing, -1) < position:
+        if nearest.get(closing, (-1, 0))[0] < position:
             found = re.compile(closing).search(text, position)
-            nearest[closing] = found.start() if found else len(text)
+            nearest[closing] = found.span() if found else (len(text), len(text))
+        begin, end = nearest[closing]
         before = text[max(0, opening.start() - _INDENT) : opening.start()].rpartition("\n")[2]
         escaped = markdown and kind == "brackets" and before.strip()
-        if nearest[closing] < len(text) and not escaped and (match := _DISPLAY.match(text, opening.start())):
-            yield match
-            position = match.end()
+        if begin < len(text) and not escaped:
+            yield opening, text[position:begin]
+            position = end
 
 
-def _columns(environment: str | None) -> str:
+def _columns(environment: str) -> str:
     """The name without a star of an environment that has columns."""
-    name = (environment or "").rstrip("*")
+    name = environment.rstrip("*")
     return name if name.startswith(("align", "flalign", "eqnarray", "IEEE")) else ""
 
 
