@@ -184,9 +184,9 @@ class _Context:
 
     def _instead(self, row: Row) -> str:
         """What follows from the rows that a row names, in the symbols of the document; empty where it is no formula."""
-        found = self._bench.follows(row).exact
-        found = found.rhs if isinstance(found, Relation) else found
-        if isinstance(found, Roots | Kernel):
+        both = self._bench.follows(row)
+        found = both.exact.rhs if isinstance(both.exact, Relation) else both.exact
+        if isinstance(found, Roots | Kernel) or not both.has_a_value:
             return ""
         lines = found.rows if isinstance(found, Matrix) else ((found,),)
         trees = tuple(tuple(self._bench.theirs(row, formulas.to_tree(entry)) for entry in line) for line in lines)
@@ -195,7 +195,8 @@ class _Context:
     def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
         assert row.printed is not None
         value = self._bench.follows(row, replacements)
-        if isinstance(value.trees, Roots | Kernel) and not isinstance(row.printed, tuple):
+        nothing = isinstance(value.trees, Roots | Kernel) and not isinstance(row.printed, tuple)
+        if nothing or not value.has_a_value:
             return False
         if isinstance(value.exact, Relation) and self._only_names(row, value.exact):
             value = Both(value.trees.rhs, value.exact.rhs)  # what is named follows, not 0 = 0

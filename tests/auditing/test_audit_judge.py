@@ -189,6 +189,23 @@ def test_a_right_result_that_does_not_follow_is_unsound(tmp_path: Path) -> None:
     assert "does not follow from H" in found.diagnosis
 
 
+@pytest.mark.parametrize("holds", ["u1/(r - r)", "d_r = 1/(r - r)"])
+def test_nothing_is_held_against_a_division_by_zero(tmp_path: Path, holds: str) -> None:
+    with pytest.raises(BadInput, match=r"row x: what it is held against has a division by zero"):
+        judged(tmp_path, [row("x", "u1", holds)])
+
+
+@pytest.mark.parametrize("derivation", ["u1/(row['H'] - row['H'])", "d_x1 = u1/(row['H'] - row['H'])"])
+def test_nothing_follows_from_a_division_by_zero(tmp_path: Path, derivation: str) -> None:
+    rows = [
+        row("H", HAMILTONIAN, "polar_orbit:hamiltonian.H"),
+        row("costate", RIGHT_COSTATE, "polar_orbit:costate_equations.r_dot", **{"from": derivation}),
+    ]
+    found = judged(tmp_path, rows)["costate"]
+    assert found.verdict == "unsound"
+    assert "does not follow from H" in found.diagnosis
+
+
 def test_a_slip_that_is_carried_on_is_wrong_even_where_the_document_has_it_right_elsewhere(tmp_path: Path) -> None:
     rows = [
         row("first", "d_x4 = -(2*x2*x4 + u2)/x1", TANGENTIAL),

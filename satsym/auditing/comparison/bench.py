@@ -14,11 +14,11 @@ from satsym.formula.budget import Allowance, Limit, OverBudget
 from satsym.formula.calculus import Calculus
 from satsym.formula.field import Undecided
 from satsym.formula.tree import Equality, Formula, Node, Sym, Text, each, names_in, substituted, symbols, walk
-from satsym.formula.values import Matrix, Relation, Sources, Value
+from satsym.formula.values import Kernel, Matrix, Relation, Roots, Sources, Value
 from satsym.formula.writing import written
 from satsym.records import record, shelf
 from satsym.status import BadInput
-from satsym.symbolic.lookup import library
+from satsym.symbolic.lookup import formulas, library
 from satsym.symbolic.lookup.library import Names, Sympy
 from satsym.wording import printable, shown, suggestion
 
@@ -37,6 +37,15 @@ class Both:
 
     trees: Value
     exact: Value
+
+    @property
+    def has_a_value(self) -> bool:
+        """Whether nothing in it is divided by zero, whatever its symbols are."""
+        found = self.exact.of if isinstance(self.exact, Roots | Kernel) else self.exact
+        if isinstance(found, Matrix):
+            return all(map(formulas.has_a_value, found.entries))
+        sides = (found.lhs, found.rhs) if isinstance(found, Relation) else (found,)
+        return all(map(formulas.has_a_value, sides))
 
 
 @dataclass(eq=False)
@@ -106,7 +115,10 @@ class Bench:
         formula = row.holds
         assert formula is not None
         if row.key not in self._targets:
-            self._targets[row.key] = self._both(row, formula)
+            found = self._both(row, formula)
+            if not found.has_a_value:
+                raise BadInput("what it is held against has a division by zero")
+            self._targets[row.key] = found
         return self._targets[row.key]
 
     def same_target(self, one: Row, other: Row) -> bool:

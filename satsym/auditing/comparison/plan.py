@@ -18,7 +18,6 @@ from satsym.auditing.sentences import Said
 from satsym.formula import field
 from satsym.formula.field import BY_TERMS, Nowhere, Point
 from satsym.formula.tree import Call, Node, Sym, substituted, symbols
-from satsym.formula.values import Matrix
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas
 
@@ -162,8 +161,7 @@ class Plan(ABC):
             If it divides by zero, whatever its symbols are.
         """
         found = self.bench.printed(self.row, node)
-        entries = found.exact.entries if isinstance(found.exact, Matrix) else [found.exact]
-        if not all(map(formulas.has_a_value, entries)):
+        if not found.has_a_value:
             raise formulas.NotAFormula(written(node))
         return found
 
