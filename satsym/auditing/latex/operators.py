@@ -303,6 +303,8 @@ class OperatorCursor(QuotientCursor):
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
+        if product == "cross" and left == Sym("I_vector"):
+            raise Unread("a product of a vector and what is none", sign.at)  # inertia, or the identity
         right = [self._signed_factor()]
         while not self._is_vector(right[-1]):
             token = self._peek()

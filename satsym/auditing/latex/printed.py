@@ -236,7 +236,9 @@ class LetterCursor(Cursor):
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
-            if barred or turned or taken or order or transposed or letter.style == "cal":
+            next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
+            a_place = barred or turned or taken or order or transposed or next_state
+            if a_place or letter.style == "cal":
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
             return ()
