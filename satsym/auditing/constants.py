@@ -1,28 +1,15 @@
 """Published constants that number rows may use beside what the document states; each with its source."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Constant:
-    """A published value with its unit."""
-
-    quantity: str
-    source: str
-
-
 PUBLISHED = {
-    "mu_earth": Constant("398600.4418 km^3/s^2", "IERS Conventions (2010), table 1.1, geocentric, TCG-compatible"),
-    "R_earth": Constant("6378.137 km", "WGS 84 (NGA.STND.0036), equatorial radius"),
-    "sidereal_day": Constant("86164.0905 s", "Explanatory Supplement to the Astronomical Almanac (2013), mean"),
-    "mu_sun": Constant("1.3271244e20 m^3/s^2", "IAU 2015 Resolution B3, nominal solar mass parameter"),
-    "au": Constant("149597870700 m", "IAU 2012 Resolution B2, exact"),
-    "sidereal_year": Constant("31558149.76 s", "Explanatory Supplement to the Astronomical Almanac (2013), J2000.0"),
-    "c_light": Constant("299792458 m/s", "SI, exact"),
-    "g_standard": Constant("9.80665 m/s^2", "CGPM 1901, exact"),
-    "G_newton": Constant("6.67430e-11 m^3/kg/s^2", "CODATA 2018"),
+    "mu_earth": "398600.4418 km^3/s^2",  # IERS Conventions (2010), table 1.1, geocentric, TCG-compatible
+    "R_earth": "6378.137 km",  # WGS 84 (NGA.STND.0036), equatorial radius
+    "sidereal_day": "86164.0905 s",  # Explanatory Supplement to the Astronomical Almanac (2013), mean
+    "mu_sun": "1.3271244e20 m^3/s^2",  # IAU 2015 Resolution B3, nominal solar mass parameter
+    "au": "149597870700 m",  # IAU 2012 Resolution B2, exact
+    "sidereal_year": "31558149.76 s",  # Explanatory Supplement to the Astronomical Almanac (2013), J2000.0
+    "c_light": "299792458 m/s",  # SI, exact
+    "g_standard": "9.80665 m/s^2",  # CGPM 1901, exact
+    "G_newton": "6.67430e-11 m^3/kg/s^2",  # CODATA 2018
 }
 
 CUSTOMARY = {

@@ -164,7 +164,7 @@ def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
 
 
 def _known(tree: Node, inputs: Mapping[str, str]) -> dict[str, Quantity]:
-    texts = {**{name: constant.quantity for name, constant in PUBLISHED.items()}, **inputs}
+    texts = {**PUBLISHED, **inputs}
     return {name: in_base_units(texts[name]) for name in symbols(tree) if name != "pi" or "pi" in inputs}
 
 

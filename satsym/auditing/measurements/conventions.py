@@ -20,7 +20,7 @@ def often() -> int:
 
 def years() -> list[Quantity]:
     """What is called a year: of the calendar, Julian, sidereal."""
-    return [in_base_units(text) for text in ("365 d", "365.25 d", PUBLISHED["sidereal_year"].quantity)]
+    return [in_base_units(text) for text in ("365 d", "365.25 d", PUBLISHED["sidereal_year"])]
 
 
 def infinity() -> float:

@@ -31,7 +31,7 @@ def quantity(text: str) -> Quantity:
 def constant(name: str) -> Quantity:
     """A published constant, such as ``mu_earth``."""
     refuse_unknown("no published constant", name, PUBLISHED)
-    return quantities.in_base_units(PUBLISHED[name].quantity)
+    return quantities.in_base_units(PUBLISHED[name])
 
 
 def orbits() -> Family:
