@@ -11,6 +11,8 @@ from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
 """Letters side by side, vowels among them, that are taken for a word."""
+_SIGNS = frozenset(("cdot", "*"))
+"""Who sets these beside letters that stand side by side does not multiply the letters."""
 
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
@@ -59,13 +61,24 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
                 raise Unread("words between formulas are not read", part[first].at)
             if len(name) >= _LONG_WORD and not grouped and sum(letter in "aeiou" for letter in name) > 1:
                 raise Unread("words between formulas are not read", part[first].at)
-            if name.isupper() and [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "(":
+            numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
+            beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
+            multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
+            if name.isupper() and (numbered or multiplied or _is_ratio(part, first, last)):
                 raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
+
+
+def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:
+    r"""Whether capitals are divided by others, one of them the same, as lengths are: ``\frac{AB}{AC}``."""
+    above, between = {t.text for t in part[first:last]}, [t.kind for t in part[last : last + 2]]
+    below = next((part[a:b] for a, b in _runs(part) if a == last + 2), [])
+    whole = first > 1 and part[first - 2].text in ("frac", "tfrac", "dfrac") and between == ["close", "open"]
+    return whole and not above.isdisjoint(t.text for t in below)
 
 
 def refuse_powers_of_numbered(reading: Reading, start: int) -> None:

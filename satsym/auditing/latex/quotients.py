@@ -23,9 +23,18 @@ class QuotientCursor(LetterCursor):
         elif is_differential(token):
             parts = self._slashed()
         if parts is not None and (tree := self._quotient(*parts)) is not None:
+            self._pass_time()
             return tree
         self._i, self._found = begin, found
         return None
+
+    def _pass_time(self) -> None:
+        """Go past ``(t)`` behind a derivative; another letter there is what it is taken at, or a factor."""
+        if self._is("(") and self._is_place_next():
+            at = self._found[self._i].at
+            if not (self._is("t", 1, "letter") and self._is(")", 2)):
+                raise Unread("what it is taken at is not read", at)
+            self._i += 3
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
         """A quotient of differentials with a slash."""
