@@ -20,7 +20,7 @@ from satsym.solvers.switching.solving import NOT_FOUND
 from satsym.solvers.switching.throttled import signs, switched
 from satsym.status import Status
 
-BETWEEN, FAINT, LASTING = 0.05, 1e-2, 0.35
+BETWEEN, FAINT_SLOPE, LASTING = 0.05, 1e-2, 0.35
 """Share of the width of its range by which a norm is off its bounds, share of the cost of a norm below which its
 switching function decides nothing, and share of the time for which nothing decides it."""
 
@@ -115,7 +115,7 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     between = (filled > BETWEEN) & (filled < 1.0 - BETWEEN)
     sigma, priced = (signs(instance, at.times, at.x, costates)[0] for costates in (at.lam, np.zeros_like(at.lam)))
     with np.errstate(all="ignore"):  # where norms cost nothing nothing is faint
-        faint = (np.abs(sigma) <= FAINT * np.abs(priced).max(axis=1, keepdims=True))[:, 1:] & (sigma != 0.0)[:, 1:]
+        faint = (np.abs(sigma) <= FAINT_SLOPE * np.abs(priced).max(axis=1, keepdims=True))[:, 1:] & (sigma != 0.0)[:, 1:]
     if not ((between | faint) @ at.steps > LASTING * at.steps.sum()).any():
         return ""
     single = [c for part in spec.control_parts if part.branch == "switched" for c in part.controls]
