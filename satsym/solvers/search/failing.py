@@ -115,8 +115,8 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     between = (filled > BETWEEN) & (filled < 1.0 - BETWEEN)
     sigma, priced = (signs(instance, at.times, at.x, costates)[0] for costates in (at.lam, np.zeros_like(at.lam)))
     with np.errstate(all="ignore"):  # where norms cost nothing nothing is faint
-        faint = (np.abs(sigma) <= FAINT_SLOPE * np.abs(priced).max(axis=1, keepdims=True))[:, 1:] & (sigma != 0.0)[:, 1:]
-    if not ((between | faint) @ at.steps > LASTING * at.steps.sum()).any():
+        faint = (np.abs(sigma) <= FAINT_SLOPE * np.abs(priced).max(axis=1, keepdims=True)) & (sigma != 0.0)
+    if not ((between | faint[:, 1:]) @ at.steps > LASTING * at.steps.sum()).any():
         return ""
     single = [c for part in spec.control_parts if part.branch == "switched" for c in part.controls]
     what = "the norm of a vector"
