@@ -18,9 +18,9 @@ from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import depends, simplify, vanishes
 from satsym.symbolic.chain import named_parts
-from satsym.symbolic.checks import Point, never_below, numeric
+from satsym.symbolic.checks import Point, identity, never_below, numeric
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.functions.roots import Argmin, Choice, Vertex
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
@@ -154,12 +154,19 @@ def control_parts(so_far: Derivation) -> Step:
     checks = [adds_up(so_far, h, every)] if len(stationary) < len(every) else []
     checks += [numeric_gradient(h, one.part.symbols, list(one.gradient)) for one in stationary]
     checks += [convex(so_far, one) for one in every if one.branch == "quadratic"]
+    checks += [_stationary(one) for one in every if one.branch == "quadratic"]
     together = any(
         one.turned_by or set().union(*(g.free_symbols for g in one.gradient)) & _others(every, one) for one in every
     )
     rule = worded("one set" if len(every) == 1 else "sets together" if together else "set by set", problem)
     kinds = tuple(f"in H, {kind}" for kind in _kinds(every))
     return Step(STEP, rule, tuple(equations), ("hamiltonian",), tuple(checks), kinds=kinds)
+
+
+def _stationary(one: Minimum) -> Check:
+    """Check that the derivatives of H by the controls of one set vanish where these are its unconstrained minimum."""
+    hats = dict(zip(one.part.symbols, one.hats, strict=True))
+    return identity("vanishes there", [slope.xreplace(hats) for slope in one.gradient])
 
 
 def _others(every: Sequence[Minimum], one: Minimum) -> set[sp.Symbol]:
