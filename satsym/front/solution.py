@@ -17,9 +17,8 @@ from satsym.front.curves import Curve
 from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
 from satsym.report.results.objects import solution_object
-from satsym.report.terminal.certificate import statement, verdict_text
+from satsym.report.terminal.certificate import condition_rows, verdict_text
 from satsym.report.terminal.solution import solution_text, state_rows
-from satsym.report.terminal.table import figure
 from satsym.solution import Certificate, Event, Progress
 from satsym.solvers.constrained.structure import stated_arcs
 
@@ -119,20 +118,8 @@ class Solution(Result[solution.Solution]):
             **{f"switching times of {name}": times for name, times in self.switching_times.items() if times},
             "certificate": verdict_text(found, self._spec.maximise) if found else None,
         }
-        checks = [
-            (
-                statement(c),
-                figure(abs(c.value), 2) if c.limit else "",
-                figure(c.limit, 2) if c.limit else "",
-                "" if c.passed else "FAILED",
-            )
-            for c in (found.checks if found else ())
-        ]
-        return self._html(
-            facts,
-            html.table(names, states),
-            html.table(("condition", "measured", "limit", ""), checks),
-        )
+        header, *checks = condition_rows(found) if found else [()]
+        return self._html(facts, html.table(names, states), html.table(header, checks))
 
 
 @single_threaded()

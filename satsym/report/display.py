@@ -60,6 +60,11 @@ def raised(text: str) -> str:
     return _POWER.sub(lambda power: power[1].translate(_RAISED), text)
 
 
+def capitalised(text: str) -> str:
+    """A sentence with a capital letter at its start; all other letters stay as they are."""
+    return text[:1].upper() + text[1:]
+
+
 def labelled(symbol: str, unit: str) -> str:
     """A label of an axis: symbol, and the unit in brackets where there is one."""
     bracket = unit_text(unit)

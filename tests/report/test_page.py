@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -21,9 +22,12 @@ from satsym.report.page.problem import problem
 from satsym.report.page.run import Given, pictures, render
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import from_aside
+from satsym.report.terminal.certificate import condition_rows, verdict_text
+from satsym.report.terminal.solution import solution_text
 from satsym.report.texts import load
-from satsym.solution import Solution
+from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import solve
+from satsym.status import Verdict
 from satsym.symbolic import loader
 from tests.cli.test_cli import Run, case, run
 from tests.support.derived import derived, stated
@@ -83,11 +87,28 @@ def test_it_loads_nothing_and_all_its_links_lead_somewhere_in_it(text: str) -> N
 
 def test_it_says_what_the_result_says(text: str, solution: Solution) -> None:
     assert f"{solution.objective:.10g} km²/s³" in text
-    assert solution.certificate is not None
-    for check in solution.certificate.checks:
-        assert f'scope="row">{check.name}</th>' in text
     given = solution.instance.path.read_text(encoding="utf-8").splitlines()[0]
     assert given.replace('"', "&quot;").replace("'", "&#x27;") in text
+
+
+def test_it_says_of_the_certificate_what_the_terminal_says(text: str, solution: Solution) -> None:
+    found = solution.certificate
+    assert found is not None
+    section = unescape(text.partition('<section id="certificate">')[2].partition("</section>")[0])
+    printed = [line.split() for line in solution_text(solution).splitlines()]
+    assert verdict_text(found).capitalize() in section
+    for said, measured, limit, _ in condition_rows(found)[1:]:
+        assert f"{said} {measured} {limit}".split() in printed
+        assert f'scope="row">{said}</th>{CELL}{measured}</td>{CELL}{limit}</td>' in section, said
+
+
+def test_a_condition_that_failed_and_one_that_holds_are_told_apart_on_the_page() -> None:
+    checks = (Check("kernels contradict each other", 1.0, 1e-9), Check("boundary residual", 1e-12, 1e-9))
+    found = Certificate(Verdict.FAILED, 0.0, 0.0, 0.0, 0.0, 1.0, None, checks)
+    shown = answer.certificate(found, instance.load("soft-return").model.spec, load("en"))
+    assert f"kernels contradict each other</th>{CELL}1</td>{CELL}1e-09</td><td>FAILED</td>" in shown
+    assert f"conditions at both ends met</th>{CELL}1e-12</td>{CELL}1e-09</td><td></td>" in shown
+    assert "elsewhere" not in shown, "said of certified answers only"
 
 
 @pytest.mark.slow

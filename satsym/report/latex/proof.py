@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from satsym.proof.record import Enclosure, Proof
+from satsym.report.display import capitalised
 from satsym.report.latex.preamble import preamble
 from satsym.report.latex.tex import bookmark, escape, name
 from satsym.report.said import message, say, spoken
@@ -103,4 +104,4 @@ def _number(text: str, point: str) -> str:
 
 def _sentence(text: str) -> str:
     """A text that begins with a capital letter."""
-    return escape(text[:1].upper() + text[1:])
+    return escape(capitalised(text))

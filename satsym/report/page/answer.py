@@ -6,16 +6,18 @@ import re
 from collections.abc import Sequence
 
 from satsym.proof.record import Enclosure, Outcome, Proof
-from satsym.report.display import number, unit_text
+from satsym.report.display import capitalised, number, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.arcs import in_words, rows_of_arcs
+from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
 from satsym.report.terminal.solution import control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
 from satsym.solution import Certificate, Solution
 from satsym.spec import ProblemSpec
+from satsym.status import Scope, Verdict
 
 
 def facts(solution: Solution, texts: Texts) -> Markup:
@@ -57,25 +59,15 @@ def controls(solution: Solution, texts: Texts) -> Markup:
 
 
 def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
-    """The verdict, what was measured, and what was compared."""
-
-    def said(*keys: str) -> tuple[str, ...]:
-        return tuple(texts.get("page", key) for key in keys)
-
-    checks: list[tuple[str, ...]] = [said("check", "found", "limit", "result")] + [
-        (message(c.name), figure(abs(c.value), 2), figure(c.limit, 2), *said("ok" if c.passed else "failed"))
-        for c in found.checks
-    ]
-    compared: list[tuple[str, ...]] = [said("competitors", "tried", "solved", "best")] + [
-        (message(c.kind.value), str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
-        for c in found.competitors
-        if c.tried
-    ]
-    missing = ", ".join(message(kind.value) for kind in found.not_checked)
+    """The verdict, what was measured, and what was compared, in the words of the terminal."""
+    theorem = message(found.because) if theorem_lines(found) else ""
+    proved = found.verdict is Verdict.CERTIFIED and found.scope is Scope.LOCAL
+    compared = competitor_rows(found, spec)
     return joined(
-        tag("p", texts.get("page", found.verdict.value)),
-        tag("p", texts.get("page", "not_checked", kinds=missing)) if missing else "",
-        table(texts.get("page", "checks"), checks),
+        tag("p", capitalised(verdict_text(found, spec.maximise)), "."),
+        tag("p", capitalised(say("shown by: <theorem>", theorem=theorem)), ".") if theorem else "",
+        tag("p", texts.get("page", "certified")) if proved else "",
+        table(texts.get("page", "checks"), condition_rows(found)),
         table(texts.get("page", "compared"), compared) if len(compared) > 1 else "",
     )
 

@@ -84,8 +84,21 @@ def meaning(verdict: Verdict) -> str:
 
 def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
     """The verdict, the conditions with what was measured and its limit, and the competitors kind by kind."""
-    failed = "" if all(check.passed for check in certificate.checks) else say("FAILED")
-    rows = [
+    compared = competitor_rows(certificate, spec)
+    return [
+        *wrapped(say("certificate: <verdict>", verdict=verdict_text(certificate, spec.maximise))),
+        *theorem_lines(certificate),
+        "",
+        *table(condition_rows(certificate), right=(1, 2)),
+        *(["", *table(compared, right=(1, 2, 3))] if len(compared) > 1 else []),
+    ]
+
+
+def condition_rows(certificate: Certificate) -> list[tuple[str, str, str, str]]:
+    """Each condition as a statement, what was measured, its limit, and whether it failed; below a header."""
+    failed = say("FAILED")
+    condition, measured, limit = each("condition", "measured", "limit")
+    return [(condition, measured, limit, "")] + [
         (
             statement(check),
             figure(abs(check.value), 2) if check.limit else "",
@@ -94,22 +107,16 @@ def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
         )
         for check in certificate.checks
     ]
-    compared = [
+
+
+def competitor_rows(certificate: Certificate, spec: ProblemSpec) -> list[tuple[str, str, str, str]]:
+    """Each kind of competitors, how many were tried and solved, and the best of them; below a header."""
+    kind, tried, solved = each("competitors", "tried", "solved")
+    best = say("highest objective" if spec.maximise else "lowest cost")
+    return [(kind, tried, solved, best)] + [
         (message(c.kind.value), str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
         for c in certificate.competitors
         if c.tried
-    ]
-    best = say("highest objective" if spec.maximise else "lowest cost")
-    return [
-        *wrapped(say("certificate: <verdict>", verdict=verdict_text(certificate, spec.maximise))),
-        *theorem_lines(certificate),
-        "",
-        *table([(*each("condition", "measured", "limit"), ""), *rows], right=(1, 2)),
-        *(
-            ["", *table([(*each("competitors", "tried", "solved"), best), *compared], right=(1, 2, 3))]
-            if compared
-            else []
-        ),
     ]
 
 
