@@ -42,12 +42,12 @@ TURNS, LONG = 3, 5.0
 
 INTRODUCTION = """# Known optima
 
-Shipped instances whose optimum is known, as `make bench-optima` finds them: each from a cold start, without a guess.
-The *independent optimum* has nothing of satsym in it; below the table stands how it was found. *Direct* is CasADi's
-collocation with Ipopt, built from the same statement of the problem on the first mesh that has a relative error of at
-most 1e-7 in the objective; trying coarser ones costs it nothing here. It proves nothing, so its *ratio* is to our time
-without the certificate, unless it is the certificate that led to the answer. Times are seconds of the processor, the
-least of three turns after a first time, so that neither pays for libraries that it loads.
+This table, made by `make bench-optima`, has the shipped instances whose optimum is known. Each is solved from a cold start,
+without an initial guess. The *independent* optimum was found without satsym; how is said below the table. *Direct* is CasADi's
+collocation with Ipopt for the same problem, on the first mesh with a relative error of at most 1e-7 in the objective; the time
+for coarser meshes is not counted. It certifies nothing, so *ratio* is its time divided by ours without the certificate, unless the certificate led to the
+answer. Times are seconds of processor time: the minimum of three runs after a warm-up run, so that loading libraries is not
+counted.
 
 """
 HEADS = tuple("instance source independent satsym difference verdict time certified direct ratio".split())
