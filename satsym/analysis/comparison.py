@@ -220,7 +220,7 @@ def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[flo
     """
     options = instance.classical
     if options is None or options.damping is None:
-        raise BadInput(f"{instance.called}: [classical] damping: missing; a range of it needs one to begin with")
+        raise BadInput(f"{instance.called}: [classical] damping: missing; a range of values needs an initial value")
     if not all(d > 0.0 and math.isfinite(d) for d in dampings):
         raise BadInput(f"{instance.called}: a range of dampings must be positive")
     spec, shape = instance.model.spec, (len(dampings), len(commands))

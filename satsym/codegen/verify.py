@@ -72,7 +72,7 @@ SHORTEST, FARTHEST = 15, 10.0
 """Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
-LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
+LIE = "give the range of the variables: Variable(..., typical=(low, high)); nothing written"
 
 FAR_FACTOR = 1e9
 """How many times as large, or as small, as at random what regularises is; bounds are so by the square of it."""
@@ -156,7 +156,7 @@ def _places(
         if len(places) == POINTS:
             return places, expected
     raise DerivationError(
-        f"{derivation.name}: at random points of size one generated functions have no numbers to compare; {LIE}"
+        f"{derivation.name}: generated functions have no finite values at random points of size one; {LIE}"
     )
 
 

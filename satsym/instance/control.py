@@ -64,8 +64,8 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
         if part.turned_by and lower[part.controls[0]] < 0.0:
             (name,) = part.controls
             raise BadInput(
-                f"[control] {name}: {part.turned_by} turns what it multiplies, so it is not negative; "
-                f"write {name} = [0, upper]"
+                f"[control] {name}: it is the magnitude of a vector that {part.turned_by} rotates, "
+                f"so it must not be negative; write {name} = [0, upper]"
             )
     return tuple(lower.values()), tuple(upper.values()), norms
 

@@ -166,7 +166,8 @@ class OrbitTable(_Table, frozen=True):
         "Earth"
     )
     inclination: Annotated[
-        Quantity | None, Key("of the plane of a planar model to that of the frame", EXPORTING, "rad")
+        Quantity | None,
+        Key("inclination of the plane of a planar model to the first two axes of the frame", EXPORTING, "rad"),
     ] = None
     node: Annotated[
         Quantity | None, Key("direction of its ascending node, from the first axis of the frame", EXPORTING, "rad")
@@ -262,7 +263,9 @@ class InstanceFile(_Table, frozen=True):
         ),
     ] = {}
     study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
-    orbit: Annotated[OrbitTable | None, Key("where in the sky and when it takes place", EXPORTING)] = None
+    orbit: Annotated[
+        OrbitTable | None, Key("when the motion takes place and how its plane lies in space", EXPORTING)
+    ] = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

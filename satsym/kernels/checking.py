@@ -41,7 +41,7 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
         At the first line that the generator does not write.
     """
     if sum(1 for _ in islice(_WORD.finditer(text), _MOST_WORDS + 1)) > _MOST_WORDS:
-        raise Unexpected(1, "begins more than a generated module holds")
+        raise Unexpected(1, "begins a statement that a generated module does not contain")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they would print lines of the file
@@ -164,7 +164,7 @@ def _functions(nodes: list[ast.stmt], spec: ProblemSpec) -> list[ast.FunctionDef
         Body(signature, counts, form, form != "loop" or (name == "forward" and spec.has_cost)).check(node.body[1:])
         found[node.name] = node
     if absent := missing(spec, found):
-        raise Unexpected(1, f"is followed by no {', '.join(absent)}")
+        raise Unexpected(1, f"does not contain {', '.join(absent)}")
     return list(found.values())
 
 

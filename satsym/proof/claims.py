@@ -20,7 +20,7 @@ FIELD = (
 )
 BROKEN = (
     "field of broken extremals",
-    "J. Noble and H. Schaettler, Sufficient conditions for relative minima of broken extremals in optimal control "
+    "J. Noble and H. Schättler, Sufficient conditions for relative minima of broken extremals in optimal control "
     "theory, Journal of Mathematical Analysis and Applications 269 (2002) 98-128",
 )
 CONSTRAINED = (
@@ -40,7 +40,7 @@ WAITING = (
 )
 
 REST = Theorem(
-    "no control costs less than none",
+    "zero control is optimal",
     "the running cost is a sum of squares",
     (
         "The global minimum of the cost is zero.",
@@ -57,7 +57,7 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
             "by second derivatives over all controls",
             "exactly",
         ),
-        Hypothesis("the control zero is admissible", "it lies within all bounds", "exactly"),
+        Hypothesis("zero control is admissible", "it lies within all bounds", "exactly"),
         Hypothesis("the uncontrolled motion exists until the final time", "by validated integration", f"{steps} steps"),
     )
 
@@ -65,11 +65,11 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
 def of_signs(shown: Shown) -> Hypothesis:
     """Say that laws are the best ones along their arcs."""
     if not shown.conditions:
-        return Hypothesis("no bound of the controls is met", "none is stated", "0 signs")
+        return Hypothesis("no control reaches a bound", "there are no bounds", "nothing to show")
     return Hypothesis(
-        "the law of each arc holds all along it, and each change of law has a slope",
+        "the law of each arc holds on the whole arc, and each change of law is crossed with a nonzero slope",
         "signs of Taylor series on every step, by bisection",
-        f"{shown.conditions} signs, {shown.crossings} changes of law",
+        f"{shown.conditions} signs, {shown.crossings} change{'s' * (shown.crossings != 1)} of law",
     )
 
 
@@ -107,14 +107,15 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
             raise NotProved(f"{called} is not shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
     given = sum(i < statement.own for i in statement.targets)
-    parts = [f"{given} states given", f"{statement.own - given} free", f"{ranges} ranges"]
+    counted = (given, "states given"), (statement.own - given, "states free"), (ranges, "states in a range")
+    parts = [f"{count} {what}" for count, what in counted if count]
     if spec.multipliers:
-        parts += [f"{len(statement.active)} constraints", f"{len(spec.multipliers) - len(statement.active)} not met"]
+        parts += [f"{len(statement.active)} active constraints", f"{len(spec.multipliers)} constraints in all"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]
     return Hypothesis(
         "the conditions at the end hold, strictly where they are inequalities",
         "by the equations of the extremal",
-        ", ".join(parts),
+        "; ".join(parts),
     )
 
 
@@ -140,7 +141,8 @@ def of_field(found: Regularity) -> Hypothesis:
     if found.ratios:
         parts.append(f"smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}")
     return Hypothesis(
-        "a field of extremals about this one is regular on the closed interval, and its form at the end positive",
+        "a field of extremals about this one is regular on the closed interval, and its quadratic form at the end is "
+        "positive",
         f"W(t0) = {found.start}; no conjugate or focal point",
         "; ".join(parts),
     )
@@ -156,7 +158,10 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
     convexity, waits
         In what the problem is convex, and why nobody arrives earlier, in words; empty where that is not known.
     """
-    one = f"There is exactly one extremal of this structure within {radius:g}, relative to the sizes of its components."
+    one = (
+        f"There is exactly one extremal of this structure within a distance of {radius:g}, relative to the sizes of "
+        "its components."
+    )
     if walled(statement):
         return Theorem(
             *CONSTRAINED,
@@ -196,10 +201,12 @@ def scope(statement: Statement) -> str:
     """Say which problem is proved, and what is not claimed."""
     path = statement.source.path
     numbers = (
-        f"decimals of {path} and of the generated module are exact rational numbers, degrees are parts of pi."
+        f"decimals of {path} and of the generated module are taken as exact rational numbers, and degrees are "
+        "fractions of pi."
         if path
-        else "numbers given in Python are the binary fractions that they are, defaults of the model exact decimals."
+        else "numbers given in Python are taken as exact binary fractions, and defaults of the model as exact decimals."
     )
     compared = "Derivatives and laws of the generated kernel were compared with its motion and costs at random points."
-    near = "Near means within some distance that the theorem does not give."
-    return f"The problem is what {statement.spec.name} states with the numbers listed here: {numbers} {compared} {near}"
+    near = "The theorem does not say how near is near enough."
+    model = f"The problem is that of the model {statement.spec.name} with the numbers listed here:"
+    return f"{model} {numbers} {compared} {near}"

@@ -40,10 +40,10 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
     last_state = [constant(v) for v in nodes[-1][:n]]
     objective = cost + value(statement.kernel.terminal_cost(constant(final), last_state, statement.p))
     shown = Hypothesis(
-        "an extremal exists, and only one near by",
+        "an extremal exists and is the only one nearby",
         f"Krawczyk's operator maps a box of {len(here)} unknowns into itself ({fractions} segments, "
         f"{sum(len(s.steps) for arc in last.passed.segments for s in arc)} steps)",
-        f"radius {radius:.0e} of the sizes",
+        f"radius {radius:.0e} relative to the sizes of the unknowns",
     )
     return replace(
         record,
@@ -74,7 +74,7 @@ def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
 
 
 def at_rest(record: Proof, statement: Statement, end: list[Ball], steps: int) -> Proof:
-    """The record of a problem in which no control costs less than none."""
+    """The record of a problem in which zero control is optimal."""
     names, digits = statement.spec.state_names, record.digits
     zero = Enclosure("0", "0")
     return replace(

@@ -205,7 +205,7 @@ def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
             continue
         for kappa in (1, 8, 64):
             yield (
-                f"-{kappa} diag W_{k}",
+                f"-{kappa} |diag W(t_{k})|",
                 _diagonal([-kappa * abs(float(w[i, i].mid())) for i in range(n)]),
             )
 

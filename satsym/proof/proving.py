@@ -190,7 +190,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
 
 
 def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
-    """Show that an extremal exists and is the only one near by; then find out where it is to the last digit."""
+    """Show that an extremal exists and is the only one nearby; then find out where it is to the last digit."""
     inclusion: Inclusion | None = None
     for radius in RADII:
         box = _box(shooting, place, radius)

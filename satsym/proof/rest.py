@@ -1,6 +1,6 @@
 """Problems that are solved by doing nothing: a sum of squares of the controls is the cost, and the end is free.
 
-Then no control costs less than none, and only none costs nothing. What has to be shown is that the uncontrolled motion
+Then zero control is optimal, and only none costs nothing. What has to be shown is that the uncontrolled motion
 exists until the final time.
 """
 

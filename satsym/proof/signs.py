@@ -23,7 +23,7 @@ PARTS = 14
 
 _LINEAR = "H is linear in the controls, with coefficients that do not all vanish"
 _DIRECTED = {
-    "angle": "H is a cosine of the direction, of an amplitude that does not vanish",
+    "angle": "H is a cosine of the direction, with an amplitude that does not vanish",
     **dict.fromkeys(("ball", "annulus"), _LINEAR),
 }
 """Why a direction is the only best one, by the kind of its set."""

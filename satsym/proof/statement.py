@@ -335,7 +335,7 @@ def refuse(case: Instance) -> None:
     orders = {one.order for one in spec.path_constraints}
     lifts = any(one.place is not Place.INITIAL for one in case.free)
     for there, feature in (
-        (spec.path_constraints and spec.control_set != "free", "path constraints beside bounds of the controls"),
+        (spec.path_constraints and spec.control_set != "free", "path constraints together with bounds of the controls"),
         (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),

@@ -125,7 +125,7 @@ def _extremal(instance: Instance, limits: Limits) -> Extremal:
     except np.linalg.LinAlgError:
         error = float("nan")
     if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
-        message = "the conditions contradict each other or leave costates open: the end may not be reachable"
+        message = "the conditions contradict each other or leave costates undetermined: the end may not be reachable"
         return unfinished(problem, arcs, message, 1, limits)
     if not kept(problem, arcs):
         raise _refusal(instance, "bounds on its control are active")

@@ -86,7 +86,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
-    return replace(found, message=f"{found.message}, from the {start.named}")
+    return replace(found, message=f"{found.message}, starting from the {start.named}")
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:

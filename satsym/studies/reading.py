@@ -119,7 +119,9 @@ def _count(text: str, place: str) -> int:
     except ValueError:
         count = 0
     if not 1 <= count <= MOST_ROWS:
-        raise BadInput(f"{place}: {shown(text)} is no number of values; write a whole number from 1 to {MOST_ROWS}")
+        raise BadInput(
+            f"{place}: {shown(text)} is not a possible number of values; write a whole number from 1 to {MOST_ROWS}"
+        )
     return count
 
 

@@ -174,7 +174,10 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         for name, conditions in problem.interior.items():
             refuse(f"the interior point {name}", conditions, motion, "interior")
             if idle := [e for e in conditions if sp.sympify(e).free_symbols <= fixed]:
-                message = f"{name} asks that {idle[0]} = 0, which no motion changes; state it by states or time"
+                message = (
+                    f"{name} requires {idle[0]} = 0, which does not depend on the motion; "
+                    "state it in terms of states or time"
+                )
                 raise DerivationError(f"{derivation.name}: interior: {message}", ("interior",))
 
 

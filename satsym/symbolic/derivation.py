@@ -188,7 +188,7 @@ class Derivation:
                 if check.error != check.error:
                     raise DerivationError(
                         f"{failed}at random points of size one there are no numbers to compare; "
-                        "say where the variables lie: Variable(..., typical=(low, high))"
+                        "give the range of the variables: Variable(..., typical=(low, high))"
                     )
                 raise DerivationError(f"{failed}deviation {check.error:.2g}, allowed {check.limit:.0g}")
         return replace(self, steps=(*self.steps, step))

@@ -85,7 +85,7 @@ def test_a_law_that_leaves_out_a_bound_is_not_proved() -> None:
     ("name", "feature"),
     [
         ("return-above", "path constraints of a problem that is not convex"),
-        ("goddard-pressure", "path constraints beside bounds of the controls"),
+        ("goddard-pressure", "path constraints together with bounds of the controls"),
         ("inspection", "path constraints"),
         ("fuller", "chatter"),
         ("chain", "free with a law of the kind stationary"),

@@ -31,7 +31,7 @@ def test_a_page_has_the_theorem_its_hypotheses_and_all_digits() -> None:
     page = render(solution.found, None, Given("double-integrator-fuel"), proof=proof)
     section = re.search(r'<section id="proof">(.*?)</section>', page, re.DOTALL)
     assert section is not None
-    texts = [*proof.theorem.claims, proof.theorem.source, *(h.name for h in proof.hypotheses)]
+    texts = [*proof.theorem.claims, proof.theorem.source, *(h.name[1:] for h in proof.hypotheses)]
     enclosures = [proof.objective, *proof.switching_times, *proof.costate_initial.values(), *proof.x_final.values()]
     for text in (*texts, *(v.centre for v in enclosures), *(v.radius for v in enclosures)):
         assert text in section[1], text
@@ -46,8 +46,17 @@ def test_latex_has_the_same_with_its_digits_in_groups() -> None:
     text = proof.latex()
     assert r"\begin{document}" in text
     assert r"0.76393\,20225" in text
-    for said in (*proof.theorem.claims, *(h.shown for h in proof.hypotheses)):
-        assert escape(said)[1:] in text
+    plain = (
+        text.replace("$H$", "H")
+        .replace("$H_{uu}$", r"H\_uu")
+        .replace("$10^{-6}$", "1e-06")
+        .replace("$W(t_0)$", "W(t0)")
+    )
+    for said in (*proof.theorem.claims, *(h.shown.partition(" = ")[0] for h in proof.hypotheses)):
+        assert escape(said)[1:] in plain
+    assert r"$-1 \times" not in text
+    assert r"\operatorname{diag}" in text, "W(t0) is a formula"
+    assert all(rf"\texttt{{{number}}}" in text for number in proof.numbers.values())
     assert r"\begin{document}" not in proof.latex(fragment=True)
     assert r"0{,}76393\,20225" in proof.latex("id")
     assert "Teorema" in proof.latex("id")

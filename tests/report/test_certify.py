@@ -139,7 +139,7 @@ def test_the_command_says_what_holds(folders: dict[str, Path], capsys: pytest.Ca
     assert (found["command"], found["stated"], found["differences"]) == ("certify", "certified", [])
     assert (found["certificate"]["verdict"], found["certificate"]["scope"]) == ("certified", "global")
     assert main(["certify", str(folders["bryson-denham"])]) == 0
-    assert "what result.json says of the answer is what the other files say" in capsys.readouterr().out
+    assert "result.json agrees with the other files" in capsys.readouterr().out
 
 
 def test_the_command_says_what_differs(folders: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]):

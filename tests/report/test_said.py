@@ -117,7 +117,7 @@ COMPOSED = (
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
     *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
-    "estimated error <error> on <n> intervals, by the search",
+    "estimated error <error> on <n> intervals, found by the direct search",
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),
     *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
     "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",

@@ -152,7 +152,7 @@ def test_a_list_reaches_nothing_outside_its_folder(tmp_path: Path, name: str) ->
     listed = json.loads((folder / "result.json").read_text())
     listed["files"] = {name: {"bytes": 6, "sha256": set_list.listed_as(tmp_path / "outside").sha256}}
     (folder / "result.json").write_text(json.dumps(listed))
-    with pytest.raises(BadInput, match="lists files that no set has"):
+    with pytest.raises(BadInput, match="lists files that do not belong to a result"):
         sets.read(folder)
     write(folder, NEW)
     assert (tmp_path / "outside").read_text() == "theirs"
@@ -179,7 +179,7 @@ def made_pipe(path: Path) -> None:
 def test_a_set_that_does_not_match_its_list_is_refused(tmp_path: Path, damage: Callable[[Path], object]) -> None:
     write(tmp_path, OLD)
     damage(tmp_path / "a")
-    with pytest.raises(BadInput, match=r"a: is not the file that result\.json lists, but missing or another"):
+    with pytest.raises(BadInput, match=r"a: is not the file that result\.json lists, but is missing or has changed"):
         sets.read(tmp_path)
 
 

@@ -335,7 +335,9 @@ def made(name: str, states: tuple[Variable, ...], controls: tuple[str, ...], rat
 def test_a_magnitude_that_multiplies_a_direction_has_bounds_and_any_direction(sets: dict[str, Any], moved: Expr):
     motion = made("push", PLACE, ("size", "b"), {x: size * cos(b), y: moved})
     stated = Problem(name="pushed", title="A push that is turned", model=motion, running_cost=1, control_sets=sets)
-    with pytest.raises(DerivationError, match=r'linear in size, which multiplies what b turns; this needs "size": Box'):
+    with pytest.raises(
+        DerivationError, match=r'linear in size, the magnitude of a vector that b turns; this needs "size": Box'
+    ):
         derive(stated)
 
 

@@ -175,7 +175,7 @@ def test_what_switches_needs_bounds():
     ("sets", "said"),
     [
         ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which nothing limits; state a Box or a Ball"),
-        ({"push": Box("k"), "rate": Ball("w")}, "H is linear in w alone, which does not turn; state a Box"),
+        ({"push": Box("k"), "rate": Ball("w")}, "H is linear in w alone, whose direction is fixed; state a Box"),
     ],
 )
 def test_what_is_linear_has_a_set_of_its_own(sets: dict[str, Box | Free | Ball], said: str):

@@ -183,7 +183,7 @@ hanging = Linearised(
     [
         ({"about": {q1: 1, q2: 0}}, "is not a motion of pendulum"),
         ({"about": {q1: 0}}, "no value for q2"),
-        ({"about": {q1: 0, q2: 0, f1: 1}}, "f1 is not zero along the motion; name its deviation otherwise"),
+        ({"about": {q1: 0, q2: 0, f1: 1}}, "f1 is not zero along the motion; give its deviation another name"),
         ({"about": {q1: d1, q2: 0}}, "cannot depend on d1|undeclared symbols: d1"),
         ({"deviations": {d1: q1 - 1, d2: q2}}, "do not all vanish on the reference"),
         ({"deviations": {d1: q1, d2: q1}}, "cannot be solved for the variables of pendulum"),
@@ -363,7 +363,7 @@ def test_a_module_with_functions_that_no_linear_model_has_is_refused(repository:
     text = (repository / "generated" / "saddle.py").read_text(encoding="utf-8")
     with pytest.raises(BadInput, match="functions of linear models that none has"):
         from_text(text.replace("'routh_column',", "'root_column',"), "saddle.py")
-    with pytest.raises(BadInput, match="is followed by no eigenvalues_batch"):
+    with pytest.raises(BadInput, match="does not contain eigenvalues_batch"):
         from_text(text[: text.index("def eigenvalues_b")] + text[text.index("def transition_matrix_b") :], "saddle.py")
 
 

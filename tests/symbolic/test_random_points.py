@@ -38,7 +38,7 @@ def test_steep_atmospheres_are_derived_and_generated(steepness: int) -> None:
 
 def test_a_root_far_away_needs_a_typical_range() -> None:
     with pytest.raises(
-        DerivationError, match=r"say where the variables lie: Variable\(\.\.\., typical=\(low, high\)\)"
+        DerivationError, match=r"give the range of the variables: Variable\(\.\.\., typical=\(low, high\)\)"
     ):
         derive(climb(sp.sqrt(h - 100)))
     near = derive(climb(sp.sqrt(h - 100), (replace(STATES[0], typical=(101.0, 120.0)), STATES[1])))

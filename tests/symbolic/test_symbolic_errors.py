@@ -318,7 +318,7 @@ def test_a_control_that_is_linear_beside_others_is_refused_where_nothing_limits_
 
 def test_a_singular_second_derivative_is_refused() -> None:
     assert complaint(problem(running_cost=(u1 + u2) ** 2)) == (
-        "task: H_uu of u1, u2 is singular, so H_u = 0 does not determine them; weigh the square of each"
+        "task: H_uu of u1, u2 is singular, so H_u = 0 does not determine them; give the square of each a weight"
     )
 
 

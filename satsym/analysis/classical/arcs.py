@@ -140,7 +140,7 @@ def plant(instance: Instance, feedback: str) -> Plant:
     if not -np.inf < low < 0.0 < high < np.inf:
         raise BadInput(
             f"{name}: [control] {spec.control_names[0]}: the bounds {low:g} and {high:g} are not finite numbers with 0 "
-            "between them; a switching feedback needs to push either way"
+            "between them; a switching feedback must be able to push in both directions"
         )
     final = final_argument(instance)
     target = final[2 * len(spec.states) + position], final[2 * len(spec.states) + rate]

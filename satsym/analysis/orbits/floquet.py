@@ -103,7 +103,7 @@ class Floquet:
                 "integrated M is lost in rounding: none is shown."
             )
         return (
-            "Computed, multipliers in such a block scatter by the root of the error of M: here by "
+            "Computed, multipliers in such a block scatter by the square root of the error of M: here by "
             f"{self.scatter:.2g}, where an error of {self.monodromy.error:.2g} allows {self.expected_scatter:.2g}. So "
             "they do not show on which side of the unit circle they lie; that they are on it follows from the "
             "structure of M."

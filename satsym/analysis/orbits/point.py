@@ -67,8 +67,8 @@ class Point:
             "They are \N{PLUS-MINUS SIGN}sqrt(2 mu/r^3) and, twice, \N{PLUS-MINUS SIGN}i sqrt(mu/r^3): they depend on "
             "the distance r alone, not on the velocity. One of them is positive at every distance, so that the rule "
             "calls every orbit unstable, whether circle, ellipse, parabola or hyperbola: it distinguishes nothing. "
-            "Their sum is zero, so that they are never all negative, as asymptotic stability would ask. No point of an "
-            "orbit is an equilibrium: what eigenvalues say of equilibria does not apply."
+            "Their sum is zero, so that they are never all negative, as asymptotic stability would require. No "
+            "point of an orbit is an equilibrium: what eigenvalues say of equilibria does not apply."
         )
         if self.own is None:
             return found

@@ -18,7 +18,7 @@ Examples:
   satsym certify answer                     examines it again, here or on another machine
 
 Exit codes: 0 the result holds, 3 the folder cannot be used, 4 it holds no answer,
-5 a condition of optimality is violated, or a number of result.json is not what its files say."""
+5 a condition of optimality is violated, or a number in result.json does not agree with the other files."""
 
 
 @command(epilog=EXAMPLES)
@@ -28,8 +28,8 @@ def certify(folder: Path, as_json: bool) -> ExitCode:
     """Examine a saved result again.
 
     FOLDER is where `satsym solve` wrote one with --out or --plot. The certificate is computed anew from the saved
-    problem and trajectory, and what result.json says of the answer is compared with them; iterations and seconds are
-    not, as no file shows them again. Nothing is solved again but the competing solutions, and nothing is written.
+    problem and trajectory, and the numbers in result.json are compared with them, except iterations and seconds. Only
+    the competing solutions are solved again, and nothing is written.
     """
     from satsym.report.results import problem
     from satsym.report.results.certificate import certificate_object

@@ -33,15 +33,15 @@ Examples:
 @click.option(
     "--format", "kind", type=click.Choice(KINDS), required=True, metavar="KIND", help=f"One of: {', '.join(KINDS)}."
 )
-@place_option("--out", metavar="FILE", help="Where it goes, instead of to stdout; a file of this name is replaced.")
+@place_option("--out", metavar="FILE", help="Write to this file instead of stdout; an existing file is replaced.")
 @place_option("--from", "source", metavar="DIR", help="A saved result of X, which is exported without solving again.")
 @set_option
 def export(subject: str, kind: str, out: Path | None, source: Path | None, values: tuple[str, ...]) -> ExitCode:
     """Write a motion about a central body for other programs.
 
-    X is an instance as for `satsym solve`, with a table [orbit] that says where in the sky it takes place and when. It
-    is solved; where its model has no cost, the uncontrolled motion is simulated. Formats are oem (orbit ephemeris
-    message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
+    X is an instance as for `satsym solve`, with a table [orbit] that says when the motion takes place and how its
+    plane lies in space. It is solved; where its model has no cost, the uncontrolled motion is simulated. Formats are
+    oem (orbit ephemeris message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
     """
     from satsym import instance
     from satsym.instance.numbers import changed

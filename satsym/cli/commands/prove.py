@@ -15,7 +15,7 @@ from satsym.status import ExitCode, Status
 
 EXAMPLES = """\b
 Examples:
-  satsym prove return-to-orbit          what is proved of the answer, with 20 digits
+  satsym prove return-to-orbit          a proof for the answer, with 20 digits
   satsym prove my_case.toml --json      the same for another program
   satsym prove soft-return --latex soft-return.tex
 

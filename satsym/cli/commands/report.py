@@ -37,7 +37,7 @@ Examples:
 @place_option(
     "--study", "study", metavar="DIR", help="With --interactive: a study of X, whose answers a slider chooses."
 )
-@click.option("--prove", "proving", is_flag=True, help="With what `satsym prove` shows of the answer.")
+@click.option("--prove", "proving", is_flag=True, help="Add the proof that `satsym prove` gives of the answer.")
 @set_option
 def report(
     subject: str,

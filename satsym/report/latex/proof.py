@@ -44,39 +44,54 @@ def render(proof: Proof, language: str = "en", *, standalone: bool = True) -> st
 
 def _section(proof: Proof, texts: Texts) -> Iterator[str]:
     yield rf"\section*{{{escape(texts.get('page', 'proof_of', name=proof.instance))}}}"
-    status = rf"\textbf{{{escape(message(proof.status.value))}}}"
-    yield f"{status}: {escape(message(proof.reason))}." if proof.reason else f"{status}."
+    status = rf"\textbf{{{_sentence(message(proof.status.value))}}}"
+    yield f"{status}: {_typeset(message(proof.reason))}." if proof.reason else f"{status}."
     if proof.theorem is not None:
-        claims = "\n".join(rf"\item {escape(message(claim))}" for claim in proof.theorem.claims)
-        yield f"\\begin{{enumerate}}\n{claims}\n\\end{{enumerate}}"
+        yield _numbered([_typeset(message(claim)) for claim in proof.theorem.claims])
         said = say("Theorem: <name> (<source>).", name=message(proof.theorem.name), source=proof.theorem.source)
-        yield escape(said)
+        yield _PAGES.sub("--", escape(said))
     if proof.hypotheses:
         yield rf"\subsection*{{{escape(texts.get('page', 'hypotheses'))}}}"
-        items = (
-            rf"\item {_sentence(message(h.name))}. {_sentence(message(h.shown))}; {escape(message(h.value))}."
-            for h in proof.hypotheses
+        yield _numbered(
+            [
+                f"{_sentence(message(h.name))}: {_typeset(message(h.shown))} ({_typeset(message(h.value))})."
+                for h in proof.hypotheses
+            ]
         )
-        yield "\\begin{enumerate}\n" + "\n".join(items) + "\n\\end{enumerate}"
     if rows := list(_enclosures(proof, texts)):
         yield rf"\subsection*{{{escape(texts.get('page', 'enclosures'))}}}"
         yield _table(rows, texts)
     if proof.scope:
-        yield escape(message(proof.scope))
-        numbers = [rf"{name(key)} = \texttt{{{escape(number)}}}" for key, number in proof.numbers.items()]
-        yield rf"{{\raggedright {', '.join(numbers)}.\par}}"
+        yield rf"\subsection*{{{escape(texts.get('page', 'proof_about'))}}}"
+        yield _typeset(message(proof.scope))
+        yield _given(proof, texts)
+
+
+def _numbered(items: list[str]) -> str:
+    return "\\begin{enumerate}\n" + "\n".join(rf"\item {item}" for item in items) + "\n\\end{enumerate}"
+
+
+def _given(proof: Proof, texts: Texts) -> str:
+    """The numbers of the instance, two to a line."""
+    cells = [rf"{name(key)} & \texttt{{{escape(number)}}}" for key, number in proof.numbers.items()]
+    cells += ["& "] * (len(cells) % 2)
+    head = " & ".join([f"{escape(texts.get('page', 'key'))} & {escape(texts.get('page', 'value'))}"] * 2)
+    body = " \\\\\n".join(f"{left} & {right}" for left, right in zip(cells[::2], cells[1::2], strict=True))
+    return rf"\par\medskip\begin{{tabular}}{{@{{}}ll@{{\qquad}}ll@{{}}}}\toprule {head} \\ \midrule" + (
+        f"\n{body}" + r" \\ \bottomrule\end{tabular}"
+    )
 
 
 def _enclosures(proof: Proof, texts: Texts) -> Iterator[tuple[str, Enclosure]]:
     known = [
         (escape(texts.get("page", "objective")), proof.objective),
         (escape(texts.get("page", "final_time")), proof.t_final),
-        *((escape(say("change of law")), time) for time in proof.switching_times),
+        *((_sentence(say("change of law")), time) for time in proof.switching_times),
     ]
     yield from ((label, one) for label, one in known if one is not None)
     for key, values in (("costate_of", proof.costate_initial), ("final_of", proof.x_final)):
         for state, one in values.items():
-            yield escape(texts.get("page", key, name=state)), one
+            yield escape(texts.get("page", key, name=_PLACE)).replace(_PLACE, name(state)), one
 
 
 def _table(rows: list[tuple[str, Enclosure]], texts: Texts) -> str:
@@ -89,6 +104,33 @@ def _table(rows: list[tuple[str, Enclosure]], texts: Texts) -> str:
         + f"\n{body}"
         + r" \\ \bottomrule\end{tabular}"
     )
+
+
+_FORMULA = re.compile(
+    r"(?P<number>\b\d+(?:\.\d+)?e[+-]?\d+\b)|(?P<start>(?<=W\(t0\) = )[^;,]+)|(?P<name>W\(t0\)|\bH_uu\b|\bH\b)"
+)
+"""Numbers with powers of ten, and the names of the theory, within sentences."""
+_NAMES = {"W(t0)": "W(t_0)", "H_uu": "H_{uu}", "H": "H"}
+_PLACE = "XFORMULAX"
+"""Holds the place of a formula, or of a name, while the words around it are escaped."""
+_PAGES = re.compile(r"(?<=\d)-(?=\d)")
+
+
+def _typeset(text: str) -> str:
+    """A sentence with its formulas as such."""
+    formulas = [_formula(found) for found in _FORMULA.finditer(text)]
+    around = escape(_FORMULA.sub(_PLACE, text)).split(_PLACE)
+    return around[0] + "".join(f"${formula}${words}" for formula, words in zip(formulas, around[1:], strict=True))
+
+
+def _formula(found: re.Match[str]) -> str:
+    if found["name"]:
+        return _NAMES[found[0]]
+    if found["start"]:
+        latex = re.sub(r"t_(\d+)", r"t_{\1}", found[0]).replace("diag", r"\operatorname{diag}")
+        return latex.replace("lambda / x", r"\lambda / x").replace("*", r"\,")
+    digits, power = found[0].split("e")
+    return f"10^{{{int(power)}}}" if digits == "1" else rf"{digits} \times 10^{{{int(power)}}}"
 
 
 def _number(text: str, point: str) -> str:
@@ -104,4 +146,4 @@ def _number(text: str, point: str) -> str:
 
 def _sentence(text: str) -> str:
     """A text that begins with a capital letter."""
-    return escape(capitalised(text))
+    return _typeset(capitalised(text))

@@ -87,7 +87,8 @@ def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
         tag("tr", *(tag("td", row[k], **look[k]) if k else tag("th", row[k], scope="row") for k in kept))
         for row in body
     ]
-    return scrolled(tag("table", tag("caption", caption), tag("thead", head), tag("tbody", *lines), class_="facts"))
+    title = tag("caption", caption) if caption else Markup()
+    return scrolled(tag("table", title, tag("thead", head), tag("tbody", *lines), class_="facts"))
 
 
 _NUMBER = re.compile(r"[-\N{MINUS SIGN}]?\d[\d.,]*(e[-+]?\d+)?( %)?")
@@ -101,7 +102,7 @@ def _numeric(column: Sequence[str]) -> bool:
 
 def proof(found: Proof, texts: Texts) -> Markup:
     """The section of a page; of an attempt that failed, why, and what was shown until then."""
-    parts = [tag("p", tag("b", message(found.status.value), class_=_CLASSES[found.status]), *_reason(found))]
+    parts = [tag("p", tag("b", message(found.status.value), class_=_CLASSES[found.status]), _reason(found))]
     if found.theorem is not None:
         parts += [
             tag("ol", *(tag("li", message(claim)) for claim in found.theorem.claims)),
@@ -111,15 +112,16 @@ def proof(found: Proof, texts: Texts) -> Markup:
             ),
         ]
     if found.hypotheses:
-        steps = (f"{message(h.name)}: {message(h.shown)}; {message(h.value)}" for h in found.hypotheses)
+        steps = (f"{capitalised(message(h.name))}: {message(h.shown)} ({message(h.value)})." for h in found.hypotheses)
         parts += [tag("h3", texts.get("page", "hypotheses")), tag("ol", *(tag("li", step) for step in steps))]
     if known := _enclosures(found, texts):
         parts.append(table(texts.get("page", "enclosures"), [_head(texts), *known]))
     if found.nodes:
         parts.append(_nodes(found, texts))
     if found.scope:
-        numbers = ", ".join(f"{name} = {number}" for name, number in found.numbers.items())
-        parts += [tag("p", message(found.scope)), tag("p", numbers)]
+        given = [(texts.get("page", "key"), texts.get("page", "value")), *found.numbers.items()]
+        parts += [tag("h3", texts.get("page", "proof_about")), tag("p", message(found.scope))]
+        parts.append(tag("details", tag("summary", texts.get("page", "proof_numbers")), table("", given)))
     return joined(*parts)
 
 
@@ -130,8 +132,8 @@ _CLASSES = {
 }
 
 
-def _reason(found: Proof) -> list[str]:
-    return [f": {message(found.reason)}."] if found.reason else ["."]
+def _reason(found: Proof) -> str:
+    return f": {message(found.reason)}." if found.reason else ""
 
 
 def _head(texts: Texts) -> tuple[str, ...]:
@@ -147,7 +149,7 @@ def _enclosures(found: Proof, texts: Texts) -> list[tuple[str, ...]]:
     known = [
         (texts.get("page", "objective"), found.objective),
         (texts.get("page", "final_time"), found.t_final),
-        *((say("change of law"), time) for time in found.switching_times),
+        *((capitalised(say("change of law")), time) for time in found.switching_times),
         *((texts.get("page", "costate_of", name=name), v) for name, v in found.costate_initial.items()),
         *((texts.get("page", "final_of", name=name), v) for name, v in found.x_final.items()),
     ]

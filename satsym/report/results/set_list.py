@@ -78,7 +78,7 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
     wrong = next((name for name, each in found.files.items() if not (may_hold(name) and each.bytes >= 0)), None)
     if wrong is not None or len(found.files) > MOST_FILES:
         which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
-        raise unusable(path, f"lists files that no set has: {which}", found.command)
+        raise unusable(path, f"lists files that do not belong to a result: {which}", found.command)
     return raw, found.command, found.files
 
 

@@ -167,7 +167,7 @@ def _verified(folder: Path, path: Path, wanted: Collection[str]) -> Found:
     for name, each in listed.items():
         place = next((p for p in (path.parent / name, folder / name) if is_listed(p, each)), None)
         if place is None:
-            raise unusable(folder / name, f"is not the file that {LIST} lists, but missing or another", command)
+            raise unusable(folder / name, f"is not the file that {LIST} lists, but is missing or has changed", command)
         if name in wanted:
             contents[name] = content(place, each)
     return Found(folder, command, raw, listed, contents)

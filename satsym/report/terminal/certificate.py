@@ -41,7 +41,7 @@ _HOLDS = {
     "negative multiplier": "multipliers of path constraints not negative",
     "multiplier on a boundary is negative": "multipliers of path constraints not negative",
     "multiplier at a junction is negative": "multipliers at junctions not negative",
-    "no cheaper competitor": "no cheaper control conceivable",
+    "no cheaper competitor": "no control can be cheaper",
     "no proof of a minimum along singular arcs: not convex": "problem convex, so singular arcs are optimal",
     "not convex": "problem convex, so there is no other minimum",
     "off tangency at junctions": "tangency conditions at junctions met",

@@ -15,11 +15,11 @@ def examination_text(found: Examination, colour: bool) -> str:
     stated = message(found.stated.value) if found.stated else say("no certificate")
     heading = say("<name>, model <model>", name=instance.name, model=spec.name)
     rows = [(one.key, str(one.stated), str(one.found)) for one in found.differences]
-    agreement = say("what result.json says of the answer is what the other files say")
+    agreement = say("result.json agrees with the other files")
     if len(rows) == 1:
-        agreement = say("one number of result.json is not what the other files say")
+        agreement = say("one number in result.json does not agree with the other files")
     elif rows:
-        agreement = say("<number> numbers of result.json are not what the other files say", number=len(rows))
+        agreement = say("<number> numbers in result.json do not agree with the other files", number=len(rows))
     title = instance.title or spec.title
     return joined(
         [

@@ -25,7 +25,7 @@ class Reason(Enum):
     NO_CONVERGENCE = "no convergence in {} steps"
     OUT_OF_DOMAIN = "the minimum violates the domain"
     PATH_ENDS = "the {} ends after {:.0%}"
-    DURATION_ENDS = "the duration could be lengthened only to {:.4g} of {:.4g}"
+    DURATION_ENDS = "the duration could be extended only to {:.4g} of {:.4g}"
     BLOCKED = "relaxed bounds could be tightened only {:.0%} of the way"
     UNSETTLED = (
         "the times at which bounds become active do not settle: "

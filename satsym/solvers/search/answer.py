@@ -42,7 +42,10 @@ def answered(instance: Instance, extremal: Extremal) -> Solution:
         instance=given,
         method="bang-bang" if structure else "collocation",
         status=status,
-        message=f"{structure}estimated error {extremal.step:.0e} on {sum(problem.intervals)} intervals, by the search",
+        message=(
+            f"{structure}estimated error {extremal.step:.0e} on {sum(problem.intervals)} intervals, "
+            "found by the direct search"
+        ),
         objective=extremal.cost,
         times=times,
         x=z[:n],

@@ -173,7 +173,9 @@ def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
     """With what else may lead to an answer where magnitudes cost: singular arcs are recognised without a weight."""
     if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
-    advice = "singular arcs are found only without |u|; state a control for each sign, both from 0 on"
+    advice = (
+        "singular arcs are found only without |u|; use two controls, one for each sign, both with the lower bound 0"
+    )
     return replace(stopped, message=f"{stopped.message}; {advice}")
 
 

@@ -62,7 +62,7 @@ class AboutRest(SpecialCase):
         if not (set(self.velocities) <= set(self.of.coordinates) and kept <= set(symbols_of(self.of.states))):
             yield f"the states must be coordinates of {self.of.name}, their rates, and speeds without a coordinate"
         if self.along:
-            yield "what is linearised about rest is stated by the states that are kept; leave out along"
+            yield "for a linearisation about rest, state the states that are kept; leave out the field `along`"
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
         """Return the bodies' groups of modes, each with its states that are kept and the rates of its coordinates."""
@@ -106,7 +106,9 @@ def second_order(so_far: Derivation) -> Step:
     known = {*symbols_of((*model.states, *model.controls, *model.parameters)), *wanted}
     foreign = sorted({s.name for _, lhs, rhs in kept for s in (lhs - rhs).free_symbols - known})
     if foreign:
-        raise DerivationError(f"{model.name}: its motion is not its own; it depends on {', '.join(foreign)}")
+        raise DerivationError(
+            f"{model.name}: its equations of motion contain other symbols; it depends on {', '.join(foreign)}"
+        )
     equations = tuple(Equation(name, loads, inertia) for name, inertia, loads in kept)
     return Step(
         "small_motions", "first order of Kane's equations", equations, ("motion",), (_rays(so_far, kept, chosen),)

@@ -90,7 +90,7 @@ class Linearised(Derived):
         if missing := [s.name for s in symbols_of(of.states) if s not in self.about]:
             yield f"about which motion? no value for {', '.join(missing)}"
         if kept := [u.name for u in old_controls if u in controls and self.about.get(u, 0) != 0]:
-            yield f"{', '.join(kept)} is not zero along the motion; name its deviation otherwise"
+            yield f"{', '.join(kept)} is not zero along the motion; give its deviation another name"
         if set(self.deviations) != {*states, *new}:
             yield "state one deviation for each state and each new control, no more, no less"
         if self.definitions != of.definitions:

@@ -55,7 +55,7 @@ def special_case(so_far: Derivation) -> Step:
     drifts = [total_derivative(state - value, rates).xreplace(along) for state, value in along.items()]
     proof = identity("holds ever after", drifts)
     if not proof.passed:
-        raise DerivationError(f"{model.name}: the states that are left out do not stay determined by the others")
+        raise DerivationError(f"{model.name}: the other states do not determine those that are left out")
     equations = tuple(Equation(symbol.name, symbol, value) for symbol, value in special.items())
     return Step("special_case", "set of motions", equations, ("original_equations",), (proof,))
 

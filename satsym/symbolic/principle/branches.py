@@ -107,7 +107,7 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
             if slope.has(sp.sign):
                 raise DerivationError(
                     f'{name}: |{u.name}| among control_sets is not supported; state control_set = "box" for all '
-                    "controls, or a control for each sign, both from 0 on"
+                    "controls, or two controls, one for each sign, both with the lower bound 0"
                 )
             if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
@@ -153,7 +153,7 @@ def _turned(
     alone = not all(vanishes(e.xreplace({u: sp.Integer(0)})) for e in pair)
     if alone or beside.kind != "box":
         raise DerivationError(
-            f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; this needs "
+            f"{name}: H is linear in {u.name}, the magnitude of a vector that {angle.name} turns; this needs "
             f'"{u.name}": Box("{u.name}"), and nothing else that {angle.name} turns; or state the components of this '
             "vector as controls in a Ball"
         )
@@ -229,7 +229,7 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
         if part.kind == "free":
             raise DerivationError(f"{name}: H is linear in {controls}, which nothing limits; state a Box or a Ball")
         if part.kind != "box" and len(slopes) == 1:
-            raise DerivationError(f"{name}: H is linear in {controls} alone, which does not turn; state a Box")
+            raise DerivationError(f"{name}: H is linear in {controls} alone, whose direction is fixed; state a Box")
         return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
     refuse_singular(name, part.kind, part.symbols, rows)
     if part.kind == "box" and rows.is_diagonal() and any(_falls(name, side * row) for row in rows.diagonal()):

@@ -92,7 +92,7 @@ def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], he
         raise DerivationError(f"{name}: {message}")
     if linear and kind in ("ball", "annulus"):
         refuse_unequal(hessian)
-    message = f"H_uu of {names} is singular, so H_u = 0 does not determine them; weigh the square of each"
+    message = f"H_uu of {names} is singular, so H_u = 0 does not determine them; give the square of each a weight"
     raise DerivationError(f"{name}: {message}")
 
 

@@ -202,5 +202,5 @@ def unsigned(problem: Problem, curvatures: sp.Matrix) -> str:
     symbols = zip(declared, symbols_of(declared), strict=True)
     found = [v.symbol for v, symbol in symbols if curvatures.has(symbol) and not symbol.is_positive]
     if not found:
-        return "weigh the square of each control"
+        return "give the square of each control a weight"
     return f'declare positive {", ".join(found)}: Variable("{found[0]}", ..., positive=True)'

@@ -50,5 +50,5 @@ def refuse(so_far: Derivation) -> None:
         raise DerivationError(f"{message}derived; state it as a bound of that control", ("path_constraints",))
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
-        message = "beside |u| they are not derived; state a control for each sign, both from 0 on"
+        message = "beside |u| they are not derived; use two controls, one for each sign, both with the lower bound 0"
         raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))

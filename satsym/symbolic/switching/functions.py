@@ -76,8 +76,8 @@ def refuse_magnitudes(so_far: Derivation) -> None:
     if magnitude := next((a for a in stated if any(rate.has(a) for rate in rates)), None):
         raise DerivationError(
             f"{so_far.name}: {magnitude} in the equations of motion is supported only where cost and motion are sums "
-            'of controls and their magnitudes, with control_set = "box"; state a control for each sign, both from 0 '
-            "on, with their difference in its place and their sum for its magnitude"
+            'of controls and their magnitudes, with control_set = "box"; use two controls, one '
+            "for each sign, both with the lower bound 0, with their difference in its place and their sum for its magnitude"
         )
 
 
@@ -302,7 +302,7 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
     """Refuse what no law here minimises."""
     if problem.control_set != "box":
         raise DerivationError(
-            f"{name}: H is linear in the controls, so that its minimum is where they end; this needs "
+            f"{name}: H is linear in the controls, so that its minimum is at their bounds; this needs "
             f'control_set = "box", not "{problem.control_set}"'
         )
     stands_for = s.magnitudes(controls)
@@ -312,7 +312,7 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
         if not weight.is_nonnegative:
             raise DerivationError(
                 f"{name}: the weight of |{u.name}| in the cost, {weight}, may be negative, which is not supported; "
-                "declare positive what it is made of"
+                "declare its factors positive"
             )
         if weight == 0 and all(vanishes(sp.diff(e, u)) for e in (cost, *f)):
             raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")

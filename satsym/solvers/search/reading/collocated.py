@@ -23,7 +23,7 @@ def exact(instance: Instance, at: Motion) -> Solution | None:
     found = two_point.solve(replace(guessing(instance, at.times, at.x, at.lam), work=WORK))
     if not found.status.answered:
         return None
-    return replace(found, instance=instance, message=f"{found.message}, by the search")
+    return replace(found, instance=instance, message=f"{found.message}, found by the direct search")
 
 
 def guessing(instance: Instance, times: Array, x: Array, lam: Array) -> Instance:

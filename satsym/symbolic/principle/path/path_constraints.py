@@ -162,7 +162,9 @@ def junction_conditions(so_far: Derivation) -> Step | None:
             moved, stays = _moved_by_jump(so_far, found, before)
             kept += stays
             if all(vanishes(m) for m in moved):
-                raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
+                raise DerivationError(
+                    f"{so_far.name}: path_constraints {found.name}: the jump of costates is not determined"
+                )
             equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
             continue
         kept += _moved_by_jump(so_far, found, before)[1]
@@ -225,7 +227,7 @@ def _differentiated(so_far: Derivation, name: str) -> Constraint:
         if rates[-1].free_symbols & controls:
             return Constraint(name, tuple(rates))
     if _uncontrolled(rates[-1], motion, controls):
-        raise DerivationError(f"{what}: no control influences it, so nothing can keep it", ("path_constraints",))
+        raise DerivationError(f"{what}: no control influences it, so it cannot be enforced", ("path_constraints",))
     raise DerivationError(
         f"{what}: its order is more than {pn.HIGHEST}, for which no extremals are found", ("path_constraints",)
     )
@@ -246,7 +248,7 @@ def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...
     if any(e.free_symbols & set(controls) for e in effect):
         raise DerivationError(
             f"{so_far.name}: path_constraints {found.name}: the controls enter {'its rate' if found.order else 'it'} "
-            "otherwise than linearly, for which the boundary control is not derived",
+            "nonlinearly, for which the boundary control is not derived",
             ("path_constraints",),
         )
     return effect, found.rates[-1].xreplace(dict.fromkeys(controls, sp.Integer(0)))
