@@ -58,7 +58,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Check:
-    """A measured condition of optimality, with the limit it must keep."""
+    """A measured condition of optimality, with its limit."""
 
     name: str
     value: float
@@ -85,7 +85,7 @@ class Kind(str, Enum):
 
 @dataclass(frozen=True)
 class Competitors:
-    """What competitors of one kind came to.
+    """The competitors of one kind.
 
     Attributes
     ----------
@@ -94,9 +94,9 @@ class Competitors:
     tried
         How many were looked for: ``solved`` and ``unanswered`` together.
     solved
-        How many turned out to be admissible motions that arrive, the solution itself found again among them.
+        How many led to an admissible motion that reaches the end; finding the solution itself again counts.
     cheapest
-        The least cost among these; NaN without any.
+        The lowest cost among these; NaN if there are none.
     """
 
     kind: Kind
@@ -106,7 +106,7 @@ class Competitors:
 
     @property
     def unanswered(self) -> int:
-        """How many led to nothing that arrives."""
+        """How many led to no motion that reaches the end."""
         return self.tried - self.solved
 
 
@@ -117,13 +117,13 @@ class Certificate:
     Attributes
     ----------
     verdict
-        What it comes to.
+        The verdict.
     boundary_residual
-        Largest residual at the right end of the flow that starts from the initial costates, relative.
+        Largest relative residual of the conditions at the end, after integrating from the initial costates.
     dynamics_defect
-        Largest distance of the solver's trajectory from that flow, relative.
+        Largest relative distance of the solver's trajectory from the integrated one.
     stationarity
-        Largest difference of the control from the one that minimises H, relative.
+        Largest relative difference of the control from the one that minimises H.
     hamiltonian_drift
         Largest change of H along the flow, relative; ``None`` where time is explicit.
     legendre_clebsch
@@ -131,16 +131,16 @@ class Certificate:
     conjugate_time
         The first one, or ``None``.
     checks
-        All that was measured, with limits.
+        All measured conditions, with their limits.
     competitors
-        What the solution was compared with, kind by kind.
+        The competing solutions, kind by kind.
     not_checked
-        Kinds of competitors that the problem allows and nobody tried, of which none was solved, or for which time was
-        up.
+        Kinds of competitors that the problem allows but that were not compared: not tried, none of them solved, or time
+        was up.
     scope
-        Whether the cost is the least near by, or of all admissible motions.
+        Whether the minimum is local or global.
     because
-        The theorem that carries the verdict; where none does, the first condition that was not shown.
+        The theorem on which the verdict rests; without one, the first condition that was not shown.
     """
 
     verdict: Verdict

@@ -68,7 +68,7 @@ class Analysis(_Said):
     given
         What was analysed.
     linear, orbit
-        The linear analysis and that of the orbit, as floors below hand them back; one may be missing.
+        The linear analysis and that of the orbit, as plain data; one may be missing.
     derivation
         Of the model, where it is at hand.
     """
@@ -87,7 +87,7 @@ class Analysis(_Said):
 
     @cached_property
     def attitudes(self) -> Attitudes | None:
-        """All equilibria, of a model that is one attitude in orbit."""
+        """All equilibria, if the model is the attitude of a satellite in orbit."""
         from satsym.report.results.linear import attitudes
 
         return attitudes(self.given, self.derivation.derived if self.derivation else None)
@@ -103,14 +103,14 @@ class Analysis(_Said):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Regulator(_Said):
-    """The linear feedback u = -K x that costs least.
+    """The linear feedback u = -K x of minimum cost.
 
     Attributes
     ----------
     given
         What it was designed for.
     design
-        As the floor below hands it back.
+        The design, as plain data.
     """
 
     given: Case | Kernels
@@ -142,7 +142,7 @@ class Regulator(_Said):
 @single_threaded()
 @in_one_line
 def analyse(subject: Subject) -> Analysis:
-    """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
+    """Analyse a model near its reference or an equilibrium, or an orbit about a centre.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def analyse(subject: Subject) -> Analysis:
 @single_threaded()
 @in_one_line
 def lqr(subject: Subject) -> Regulator:
-    """Find the linear feedback that costs least.
+    """Find the linear feedback of minimum cost.
 
     Parameters
     ----------

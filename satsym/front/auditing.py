@@ -23,7 +23,7 @@ from satsym.report.terminal.audit import checked_text
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Audit:
-    """What documents print, judged row by row.
+    """Printed documents, judged row by row.
 
     Attributes
     ----------

@@ -60,7 +60,7 @@ class Equation:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Derivation:
-    """What follows from a problem, or a model without a cost, every step of it checked.
+    """The derivation of a problem, or of a model without a cost, with every step checked.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Derivation:
 
     @cached_property
     def kernels(self) -> Kernels:
-        """The functions that are generated from it, each verified against its expression; in memory alone."""
+        """The generated functions, each compared with its expression; they are kept in memory only."""
         return self._generated[1]
 
     @cached_property

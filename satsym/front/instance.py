@@ -30,7 +30,7 @@ _NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
 
 @in_one_line
 def load(name_or_path: str | Path) -> Instance:
-    """An instance from a file.
+    """Load an instance from a file.
 
     Parameters
     ----------
@@ -52,9 +52,9 @@ class Instance:
     Parameters
     ----------
     written
-        What was asked, as tables.
+        The tables of the instance file.
     case
-        The same, checked against the model; what solvers take.
+        The same, checked against the model, as the solvers use it.
     """
 
     written: Written
@@ -62,7 +62,7 @@ class Instance:
 
     @classmethod
     def of_written(cls, written: Written) -> Instance:
-        """The instance that tables describe, once they are found to be sound."""
+        """Return the instance that these tables describe, after checking them."""
         return cls(written, written.instance())
 
     @classmethod
@@ -102,7 +102,7 @@ class Instance:
         Raises
         ------
         BadInput
-            With the line that an instance file would get.
+            With the same line as for an instance file.
 
         Examples
         --------
@@ -146,7 +146,7 @@ class Instance:
 
     @property
     def name(self) -> str:
-        """What it is called in results."""
+        """Its name in results."""
         return self.case.name
 
     @property
@@ -166,11 +166,11 @@ class Instance:
         return instance_object(self.case)
 
     def to_toml(self) -> str:
-        """The text of an instance file that says the same."""
+        """The text of an instance file for the same instance."""
         return tables.toml(self.written.tree)
 
     def repeated(self, compiled: bool | None = None) -> Repeated:
-        """Something that solves it again and again, for other initial states or parameters, in milliseconds.
+        """Return an object that solves the instance repeatedly, for other initial states or parameters.
 
         Parameters
         ----------

@@ -155,11 +155,11 @@ class Result(ABC, Generic[Found]):
 
     @cached_property
     def u(self) -> Curve:
-        """Controls: those that the states and costates ask for at that time; where they jump, those from then on."""
+        """Controls: the optimal ones for the states and costates at that time; at a jump, the values after it."""
         return self._curve("u", self.found.u, self._spec.control_names, self._controls)
 
     def plot(self, folder: str | Path | None = None, formats: Sequence[str] = ("png",)) -> Pictures:
-        """Pictures by name, which notebooks show; written into a folder where one is given.
+        """Draw the pictures. Notebooks show them; if a folder is given, they are written into it.
 
         Raises
         ------
@@ -187,19 +187,19 @@ class Result(ABC, Generic[Found]):
     @classmethod
     @in_one_line
     def load(cls, folder: str | Path, instance: Instance | str | Path | None = None) -> Self:
-        """What was saved in a folder, by :meth:`save` or by the command line.
+        """Load what was saved in a folder, by :meth:`save` or by the command line.
 
         Parameters
         ----------
         folder
             Where.
         instance
-            What it is of; by default the instance that was saved with it, or the shipped one of its name.
+            The instance of the result; by default the one that was saved with it, or the shipped one of its name.
 
         Raises
         ------
         BadInput
-            If there is no whole result of this kind, or it is of another instance.
+            If there is no complete result of this kind, or if it belongs to another instance.
         """
         case, found = saved.read(Path(folder), instance)
         if isinstance(found, Solution) != (cls._command == "solve"):

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 
 class Solution(Result[solution.Solution]):
-    """An optimum, with its certificate; or why there is none."""
+    """A solution with its certificate, or the reason why there is none."""
 
     _command: ClassVar[str] = "solve"
 
     @property
     def objective(self) -> float:
-        """The objective J in the sense of the model's author, that is the cost unless it is maximised; NaN for none."""
+        """The objective J as the model states it: the cost, or what is maximised; NaN without a solution."""
         return float(self._spec.objective(self.found.objective))
 
     @property
@@ -43,7 +43,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def certificate(self) -> Certificate | None:
-        """What was measured of the answer, if there is one."""
+        """The certificate of the solution, if there is one."""
         return self.found.certificate
 
     @property
@@ -68,7 +68,7 @@ class Solution(Result[solution.Solution]):
 
     @cached_property
     def lam(self) -> Curve:
-        """Costates, by the names of their states; over time as ``x`` and ``u``."""
+        """Costates over time, by the names of their states."""
         n = len(self.found.x)
         return self._curve("lam", self.found.lam, self._spec.state_names, lambda t: self._motion[0](t)[n:])
 
@@ -77,7 +77,7 @@ class Solution(Result[solution.Solution]):
         return solution_object(self.found)
 
     def prove(self, digits: int = 20) -> Proof:
-        """Prove it, as :func:`satsym.prove` does, with what was found."""
+        """Prove that this solution is a minimum, as :func:`satsym.prove` does."""
         from satsym.front.proving import proved
 
         return proved(self.instance.case, lambda: self.found, digits)

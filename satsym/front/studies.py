@@ -55,7 +55,7 @@ class Study:
         return self.columns[name]
 
     def plot(self, formats: str | Sequence[str] = "png", titled: bool = True) -> list[Path]:
-        """Draw it into its folder; the pictures."""
+        """Draw the pictures into its folder, and return them."""
         return draw(self.folder, Look.of(formats, titled))[1]
 
     def to_json(self) -> str:

@@ -17,11 +17,7 @@ from satsym.solution import Invariant, Simulation
 
 
 class Trajectory(Result[Simulation]):
-    """A simulated motion.
-
-    A law is not kept with what it did. Between nodes its controls are interpolated, unless they are constant: splines
-    where they are smooth, and where they jump as well as the steps tell when.
-    """
+    """A simulated motion. The control law itself is not stored: between nodes, controls are interpolated."""
 
     _command: ClassVar[str] = "simulate"
 
@@ -32,7 +28,7 @@ class Trajectory(Result[Simulation]):
 
     @property
     def invariants(self) -> dict[str, Invariant]:
-        """Conserved quantities, by name: their initial values, and how far they drift."""
+        """Conserved quantities, by name: their initial values and their drift."""
         return self.found.invariants
 
     @property
@@ -84,7 +80,7 @@ def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Tr
 
 @in_one_line
 def export(result: Solution | Trajectory, kind: str, path: str | Path | None = None) -> str:
-    """A motion about a central body as other programs read it.
+    """Export a motion about a central body for other programs.
 
     Parameters
     ----------
@@ -103,7 +99,7 @@ def export(result: Solution | Trajectory, kind: str, path: str | Path | None = N
     Raises
     ------
     BadInput
-        If it cannot be placed in the sky, or the library that writes the format is not installed: with one line that
+        If it has no usable table [orbit], or the library that writes the format is not installed: with one line that
         says what, where and what to do.
 
     Examples

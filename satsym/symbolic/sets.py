@@ -27,7 +27,7 @@ class AdmissibleSet:
 
 
 class Free(AdmissibleSet):
-    """Controls that nothing limits."""
+    """Controls without bounds."""
 
     kind = "free"
 
@@ -51,6 +51,6 @@ class Annulus(AdmissibleSet):
 
 
 class Angle(AdmissibleSet):
-    """One control that is a direction in a plane, any of them."""
+    """One control that is an angle in a plane, without bounds."""
 
     kind = "angle"

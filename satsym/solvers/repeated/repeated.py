@@ -60,7 +60,7 @@ class Repeated:
     Attributes
     ----------
     answer
-        The last one.
+        The last solution.
 
     Raises
     ------
@@ -113,7 +113,7 @@ class Repeated:
         initial, parameters
             In the model's order and units; the instance's where they are left out.
         cold
-            Whether to leave the last answer aside.
+            Whether to start cold instead of from the last answer.
 
         Returns
         -------
@@ -140,7 +140,7 @@ class Repeated:
         return self.answer
 
     def branched(self) -> Repeated:
-        """A second one that begins with the last answer of this one, and then goes its own way."""
+        """Return a copy that starts from the last answer of this one and is independent from then on."""
         other = copy(self)
         other._means = copy(self._means)
         return other
@@ -163,7 +163,7 @@ class Repeated:
             return without_numbers(case, error), Origin.COLD_START
 
     def solution(self, answer: Answer) -> Solution:
-        """All of an answer, with times of switching, as other solvers give it; takes as long as they do.
+        """Return a full solution for an answer, with switching times; this takes as long as solving it once.
 
         Raises
         ------

@@ -77,7 +77,8 @@ def refuse_magnitudes(so_far: Derivation) -> None:
         raise DerivationError(
             f"{so_far.name}: {magnitude} in the equations of motion is supported only where cost and motion are sums "
             'of controls and their magnitudes, with control_set = "box"; use two controls, one '
-            "for each sign, both with the lower bound 0, with their difference in its place and their sum for its magnitude"
+            "for each sign, both with the lower bound 0, with their difference in its place and their sum for its "
+            "magnitude"
         )
 
 
