@@ -143,7 +143,9 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
     wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
     diagonal = [row for row in rows if not isinstance(row, Sequence)]
     if len(rows) != size or len(diagonal) not in (0, size):
-        raise BadInput(f"[lqr] {name}: it has {len(rows)} entries of the wrong number or mixed kinds; {wanted}")
+        raise BadInput(
+            f"[lqr] {name}: it has {len(rows)} entries, which are too many, too few or of mixed kinds; {wanted}"
+        )
     if diagonal:
         return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))
     matrix = tuple(tuple(row) for row in rows if isinstance(row, Sequence))

@@ -45,9 +45,9 @@ INTRODUCTION = """# Known optima
 This table, made by `make bench-optima`, has the shipped instances whose optimum is known. Each is solved from a cold
 start, without an initial guess. The *independent* optimum was found without satsym; how is said below the table.
 *Direct* is CasADi's collocation with Ipopt for the same problem, on the first mesh with a relative error of at most
-1e-7 in the objective; the time for coarser meshes is not counted. It certifies nothing, so *ratio* is its time
-divided by ours without the certificate, unless the certificate led to the answer. Times are seconds of processor
-time: the minimum of three runs after a warm-up run, so that loading libraries is not counted.
+1e-7 in the objective; the time for coarser meshes is not counted. *Ratio* is its time divided by ours. As it
+certifies nothing, our time is taken without the certificate, except where the certificate found the answer. Times are
+seconds of processor time: the minimum of three runs after a warm-up run, so that loading libraries is not counted.
 
 """
 HEADS = tuple("instance source independent satsym difference verdict time certified direct ratio".split())

@@ -92,7 +92,7 @@ MET_AT_NONE = ("after the start", "<when> that is given")
 WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
 TOO_EARLY = ("not after", "too far from")
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
-MISSHAPEN = ("it has <n> entries of the wrong number or mixed kinds", "row <i> has <n> numbers")
+MISSHAPEN = ("it has <n> entries, which are too many, too few or of mixed kinds", "row <i> has <n> numbers")
 UNSUPPORTED = (
     *("", ", an unevaluated derivative", ", which is not evaluated", ", an unknown function"),
     *(", a value at another time", ", whose conditions do not cover every time", ", whose derivatives jump"),

@@ -49,7 +49,7 @@ def in_words(solution: Solution, text: str) -> str:
     arcs = listed[0] if len(each) == 1 else "; ".join(map(" ".join, zip(names, listed, strict=True)))
     rest = text[found.end() :]
     if ends := _FOUND.fullmatch(rest):
-        rest = say("residual <residual>, from <origin>", residual=ends[1], origin=message(ends[2]))
+        rest = say("residual <residual>, starting from <origin>", residual=ends[1], origin=message(ends[2]))
     else:
         rest = message(rest)
     return say("arcs: <arcs>; <rest>", arcs=arcs, rest=rest) if rest else say("arcs: <arcs>", arcs=arcs)

@@ -111,7 +111,7 @@ class Repeated:
         Parameters
         ----------
         initial, parameters
-            In the model's order and units; the instance's where they are left out.
+            In the order and units of the model; by default those of the instance.
         cold
             Whether to start cold instead of from the last answer.
 
