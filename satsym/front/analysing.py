@@ -70,7 +70,7 @@ class Analysis(_Said):
     linear, orbit
         The linear analysis and that of the orbit, as plain data; one may be missing.
     derivation
-        Of the model, where it is at hand.
+        The derivation of the model, if it is available.
     """
 
     given: Case | Kernels

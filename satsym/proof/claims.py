@@ -66,10 +66,13 @@ def of_signs(shown: Shown) -> Hypothesis:
     """Say that laws are the best ones along their arcs."""
     if not shown.conditions:
         return Hypothesis("no control reaches a bound", "there are no bounds", "nothing to show")
+    changes = f"{shown.conditions} signs, {shown.crossings} changes of law"
+    if shown.crossings == 1:
+        changes = f"{shown.conditions} signs, 1 change of law"
     return Hypothesis(
         "the law of each arc holds on the whole arc, and each change of law is crossed with a nonzero slope",
         "signs of Taylor series on every step, by bisection",
-        f"{shown.conditions} signs, {shown.crossings} change{'s' * (shown.crossings != 1)} of law",
+        changes,
     )
 
 
@@ -107,8 +110,10 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
             raise NotProved(f"{called} is not shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
     given = sum(i < statement.own for i in statement.targets)
-    counted = (given, "states given"), (statement.own - given, "states free"), (ranges, "states in a range")
-    parts = [f"{count} {what}" for count, what in counted if count]
+    free = statement.own - given
+    parts = [f"{given} states given"] if given else []
+    parts += [f"{free} states free"] if free else []
+    parts += [f"{ranges} states in a range"] if ranges else []
     if spec.multipliers:
         parts += [f"{len(statement.active)} active constraints", f"{len(spec.multipliers)} constraints in all"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]

@@ -151,7 +151,7 @@ def test_the_command_says_what_differs(folders: dict[str, Path], tmp_path: Path,
     (folder / "result.json").write_text(json.dumps(result))
     assert main(["certify", str(folder)]) == 5
     out = capsys.readouterr().out
-    assert "one number of result.json is not" in out
+    assert "one number in result.json does not agree" in out
     assert "x_final.x" in out
 
 

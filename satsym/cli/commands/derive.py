@@ -50,9 +50,9 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
 
     Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py, NAME.tex and
     NAME.derivation.json for each problem; the last has every equation, and audits read it. Every step is checked by
-    machine, and so is every generated function, before anything is written. What neither changed itself nor was
-    derived by code that changed is left alone; --check derives all of it. NAME.tex is English whatever --lang says;
-    `satsym latex NAME --lang id` writes the Indonesian one.
+    machine, and so is every generated function, before anything is written. A file is derived again only if it, or the
+    code that derives, has changed; --check derives all of it. NAME.tex is English whatever --lang says; `satsym latex
+    NAME --lang id` writes the Indonesian one.
     """
     from satsym import source_files
     from satsym.report import artefacts

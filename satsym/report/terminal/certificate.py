@@ -62,6 +62,32 @@ _HOLDS = {
 }
 """A check -> what is so where it passes; checks that can only fail are not here."""
 
+_FAILS = {
+    "another minimiser of H stays as good": "another minimiser of H remains equally good",
+    "boundary residual": "conditions at both ends not met",
+    "compared with nothing: no competitor was solved": "no competing solution was found",
+    "cost": "cost not confirmed by integration",
+    "correction of the nodes": "nodes off the recomputed trajectory",
+    "derivative of the cost by the times of points": "cost not stationary in the times of points on the way",
+    "dynamics defect": "equations of motion not satisfied",
+    "gaps where the flow begins anew": "trajectory not continuous where integration restarts",
+    "hamiltonian drift": "Hamiltonian not constant",
+    "junction defect": "arcs joined with gaps",
+    "kernels contradict each other": "generated kernels do not agree",
+    "limit of the end violated": "limits at the end violated",
+    "minimisers of H that a jump joins stay as good": "minimisers of H equally good on either side of a jump",
+    "multiplier of a limit of the end vanishes": "a multiplier of the limits at the end is zero",
+    "negative multiplier of a limit of the end": "a multiplier of the limits at the end is negative",
+    "no proof of a minimum along singular arcs: not convex": "minimum along singular arcs not proved",
+    "node defect": "equations of motion not satisfied between nodes",
+    "not strict: the same switches later cost the same": "minimum not strict: the same arcs later cost the same",
+    "off tangency at junctions": "tangency conditions at junctions not met",
+    "stationarity": "control does not minimise the Hamiltonian",
+    "switching function vanishes on an arc": "switching function zero within an arc",
+    "width of the cost interval": "cost interval too wide",
+}
+"""A check -> what is wrong where it fails; all others are named by what is wrong."""
+
 _NAMED = {
     re.compile(r"cheaper by: (.*)"): "nothing cheaper: <said_kind>",
     re.compile(r"transversality at the start: (.*)"): "transversality condition at the start holds: <said_kind>",
@@ -151,7 +177,7 @@ def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
 def statement(check: Check) -> str:
     """What a check says: what holds where it passed, else what is wrong."""
     if not check.passed:
-        return message(check.name)
+        return say(_FAILS[check.name]) if check.name in _FAILS else message(check.name)
     for pattern, text in _NAMED.items():
         if found := pattern.fullmatch(check.name):
             return say(text, said_kind=message(found[1]))
