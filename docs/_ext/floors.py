@@ -15,13 +15,13 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PICTURE = ROOT / "docs" / "_static" / "architecture.svg"
 
-WIDTH, FLOOR, GAP, LEFT, MARGIN = 900, 46, 8, 620, 12
+WIDTH, FLOOR, GAP, LEFT, MARGIN = 900, 66, 8, 640, 12
 """Width of the picture, height of a floor, gap between floors, width of the tower, and margin, in pixels."""
-CHARACTERS, NAMES = 105, 68
-"""Most characters of a line that says what a floor is for, and of a line of names."""
+CHARACTERS, NAMES, BESIDE = 74, 62, 25
+"""Most characters of a line that says what a floor is for, of a line of names, and of a line beside the tower."""
 STYLE = (
     "text{font-family:Helvetica,Arial,sans-serif;fill:#1b1b1b}"
-    ".name{font-size:15px;font-weight:bold}.about{font-size:11.5px}.note{font-size:12px;fill:#444}"
+    ".name{font-size:16px;font-weight:bold}.about{font-size:14px}.note{font-size:14px;fill:#444}"
 )
 FILLS = {"tower": "#dbe9f6", "side": "#fbe3cf"}
 
@@ -71,9 +71,10 @@ def _floor(top: int, rooms: list[str], root: Path) -> Iterator[str]:
     yield f'<rect x="{MARGIN}" y="{top}" width="{LEFT}" height="{FLOOR}" rx="5" fill="{FILLS["tower"]}"/>'
     lines = [("name", line) for line in textwrap.wrap(", ".join(rooms), NAMES)]
     if len(rooms) == 1:
-        lines.append(("about", textwrap.shorten(purpose(rooms[0], root), CHARACTERS, placeholder=" ...")))
+        lines += [("about", line) for line in textwrap.wrap(purpose(rooms[0], root), CHARACTERS)[:2]]
+    first = top + FLOOR // 2 + 5 - 9 * (len(lines) - 1)
     for k, (kind, line) in enumerate(lines):
-        at = top + (19 + 19 * k if len(lines) > 1 else 29)
+        at = first + 18 * k
         yield f'<text class="{kind}" x="{MARGIN + 10}" y="{at}">{escape(line)}</text>'
 
 
@@ -84,10 +85,10 @@ def _sides(height: int, root: Path) -> Iterator[str]:
         top = MARGIN + k * (tall + GAP)
         yield f'<rect x="{left}" y="{top}" width="{wide}" height="{tall}" rx="5" fill="{FILLS["side"]}"/>'
         yield f'<text class="name" x="{left + 10}" y="{top + 22}">{room}</text>'
-        lines = textwrap.wrap(purpose(room, root), 36)
+        lines = textwrap.wrap(purpose(room, root), BESIDE)
         for j, line in enumerate(lines):
             yield f'<text class="about" x="{left + 10}" y="{top + 44 + 17 * j}">{escape(line)}</text>'
-        called = textwrap.wrap("called by " + ", ".join(callers(room, root)) + " only", 36)
+        called = textwrap.wrap("called by " + ", ".join(callers(room, root)) + " only", BESIDE)
         for j, line in enumerate(called):
             at = top + 58 + 17 * (len(lines) + j)
             yield f'<text class="note" x="{left + 10}" y="{at}">{escape(line)}</text>'

@@ -61,7 +61,8 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
             assert proof.theorem
             assert proof.objective
             assert proof.t_final
-            cells = [name, proof.objective.text, proof.t_final.text, proof.theorem.name, f"{seconds:.1f}"]
+            known = [one.text.replace("+/-", "\N{PLUS-MINUS SIGN}") for one in (proof.objective, proof.t_final)]
+            cells = [name, *known, proof.theorem.name, f"{seconds:.1f}"]
             lines.append("| " + " | ".join(cells) + " |")
     lines += ["", "Not proved, with the step that fails, or beyond what is proved here, with the feature:", ""]
     lines += ["| instance | status | reason |", "| --- | --- | --- |"]
