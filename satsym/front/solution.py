@@ -18,7 +18,7 @@ from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
 from satsym.report.results.objects import solution_object
 from satsym.report.terminal.certificate import condition_rows, verdict_text
-from satsym.report.terminal.solution import solution_text, state_rows
+from satsym.report.terminal.solution import boundary, solution_text, state_rows
 from satsym.solution import Certificate, Event, Progress
 from satsym.solvers.constrained.structure import stated_arcs
 
@@ -114,7 +114,7 @@ class Solution(Result[solution.Solution]):
             "objective": said["objective"],
             "final time": said["t_final"],
             "method": said["method"],
-            "boundary type": said["boundary_type"],
+            "boundary type": boundary(instance),
             **{f"switching times of {name}": times for name, times in self.switching_times.items() if times},
             "certificate": verdict_text(found, self._spec.maximise) if found else None,
         }

@@ -12,7 +12,7 @@ from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.arcs import in_words, rows_of_arcs
 from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
-from satsym.report.terminal.solution import control_rows, state_rows
+from satsym.report.terminal.solution import boundary, control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
 from satsym.solution import Certificate, Solution
@@ -38,7 +38,7 @@ def facts(solution: Solution, texts: Texts) -> Markup:
         "message": in_words(solution, solution.message),
         "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
         "final_time": span,
-        "boundary": str(instance.boundary_type),
+        "boundary": boundary(instance),
         "method": f"{solution.method} ({solution.iterations})",
     }
     said = {texts.get("page", key): value.strip() for key, value in known.items() if value}

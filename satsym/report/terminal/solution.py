@@ -36,7 +36,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         *_interval(solution),
         *_found(instance, unit),
         (say("final time"), f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
-        (say("boundary type"), _boundary(instance)),
+        (say("boundary type"), boundary(instance)),
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
@@ -105,7 +105,7 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
     return joined([text.splitlines(), *lines])
 
 
-def _boundary(instance: Instance) -> str:
+def boundary(instance: Instance) -> str:
     """What the ends are, in words; ranges are no given states, though the answer may lie on their ends."""
     kind = instance.boundary_type
     end = _END[kind]
