@@ -116,7 +116,7 @@ class LqrTable(_Table, frozen=True):
     allowed: Annotated[
         dict[str, Quantity],
         Key(
-            "allowed deviation, which has weight one, in place of Q and R",
+            "allowed deviation d, which gives the weight 1/d^2, in place of Q and R",
             REGULATING,
             "the model's",
             "STATE or CONTROL",
@@ -153,7 +153,7 @@ class GuessTable(_Table, frozen=True):
     costate: Annotated[
         dict[str, Series], Key("the same for costates; plain numbers", SOLVING, "cost by state", "STATE")
     ] = {}
-    control: Annotated[dict[str, Series], Key("likewise", SOLVING, "the model's", "CONTROL")] = {}
+    control: Annotated[dict[str, Series], Key("the same for controls", SOLVING, "the model's", "CONTROL")] = {}
     parameter: Annotated[
         dict[str, Quantity], Key("initial guess of a free parameter", SOLVING, "the model's", "PARAMETER")
     ] = {}

@@ -104,7 +104,7 @@ class _Point:
         a, b = [value(v) for v in a], [value(v) for v in b]
         size = max((float(abs(v).mid()) for v in (*a, *b)), default=1.0)
         if not all(abs(v - w) <= _agreed() * max(size, 1e-30) for v, w in zip(a, b, strict=True)):
-            raise NotProved(f"the kernel contradicts its own motion and costs: {what}")
+            raise NotProved(f"the generated module contradicts its own motion and costs: {what}")
 
     def motion(self) -> None:
         """Rates are (f, -H_x) under the law's controls."""

@@ -112,7 +112,10 @@ def proof(found: Proof, texts: Texts) -> Markup:
             ),
         ]
     if found.hypotheses:
-        steps = (f"{capitalised(message(h.name))}: {message(h.shown)} ({message(h.value)})." for h in found.hypotheses)
+        steps = (
+            decimal(f"{capitalised(message(h.name))}: {message(h.shown)} ({message(h.value)}).")
+            for h in found.hypotheses
+        )
         parts += [tag("h3", texts.get("page", "hypotheses")), tag("ol", *(tag("li", step) for step in steps))]
     if known := _enclosures(found, texts):
         parts.append(table(texts.get("page", "enclosures"), [_head(texts), *known]))
@@ -162,5 +165,10 @@ def _nodes(found: Proof, texts: Texts) -> Markup:
     for node in found.nodes:
         rows = [_row(name, one) for name, one in node.x.items()]
         rows += [_row(texts.get("page", "costate", name=name), one) for name, one in node.costates.items()]
-        parts.append(table(texts.get("page", "at_time", time=decimal(node.t.text)), [_head(texts), *rows]))
+        parts.append(
+            table(
+                texts.get("page", "at_time", time=decimal(node.t.text.replace("+/-", "\N{PLUS-MINUS SIGN}"))),
+                [_head(texts), *rows],
+            )
+        )
     return tag("details", tag("summary", texts.get("page", "along")), *parts)

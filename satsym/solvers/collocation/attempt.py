@@ -17,7 +17,7 @@ class Reason(Enum):
     EXTREMAL = "extremal"
     """Nobody asked whether it is a minimum."""
     KNOWN = "led to what is known"
-    OUTGROWN = "the curve outgrew its mesh"
+    OUTGROWN = "the solution needs more mesh intervals than allowed"
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"
     TIME_UP = "time was up"
