@@ -170,7 +170,7 @@ _size_option = click.option(
     "--size",
     metavar="SIZE",
     type=click.Choice(tuple(SIZES)),
-    help=f"What they are for: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
+    help=f"Size of the pictures: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
 )
 _title_option = click.option(
     "--no-title", "untitled", is_flag=True, help="Leave out the titles, for pictures that have a caption."

@@ -32,8 +32,8 @@ Examples:
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
 @place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
 @place_option("--keep", metavar="FILE", help="With --text: write what was found there, to be kept with the ledger.")
-@click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
-@click.option("--code", is_flag=True, help="Also give what claims were tested as, and what was measured, as code.")
+@click.option("--rows", is_flag=True, help="After the findings, print every row that is not fully confirmed.")
+@click.option("--code", is_flag=True, help="Also print, as code, what was tested and what was measured.")
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
 def audit(
     ledgers: tuple[str, ...],
