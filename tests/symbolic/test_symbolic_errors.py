@@ -380,4 +380,4 @@ def test_roots_of_states_need_positive_states() -> None:
         return problem(model, running_cost=u1**2, control_set="box")
 
     assert derive(tank(level, positive)).steps
-    assert "declare what must be positive so" in complaint(tank(STATES[0], q1))
+    assert "declare what must be positive" in complaint(tank(STATES[0], q1))
