@@ -156,7 +156,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
         ({"vary": {"r": "1:2:3"}}, 'did you mean "initial.r"'),
         ({"vary": {"initial.r": "-1:2:3"}}, "outside the domain"),
         ({"vary": {"initial.r": "1:2"}}, "is not a range"),
-        ({"vary": {"initial.r": "1:2:0"}}, "no number of values"),
+        ({"vary": {"initial.r": "1:2:0"}}, "not a possible number of values"),
         ({"vary": {"initial.r": "1:1:2"}}, "LOW and HIGH must differ"),
         ({"vary": {"initial.r": "1:inf:2"}}, "not finite"),
         ({"vary": {"initial.r_dot": "log:0:1:3"}}, "no logarithm"),

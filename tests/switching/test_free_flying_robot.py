@@ -104,5 +104,5 @@ def test_throttled_jets_are_cheaper_than_what_is_printed(tmp_path: Path) -> None
 @pytest.mark.parametrize(("name", "advised"), [("double-integrator-fuel", True), ("double-integrator-time", False)])
 def test_where_magnitudes_cost_a_control_for_each_sign_is_advised(name: str, advised: bool) -> None:
     stopped = Stopped(Status.NOT_CONVERGED, "no way on")
-    assert ("state a control for each sign" in _advised(load(name), stopped).message) is advised
+    assert ("use two controls, one for each sign" in _advised(load(name), stopped).message) is advised
     assert _advised(load(name), replace(stopped, status=Status.INFEASIBLE)).message == "no way on"

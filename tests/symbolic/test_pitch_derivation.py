@@ -151,7 +151,7 @@ def test_a_state_that_does_not_keep_following_from_others_cannot_be_left_out() -
     model = of("pitch_minimum_time")
     assert isinstance(model, Reduced)
     ((speed, value),) = model.along.items()
-    with pytest.raises(DerivationError, match="do not stay determined"):
+    with pytest.raises(DerivationError, match="do not determine those that are left out"):
         derive(replace(model, along={speed: 2 * value}))
 
 
@@ -159,7 +159,7 @@ def test_a_state_that_does_not_keep_following_from_others_cannot_be_left_out() -
 def test_gravity_keeps_the_wheel_from_following_the_body_where_the_satellite_is_not_symmetric() -> None:
     model = of("pitch_minimum_time")
     assert isinstance(model, Reduced)
-    with pytest.raises(DerivationError, match="do not stay determined"):
+    with pytest.raises(DerivationError, match="do not determine those that are left out"):
         derive(replace(model, where={}))
 
 
