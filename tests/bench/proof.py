@@ -61,7 +61,10 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
             assert proof.theorem
             assert proof.objective
             assert proof.t_final
-            known = [one.text.replace("+/-", "\N{PLUS-MINUS SIGN}") for one in (proof.objective, proof.t_final)]
+            known = [
+                one.text.replace("+/- ", "\N{PLUS-MINUS SIGN}\N{NO-BREAK SPACE}")
+                for one in (proof.objective, proof.t_final)
+            ]
             cells = [name, *known, proof.theorem.name, f"{seconds:.1f}"]
             lines.append("| " + " | ".join(cells) + " |")
     lines += ["", "Not proved, with the step that fails, or beyond what is proved here, with the feature:", ""]
