@@ -29,6 +29,9 @@ STATIONARY = 1e-8
 FLAT = 1e-5
 """Relative curvature of the minimum cost below which nobody can tell whether there is any."""
 
+STILL = 1e-2
+"""Share of the cost that curvatures are measured by at least: what is smaller by FLAT besides is lost in noise."""
+
 COMPLEX_STEP = 1e-30
 
 
@@ -142,6 +145,14 @@ class Curvature:
 UNRESOLVED = Curvature(float("nan"))
 
 
+def softest(form: Array, least: float) -> tuple[float, Array]:
+    """The least curvature, relative to those along the axes (the least that counts or more), and its direction."""
+    unit = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(form)), max(least, 1e-300)))
+    values, vectors = np.linalg.eigh(form * np.outer(unit, unit))
+    direction = unit * vectors[:, 0]
+    return float(values[0]), direction / np.linalg.norm(direction)
+
+
 def with_start(certificate: Certificate, solution: Solution, sufficient: Sequence[Check]) -> Certificate:
     """The certificate of a solution with its start given, and what must hold besides where it is free.
 
@@ -154,10 +165,11 @@ def with_start(certificate: Certificate, solution: Solution, sufficient: Sequenc
         Check(f"transversality at the start: {unknown.name}", slope(solution, unknown).relative, STATIONARY)
         for unknown in solution.instance.free
     ]
-    second = sufficient if all(c.passed for c in first) else ()
-    necessary = certificate.verdict is not Verdict.FAILED and all(c.passed for c in first)
-    strict = certificate.verdict is Verdict.CERTIFIED and all(c.passed for c in second)
-    return replace(certificate, verdict=Verdict.of(necessary, strict), checks=(*certificate.checks, *first, *second))
+    if not all(c.passed for c in first):
+        return replace(certificate, verdict=Verdict.FAILED, checks=(*certificate.checks, *first))
+    lesser = certificate.verdict is not Verdict.FAILED and not all(c.passed for c in sufficient)
+    verdict = Verdict.EXTREMAL_ONLY if lesser else certificate.verdict
+    return replace(certificate, verdict=verdict, checks=(*certificate.checks, *first, *sufficient))
 
 
 def settled(solution: Solution) -> Solution:

@@ -7,7 +7,7 @@ import numpy as np
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
-from satsym.solvers.certificate import conditions, jumps
+from satsym.solvers.certificate import conditions, free_start, jumps
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison
 from satsym.solvers.certificate.conclusion import (
@@ -25,7 +25,7 @@ from satsym.solvers.certificate.reintegration.flow import TOLERANCE, flow
 from satsym.solvers.certificate.reintegration.node_defect import node_defect
 from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
-from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
+from satsym.solvers.certificate.start import settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of
 
@@ -68,8 +68,8 @@ def examined(
     given = settled(solution)
     certificate, competitor = _judged(given, deadline, seed, compared)
     certificate = with_stated_times(with_limits(with_kernels_examined(certificate, given), given), given)
-    if solution.instance.free:  # how the least cost is curved in what is free tells only who solves beside it
-        certificate = with_start(certificate, solution, UNRESOLVED.checks)
+    if solution.instance.free:
+        certificate = with_start(certificate, solution, free_start.curvature(solution).checks)
     return with_scope(certificate, solution), competitor
 
 

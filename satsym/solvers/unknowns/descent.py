@@ -7,12 +7,14 @@ curved: upwards at a minimum, downwards at a saddle, which is left to both sides
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Solution
-from satsym.solvers.certificate.start import FLAT, STATIONARY, Curvature
+from satsym.solvers.certificate.free_start import second_derivative
+from satsym.solvers.certificate.start import FLAT, STATIONARY, STILL, Curvature, softest
 from satsym.solvers.improving import without_minimiser
 from satsym.solvers.unknowns.trials import Trial, Trials
 from satsym.status import BadInput
@@ -38,9 +40,6 @@ SMALLEST_RADIUS = 1e-10
 IDLE = 1e-9
 """Relative slope and change of the cost below which it does not depend on an unknown."""
 
-STILL = 1e-2
-"""Share of the cost that curvatures are measured by at least: what is smaller by FLAT besides is lost in noise."""
-
 NOISE = 1e-10
 """Relative difference of costs that two solutions may have for nothing."""
 
@@ -60,7 +59,7 @@ def minimum_from(trials: Trials, here: Trial) -> tuple[Trial, Curvature] | Solut
             return here, Curvature(math.nan)
         form, believed = _form(trials, here)
         here = _polished(trials, here, form)
-        least, direction = _softest(form, STILL * here.size)
+        least, direction = softest(form, STILL * here.size)
         if not believed or not least < -FLAT:
             return here, Curvature(least if believed else math.nan)
         beside = [trials(here.at + sign * share * direction) for share in (0.1, 0.5) for sign in (1.0, -1.0)]
@@ -120,7 +119,14 @@ def _first_form(trials: Trials, here: Trial) -> Array:
 
 
 def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
-    """Second derivatives by central differences of slopes, and whether costs tell the same."""
+    """Second derivatives, and whether they are believed.
+
+    Neighbouring extremals tell those by initial states. Others are central differences of slopes, which are believed if
+    costs tell the same.
+    """
+    exact = second_derivative(replace(here.solution, instance=replace(here.solution.instance, free=trials.unknowns)))
+    if exact is not None:
+        return exact * np.outer(trials.unit, trials.unit), True
     count = len(here.at)
     form, by_costs = np.zeros((count, count)), np.zeros(count)
     for k, axis in enumerate(np.eye(count)):
@@ -138,21 +144,13 @@ def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
 def _polished(trials: Trials, here: Trial, form: Array) -> Trial:
     """Newton's method with the form that was measured."""
     for _ in range(POLISHING):
-        if here.residual <= SETTLED_SLOPE or _softest(form, STILL * here.size)[0] <= FLAT:
+        if here.residual <= SETTLED_SLOPE or softest(form, STILL * here.size)[0] <= FLAT:
             break
         new = trials(here.at - np.linalg.solve(form, here.slope))
         if new is None or not new.residual < here.residual:
             break
         here = new
     return here
-
-
-def _softest(form: Array, least: float) -> tuple[float, Array]:
-    """The least curvature, relative to those along the axes (the least that counts or more), and its direction."""
-    unit = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(form)), least))
-    values, vectors = np.linalg.eigh(form * np.outer(unit, unit))
-    direction = unit * vectors[:, 0]
-    return float(values[0]), direction / np.linalg.norm(direction)
 
 
 def _step(form: Array, slopes: Array, radius: float) -> Array:

@@ -18,6 +18,7 @@ from satsym.solution import Check, Competitors, Kind, Progress, Solution
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
 from satsym.solvers.failures import tried
+from satsym.solvers.improving import starting_from
 from satsym.solvers.iteration import deadline_of, unsolved
 from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
 from satsym.solvers.unknowns.reaching import reaching
@@ -56,13 +57,13 @@ def solve(instance: Instance, progress: Progress | None, solver: Solver, certifi
         found = _solved(trials, certified)
     except Late:
         found = _unanswered(trials, Status.TIME_LIMIT, f"time was up after {trials.count}")
-    found = replace(found, instance=replace(found.instance, free=instance.free, solver=instance.solver))
+    found = replace(found, instance=replace(found.instance, free=instance.free, guess=instance.guess, solver=instance.solver))
     return replace(found, wall_s=time.perf_counter() - began, iterations=max(trials.iterations, found.iterations))
 
 
 def _solved(trials: Trials, certified: Solver) -> Solution:
     """The search, and the answer with its certificate; once more where the latter knows a cheaper one."""
-    here = _begin(trials)
+    instance, here = trials.instance, _begin(trials)
     if isinstance(here, Solution):
         return here
     curvature = Curvature(math.nan)
@@ -76,13 +77,13 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
             return _unanswered(trials, Status.NOT_CONVERGED, f"the minimum cost {beside} at {trials.values(here.at)}")
         chosen = trials.chosen(here.at)
         assert chosen is not None
-        final = certified(chosen, trials.progress)
+        final = certified(replace(chosen, guess=instance.guess), trials.progress)
         if not final.status.answered:
             return final
         cheaper = here.cost - final.objective > NOISE * here.size
         if not (cheaper and again):
             break
-        trials.solver = certified  # which knows what the method alone does not find
+        trials.instance = replace(instance, guess=starting_from(final).guess)
         moved = trials(here.at)
         here = here if moved is None else moved
     message = f"{final.message}; {trials.values(here.at)} from {trials.count}"

@@ -1,0 +1,104 @@
+"""How the minimum cost is curved in free initial states, as the field of neighbouring extremals tells.
+
+Neighbouring extremals that keep what is asked of the end span, in states and costates at the start, a Lagrangian plane
+(X, Lambda). The costate at the start is the slope of the minimum cost V there, so that Lambda = V_xx X: among those
+that keep the given initial states, X' Lambda is the second derivative of V in the free ones. Where the extremal is a
+strict minimum with its start given and this form is positive, it is a strict minimum with its start free (the whole
+second variation, minimised over the motion first). The plane is carried from the end backwards, so that nothing is
+lost where motions part quickly.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance.unknowns import Place
+from satsym.methods import BOUNDARY_ARCS
+from satsym.solution import Solution
+from satsym.solvers.certificate.end_form import final_values, multipliers
+from satsym.solvers.certificate.jacobi import AFRESH, kernel
+from satsym.solvers.certificate.reintegration.segments import segments
+from satsym.solvers.certificate.start import STILL, UNRESOLVED, Curvature, softest
+from satsym.solvers.collocation.scaling import final_argument
+
+HELD = 1e-9
+"""Least singular value, relative, of the states in a plane of extremals that can be told from their start."""
+
+
+def curvature(solution: Solution) -> Curvature:
+    """The curvature of the minimum cost in what is free at the start.
+
+    It is not resolved where more is free than initial states, where the extremal consists of arcs, or where numbers
+    fail.
+    """
+    form = second_derivative(solution)
+    if form is None:
+        return UNRESOLVED
+    largest = np.abs(solution.x).max(axis=1)[[unknown.index for unknown in solution.instance.free]]
+    unit = np.where(largest > 0.0, largest, 1.0)
+    return Curvature(softest(form * np.outer(unit, unit), STILL * abs(solution.objective))[0])
+
+
+def second_derivative(solution: Solution) -> Array | None:
+    """The second derivatives of the minimum cost by free initial states.
+
+    Returns
+    -------
+    Array
+        Shape (f, f), symmetric; ``None`` where they are not resolved.
+    """
+    instance, n = solution.instance, len(solution.x)
+    in_arcs = solution.method == BOUNDARY_ARCS or any(solution.switching_times)
+    if in_arcs or any(unknown.place is not Place.INITIAL for unknown in instance.free):
+        return None
+    with np.errstate(all="ignore"):
+        along = segments(solution)
+        plane = None if along is None else _ended(solution, along.scale)
+        if along is None or plane is None:
+            return None
+        for number, matrix in enumerate(along.transition[::-1]):
+            plane = _inverse(matrix) @ plane
+            if number % AFRESH == AFRESH - 1:
+                plane = np.linalg.qr(plane)[0]
+        if not np.isfinite(plane).all():
+            return None
+        plane = np.linalg.qr(plane)[0]
+    free = np.isin(np.arange(n), [unknown.index for unknown in instance.free])
+    kept = plane @ kernel(plane[:n][~free])
+    states, costates = kept[:n][free], kept[n:][free]
+    values = np.linalg.svd(states, compute_uv=False)
+    if len(values) != int(free.sum()) or states.shape[0] != states.shape[1] or not values.min() > HELD * values.max():
+        return None
+    unit = along.scale[:n][free]
+    form = np.linalg.solve(states.T, costates.T).T * along.scale[n:][free][:, None] / unit
+    return np.asarray((form + form.T) / 2.0)
+
+
+def _ended(solution: Solution, scale: Array) -> Array | None:
+    """The plane at the end of neighbouring extremals that keep what is asked there, shape (2n, n), orthonormal."""
+    instance, n = solution.instance, len(solution.x)
+    tf, x, lam = final_values(solution)
+    arguments = instance.parameters, instance.control_set.arguments
+    nu, _ = multipliers(instance, tf, x, lam)
+    table = instance.model.boundary_jacobian(tf, x, lam, nu, *arguments, final_argument(instance))
+    slopes = np.array(table).reshape(n + len(nu) + 1, -1)
+    rates = np.array(instance.model.canonical(tf, x, lam, *arguments))
+    by_time = slopes[:, : 2 * n] @ rates + slopes[:, -1]
+    rows = np.column_stack([slopes[:, : 2 * n] * scale, slopes[:, 2 * n : -1], by_time * (tf - float(solution.times[0]))])
+    if instance.tf is not None:
+        rows = rows[:-1, :-1]
+    rows = rows / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
+    rows[:, 2 * n :] /= np.maximum(np.abs(rows[:, 2 * n :]).max(axis=0), 1e-300)
+    found = kernel(rows)[: 2 * n] if np.isfinite(rows).all() else np.zeros((2 * n, 0))
+    if found.shape[1] != n:
+        return None
+    plane, triangle = np.linalg.qr(found)
+    return plane if np.abs(np.diag(triangle)).min() > HELD else None
+
+
+def _inverse(symplectic: Array) -> Array:
+    """The inverse of a symplectic matrix."""
+    n = len(symplectic) // 2
+    a, b, c, d = symplectic[:n, :n], symplectic[:n, n:], symplectic[n:, :n], symplectic[n:, n:]
+    return np.block([[d.T, -b.T], [-c.T, a.T]])
