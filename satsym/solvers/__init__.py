@@ -78,27 +78,34 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
         from satsym.solvers import end_limits
 
         return end_limits.solve(instance, progress, partial(_found, examined=False), found)
-    if instance.free:
-        from satsym.solvers.unknowns import solving
-
-        found = partial(solving.solve, solver=_uncertified, certified=found)
-    if instance.solver.method != methods.AUTO:
+    if not instance.free:
         return found(instance, progress)
-    return _with_search(found, instance, progress, examined)
+    from satsym.solvers.certificate import free_start
+    from satsym.solvers.search import solving as search
+    from satsym.solvers.unknowns import solving
+
+    searched = instance.solver.method == methods.AUTO and search.applies(instance)
+    if not (examined and searched and free_start.tells(instance)):
+        found = partial(solving.solve, solver=_uncertified, certified=found)
+        return _with_search(found, instance, progress, examined) if searched else found(instance, progress)
+    from satsym.solvers.improving import improved
+
+    def quickly(one: Instance, watching: Progress | None) -> Solution:
+        descended = partial(solving.solve, solver=_uncertified, certified=partial(_found, examined=False))
+        return descended(one, watching) if one.guess else _with_search(descended, one, watching, examined=False)
+
+    return improved(quickly, instance, progress)
 
 
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None, examined: bool) -> Solution:
     """What a solver finds with values given for what is free, and little work; else what a direct search finds."""
     from satsym.solvers import by_search
-    from satsym.solvers.search import solving as search
 
-    if not instance.free or not search.applies(instance):
-        return solver(instance, progress)
     deadline = deadline_of(instance)
     solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)
     solution = replace(solution, instance=replace(solution.instance, work=instance.work))
     if solution.status.answered:
-        return by_search.cheaper(instance, solution) if examined else solution
+        return by_search.cheaper(instance, solution, deadline) if examined else solution
     if solution.status not in (Status.NOT_CONVERGED, Status.TIME_LIMIT):
         return solution
     left = hurried(instance, deadline)
@@ -107,7 +114,7 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None, 
         left = hurried(instance, deadline)
         found = found if left is None or not examined else _resolved(found, solver, left, progress)
         found = replace(_in_full(found, instance), wall_s=found.wall_s + solution.wall_s)
-        return by_search.cheaper(instance, found) if examined else found
+        return by_search.cheaper(instance, found, deadline) if examined else found
     left = hurried(instance, deadline) if solution.status is Status.TIME_LIMIT else None
     return solution if left is None else _in_full(solver(left, progress), instance)
 

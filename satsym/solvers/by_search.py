@@ -161,20 +161,22 @@ def instead(instance: Instance, progress: Progress | None, certified: bool) -> S
     return answer if answer.status.answered and not failed else None
 
 
-def cheaper(stated: Instance, solution: Solution) -> Solution:
+def cheaper(stated: Instance, solution: Solution, deadline: float) -> Solution:
     """An answer, or another one that the search finds and that costs less.
 
     Parameters
     ----------
     stated
         What was asked: the answer's own instance may lack a final state that follows from others.
+    deadline
+        On the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     began = time.perf_counter()
     instance = solution.instance if stated.free else stated
     spec = instance.model.spec
     if not instance.free or spec.linear_quadratic or not solving.applies(instance):
         return solution
-    limits = Limits(MOST_ITERATIONS, deadline_of(instance), work=COMPARED)
+    limits = Limits(MOST_ITERATIONS, deadline, work=COMPARED)
     least = solution.objective - CHEAPER * abs(solution.objective)
     found = min(
         (one.exact for one in solving.others(instance, solution, limits) if one.exact is not None),

@@ -56,7 +56,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         message = f"{better.message}; the first extremal found costs {solution.objective:.6g}"
         own = solution.instance
         own = own if better.instance.met == own.met else own.meeting(better.instance.met)
-        solution = replace(better, instance=own, message=message, history=solution.history)
+        solution = replace(better, instance=_begun(own, better), message=message, history=solution.history)
         certificate, better = examined(solution, deadline, seed)
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != BOUNDARY_ARCS:
         endless = bottomless(solution)
@@ -114,6 +114,13 @@ def starting_from(solution: Solution) -> Instance:
     return replace(instance, guess=start)
 
 
+def _begun(instance: Instance, better: Solution) -> Instance:
+    """An instance with what another solution chose of what is free at the start and among the parameters."""
+    for unknown in instance.free:
+        instance = unknown.at(instance, unknown.of(better.instance))
+    return instance
+
+
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
     """What a saddle's descents lead to; ``None`` where that is not cheaper."""
     if solution.method == SWITCHED or solution.instance.model.spec.in_arcs:
@@ -136,4 +143,6 @@ def _again(
     if not found.status.answered or not found.objective < solution.objective:
         return None
     message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
-    return replace(found, instance=instance, message=message, iterations=found.iterations + solution.iterations)
+    return replace(
+        found, instance=_begun(instance, found), message=message, iterations=found.iterations + solution.iterations
+    )

@@ -30,9 +30,7 @@ def body(name: str, force: Any) -> Problem:
 FLOATING, HANGING = body("floating", 0), body("hanging", -sin(x))
 POINT = FirstOrder(name="point", title="A point", states=(X,), controls=(U,), parameters=(), rates={x: u})
 REWARDED = Problem(name="rewarded", title="A reward for distance", model=POINT, running_cost=(u**2 - x**2) / 2)
-CENTRED = Problem(
-    name="wells", title="Two wells", model=POINT, running_cost=u**2 / 2 - x**2 / 2 + x**4 / 4
-)
+CENTRED = Problem(name="wells", title="Two wells", model=POINT, running_cost=u**2 / 2 - x**2 / 2 + x**4 / 4)
 
 
 def given(of: Problem, **said: Any) -> Solution:

@@ -47,6 +47,15 @@ DATED = problem("dated", LINE, u**2 / 2 + t**2 / 8 + 1)
 CENTRED = problem("centred", LINE, u**2 / 2 + (t - 3) ** 2)
 WELLS = problem("wells", LINE, u**2 / 2 - x**2 / 2 + x**4 / 4)
 REGULATED = problem("regulated", CART, (x**2 + u**2) / 2, terminal_cost=x**2 / 2)
+VALLEYS = FirstOrder(
+    name="valleys",
+    title="A ridge between two valleys",
+    states=(X, V),
+    controls=(U,),
+    parameters=(),
+    rates={x: v, v: u + 1.5776 * x - 0.7096 * x**3 - 0.1942 * v},
+)
+ACROSS = problem("across", VALLEYS, u**2 / 2)
 STILL = {"a": 0.0}
 GIVEN = {"initial": {"x": 1.0}, "final": {"x": 0.0}}
 
@@ -73,6 +82,15 @@ def test_a_free_initial_velocity_is_that_of_riccatis_matrix() -> None:
     assert said["x_initial"]["v"] == pytest.approx(best, rel=1e-9)
     assert said["objective"] == pytest.approx((riccati[0, 0] + riccati[0, 1] * best) / 2, rel=1e-10)
     assert (said["t_initial"], said["parameters_found"]) == (0.0, {})
+
+
+def test_a_free_velocity_that_the_search_finds_is_certified() -> None:
+    """Radau collocation with CasADi and Ipopt has 0.0145174397 from each of 30 starts, on 90 intervals.
+
+    Its control, integrated again, misses the end by 1e-6. From a straight line 0.0716 is found.
+    """
+    ends = {"initial": {"x": 0.0569, "v": "free"}, "final": {"x": 0.752, "v": -0.9227}}
+    assert certified(solved(ACROSS, **ends, tf=6.2607))["objective"] == pytest.approx(0.01451744, rel=1e-5)
 
 
 def test_a_free_parameter_balances_its_own_cost() -> None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Solution
@@ -22,8 +23,18 @@ from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.certificate.start import STILL, UNRESOLVED, Curvature, softest
 from satsym.solvers.collocation.scaling import final_argument
 
+SWITCHED = "bang-bang"
+"""The method of extremals between whose arcs controls switch, of which the field knows nothing."""
+
 HELD = 1e-9
 """Least singular value, relative, of the states in a plane of extremals that can be told from their start."""
+
+
+def tells(instance: Instance) -> bool:
+    """Whether neighbouring extremals can tell of all that is free besides the end, whatever the answer is."""
+    spec = instance.model.spec
+    in_arcs = spec.switching or spec.throttled or spec.in_arcs
+    return not in_arcs and all(unknown.place is Place.INITIAL for unknown in instance.free)
 
 
 def curvature(solution: Solution) -> Curvature:
@@ -49,8 +60,7 @@ def second_derivative(solution: Solution) -> Array | None:
         Shape (f, f), symmetric; ``None`` where they are not resolved.
     """
     instance, n = solution.instance, len(solution.x)
-    in_arcs = solution.method == BOUNDARY_ARCS or any(solution.switching_times)
-    if in_arcs or any(unknown.place is not Place.INITIAL for unknown in instance.free):
+    if solution.method in (BOUNDARY_ARCS, SWITCHED) or not tells(instance):
         return None
     with np.errstate(all="ignore"):
         along = segments(solution)
@@ -85,7 +95,9 @@ def _ended(solution: Solution, scale: Array) -> Array | None:
     slopes = np.array(table).reshape(n + len(nu) + 1, -1)
     rates = np.array(instance.model.canonical(tf, x, lam, *arguments))
     by_time = slopes[:, : 2 * n] @ rates + slopes[:, -1]
-    rows = np.column_stack([slopes[:, : 2 * n] * scale, slopes[:, 2 * n : -1], by_time * (tf - float(solution.times[0]))])
+    rows = np.column_stack(
+        [slopes[:, : 2 * n] * scale, slopes[:, 2 * n : -1], by_time * (tf - float(solution.times[0]))]
+    )
     if instance.tf is not None:
         rows = rows[:-1, :-1]
     rows = rows / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from satsym.instance.unknowns import Unknown
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
@@ -66,15 +67,25 @@ def examined(
     if not solution.status.answered:
         return None, None
     given = settled(solution)
-    certificate, competitor = _judged(given, deadline, seed, compared)
+    certificate, competitor = _judged(given, deadline, seed, compared, solution.instance.free)
     certificate = with_stated_times(with_limits(with_kernels_examined(certificate, given), given), given)
     if solution.instance.free:
         certificate = with_start(certificate, solution, free_start.curvature(solution).checks)
     return with_scope(certificate, solution), competitor
 
 
-def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Solution | None]:
-    """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
+def _judged(
+    solution: Solution, deadline: float, seed: int, compared: bool, free: tuple[Unknown, ...]
+) -> tuple[Certificate, Solution | None]:
+    """The certificate that the kernels give, whatever they are worth, and the cheapest competitor.
+
+    Parameters
+    ----------
+    solution
+        With its start given.
+    free
+        What competitors may choose besides.
+    """
     solution = revolutions.as_stated(solution)
     if solution.interval is not None:
         from satsym.solvers.certificate.switching import chattering
@@ -106,7 +117,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         if all(c.passed for c in first):
             second = _sufficient(solution, legendre, field)
             if compared:
-                others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed)
+                others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed, free)
     certificate = concluded(
         first,
         second,

@@ -57,7 +57,9 @@ def solve(instance: Instance, progress: Progress | None, solver: Solver, certifi
         found = _solved(trials, certified)
     except Late:
         found = _unanswered(trials, Status.TIME_LIMIT, f"time was up after {trials.count}")
-    found = replace(found, instance=replace(found.instance, free=instance.free, guess=instance.guess, solver=instance.solver))
+    found = replace(
+        found, instance=replace(found.instance, free=instance.free, guess=instance.guess, solver=instance.solver)
+    )
     return replace(found, wall_s=time.perf_counter() - began, iterations=max(trials.iterations, found.iterations))
 
 

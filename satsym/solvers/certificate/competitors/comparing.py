@@ -12,6 +12,7 @@ import numpy as np
 
 from satsym import activity
 from satsym.instance import Guess
+from satsym.instance.unknowns import Unknown
 from satsym.solution import Check, Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
@@ -30,7 +31,7 @@ WORK = 1_000_000
 """Unknowns times iterations that the search may take from a control that was drawn."""
 
 
-def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
+def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()) -> Comparison:
     """Compare a solution with competitors of every kind.
 
     Parameters
@@ -39,6 +40,8 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
         Of time; what the clock ends is not checked.
     seed
         Of controls that are drawn: another one where a solution was found from such a control.
+    free
+        What competitors may choose besides the end.
     """
     instance, switches = solution.instance, switching(solution)
     if not switches and none_conceivable(solution):
@@ -48,7 +51,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
     activity.tell("certificate: comparing with other starts of the search ...")
     unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
     with np.errstate(all="ignore"):
-        costs, exact = searched(solution, limits, seed)
+        costs, exact = searched(solution, limits, seed, free)
         if unhindered and not limits.late and (quicker := shorter(solution, limits)) and not limits.late:
             costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
     found = dict[Kind, Compared]()
@@ -61,7 +64,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0) -> Comparison:
         enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
     missing = tuple(kind for kind in possible if kind not in enough)
     if not switches and Kind.STARTS in found and found[Kind.STARTS].margin >= 0.0 and not limits.late:
-        drawn, led = _from_controls(solution, seed, limits)
+        drawn, led = _from_controls(solution, seed, limits, free)
         starts = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)
         found[Kind.STARTS], exact = replace(starts, enough=drawable(solution)), exact or led
     if limits.late or not (found or switches):  # nothing to compare with is said
@@ -74,18 +77,20 @@ def switching(solution: Solution) -> bool:
     return solution.method == "bang-bang" or solution.instance.model.spec.switching
 
 
-def _from_controls(solution: Solution, seed: int, limits: Limits) -> tuple[Compared | None, Solution | None]:
+def _from_controls(
+    solution: Solution, seed: int, limits: Limits, free: tuple[Unknown, ...]
+) -> tuple[Compared | None, Solution | None]:
     """The cheapest of controls that are drawn, if one costs less, and the extremal to which it leads the search."""
     drawn = drawn_below(solution, seed)
     if drawn is None:
         return None, None
     with np.errstate(all="ignore"):
-        found = tried(lambda: _led(solution, drawn, limits))
+        found = tried(lambda: _led(solution, drawn, limits, free))
     cost = drawn.cost if found is None else min(found.objective, drawn.cost)
     return summed(solution, Kind.STARTS, 1, [cost], limits.late), found
 
 
-def _led(solution: Solution, drawn: Drawn, limits: Limits) -> Solution | None:
+def _led(solution: Solution, drawn: Drawn, limits: Limits, free: tuple[Unknown, ...]) -> Solution | None:
     """The extremal to which the search is led by a control that was drawn, where it costs no more than that."""
     from satsym.solvers.search import solving
 
@@ -95,7 +100,7 @@ def _led(solution: Solution, drawn: Drawn, limits: Limits) -> Solution | None:
         for names, rows in ((spec.state_names, drawn.states), (spec.control_names, drawn.control))
     )
     end = None if solution.instance.tf is not None else drawn.grid.tf
-    instance = replace(solution.instance, guess=Guess(states, {}, controls), tf_guess=end)
+    instance = replace(solution.instance, guess=Guess(states, {}, controls), tf_guess=end, free=free)
     within = replace(limits, work=limits.meter.spent + WORK, watch=None)
     found = solving.searched(instance, within)
     if found is None or not found.objective <= drawn.cost:

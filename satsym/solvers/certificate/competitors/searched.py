@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 
 from satsym.instance import Guess, Instance
+from satsym.instance.unknowns import Unknown
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, going_round, margin
 from satsym.solvers.certificate.competitors.drawn import extremals_below
@@ -32,7 +33,9 @@ def kinds(instance: Instance) -> list[Kind]:
     return [Kind.STARTS, *times, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
 
 
-def searched(solution: Solution, limits: Limits, seed: int = 0) -> tuple[dict[Kind, list[float]], Solution | None]:
+def searched(
+    solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()
+) -> tuple[dict[Kind, list[float]], Solution | None]:
     """Compare an answer with what the search's starts come to; starts that the clock ends are left out.
 
     Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
@@ -42,6 +45,8 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> tuple[dict[Ki
     ----------
     seed
         Of what is drawn.
+    free
+        What the starts may choose besides the end.
 
     Returns
     -------
@@ -52,7 +57,7 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> tuple[dict[Ki
     """
     from satsym.solvers.search import solving
 
-    instance = replace(solution.instance, guess=Guess())
+    instance = replace(solution.instance, guess=Guess(), free=free)
     within = replace(limits, work=limits.meter.spent + WORK, watch=None)
     costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
     better: Solution | None = None
@@ -73,10 +78,10 @@ def searched(solution: Solution, limits: Limits, seed: int = 0) -> tuple[dict[Ki
             better = found
     for guess in [] if better else extremals_below(solution, seed):
         within = replace(within, work=limits.meter.spent + GUESSED)
-        found = None if limits.late else solving.searched(guess, within)
+        found = None if limits.late else solving.searched(replace(guess, free=free), within)
         costs[Kind.STARTS].append(math.nan if found is None else found.objective)
         if found is not None and margin(found.objective, solution.objective, COST_MARGIN) < 0.0:
-            better = replace(found, instance=instance)
+            better = replace(found, instance=replace(found.instance, guess=Guess(), tf_guess=instance.tf_guess))
             break
     if instance.tf is None and math.isfinite(cost := _at_once(solution)):
         costs[Kind.DURATIONS].append(cost)
