@@ -183,16 +183,20 @@ def _beside(less: Redundant, found: Solution, progress: Progress | None, examine
 
 
 def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
-    """What the method finds, or the sweep in its place."""
-    method = _named(instance)
+    """What the method finds, or the sweep in its place, in the time that is left."""
+    method, deadline = _named(instance), deadline_of(instance)
     automatic = instance.solver.method == methods.AUTO
     solution = _solved(method, instance, progress, examined)
-    if automatic and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
-        shot = _solved(methods.METHODS["shooting"], instance, progress, examined)
+    if not automatic or solution.status is not Status.NOT_CONVERGED:
+        return solution
+    left = hurried(instance, deadline)
+    if left and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
+        shot = _solved(methods.METHODS["shooting"], left, progress, examined)
         if shot.status.answered and not _refuted(shot):
-            return replace(shot, message=f"{shot.message}; by collocation {solution.message}")
-    if automatic and solution.status is Status.NOT_CONVERGED and not methods.refusal(methods.SWEEP.name, instance):
-        return _confirmed(_solved(methods.SWEEP, instance, progress), method, progress)
+            return replace(_in_full(shot, instance), message=f"{shot.message}; by collocation {solution.message}")
+        left = hurried(instance, deadline)
+    if left and not methods.refusal(methods.SWEEP.name, instance):
+        return _in_full(_confirmed(_solved(methods.SWEEP, left, progress), method, progress, deadline), instance)
     return solution
 
 
@@ -218,13 +222,16 @@ def _solved(method: Method, instance: Instance, progress: Progress | None, exami
     return improved(solver, instance, progress)
 
 
-def _confirmed(swept: Solution, method: Method, progress: Progress | None) -> Solution:
+def _confirmed(swept: Solution, method: Method, progress: Progress | None, deadline: float) -> Solution:
     """What a method with a certificate makes of what the sweep found; no answer where it finds none there."""
     from satsym.solvers.improving import starting_from
 
     if not swept.status.answered or not swept.lam.any():
         return swept
-    again = _solved(method, starting_from(swept), progress)
+    left = hurried(starting_from(swept), deadline)
+    if left is None:
+        return replace(swept, status=Status.TIME_LIMIT, message="time was up before the sweep's answer was confirmed")
+    again = _solved(method, left, progress)
     if again.status.answered or again.status is Status.NO_MINIMISER:
         return replace(again, instance=swept.instance)
     message = f"{swept.message}, at the cost {swept.objective:.6g}, but {method.name} confirms no extremal there"

@@ -146,6 +146,7 @@ def others(
     loose: str = "",
     way: tuple[Array, Array] | None = None,
     hidden: float = 0.0,
+    known_costs: int = 0,
 ) -> Iterator[Tried[Answer]]:
     """Competitors of an answer: what each start leads to. Those that seem to cost less are made exact.
 
@@ -159,13 +160,15 @@ def others(
         Times and states of the answer, for the coarse mesh.
     hidden
         Difference of costs below the accuracy of the interior-point code.
+    known_costs
+        How many other costs are known already.
     """
     seen: list[tuple[float, float]] = []  # on the coarse mesh, and what each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0, 0, limits.meter.spent
     spent = begun
-    parted = bool(instance.model.spec.path_constraints)
-    probe = AROUND if parted else PROBE
+    constrained = bool(instance.model.spec.path_constraints)
+    patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
@@ -192,8 +195,7 @@ def others(
         # starts with other turns and durations are tried whatever the first ones lead to
         further = plan.turns is not None or plan.timed or plan.arriving
         alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
-        parted = parted or bool(plan.drawn)
-        enough = (PATIENCE if parted else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
+        enough = (PATIENCE if patient else QUIET + FURTHER * (len(seen) - 1 + known_costs)) if seen else FAILING
         if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:
             break
 

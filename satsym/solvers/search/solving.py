@@ -103,13 +103,13 @@ def guessed(instance: Instance, limits: Limits) -> Instance:
     return instance if found is None else collocated.guessing(instance, found.times, found.x, found.lam)
 
 
-def others(instance: Instance, solution: Solution, limits: Limits) -> Iterator[Tried[Solution]]:
+def others(instance: Instance, solution: Solution, limits: Limits, known_costs: int = 0) -> Iterator[Tried[Solution]]:
     """What other starts come to beside an answer to an instance, as :func:`order.others` has it."""
     less = redundant(instance)
     making, loose = (partial(exact, instance), "") if less is None else (partial(_met, less), less.state)
     way = solution.times, solution.x
     cost, hidden = solution.objective, _hidden(solution)
-    return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden)
+    return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden, known_costs)
 
 
 def _hidden(solution: Solution) -> float:

@@ -120,7 +120,7 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         ]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
-    if any(one.place is Place.INITIAL for one in instance.free) or (np.isnan(end).any() and not np.isnan(end).all()):
+    if draws_ends(instance):
         found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
     if round_:
         places = [place for pair in round_[:2] for place in pair]
@@ -146,6 +146,13 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if not given:
         found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
+
+
+def draws_ends(instance: Instance) -> bool:
+    """Whether initial values are free, or the end is in part: then some starts have drawn values there."""
+    end = wanted(instance, instance.t0)
+    begins = any(one.place is Place.INITIAL for one in instance.free)
+    return begins or bool(np.isnan(end).any() and not np.isnan(end).all())
 
 
 def weak(instance: Instance, controls: Controls) -> list[Plan]:

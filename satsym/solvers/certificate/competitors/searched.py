@@ -44,7 +44,7 @@ def searched(
     Parameters
     ----------
     seed
-        Of what is drawn.
+        Of what is drawn; also how many dearer answers led here, each with a cost of its own.
     free
         What the starts may choose besides the end.
 
@@ -61,7 +61,7 @@ def searched(
     within = replace(limits, work=limits.meter.spent + WORK, watch=None)
     costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
     better: Solution | None = None
-    for one in solving.others(instance, solution, within):
+    for one in solving.others(instance, solution, within, seed):
         if limits.late:
             break
         kind = Kind.REVOLUTIONS if one.plan.turns is not None else Kind.STARTS
