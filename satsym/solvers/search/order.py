@@ -30,9 +30,9 @@ from satsym.solvers.search.starts import Plan
 
 Answer = TypeVar("Answer")
 
-FAILING, CONVEX = 8, 2
-"""The search ends after so many starts in a row if none at all was solved; fewer are enough if the problem is convex,
-because all starts lead to one motion then."""
+FAILING, ANY_DURATION, CONVEX = 8, 12, 2
+"""The search ends after so many starts in a row if none at all was solved, with a free duration after a few more; fewer
+are enough if the problem is convex, because all starts lead to one motion then."""
 
 DOUBTFUL = 3
 """Failing starts in a row after which the search asks whether any motion reaches the end."""
@@ -115,7 +115,8 @@ def searched(
         Tells whether no start will lead to an extremal; it is asked after a few that fail.
     """
     costs: list[float] = []
-    failing, failed, endless, kept = CONVEX if convex(instance) else FAILING, 0, 0, 0
+    patience = FAILING if instance.tf is not None else ANY_DURATION
+    failing, failed, endless, kept = CONVEX if convex(instance) else patience, 0, 0, 0
     for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
         if found.solved and at_edge(found):
             endless += 1

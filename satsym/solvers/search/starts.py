@@ -32,8 +32,10 @@ EQUAL_RATE = 1e-9
 FREELY, DRAWS = 1.0, 40
 """Standard deviation of drawn ends, in sizes of their states, and how many are drawn."""
 
-MORE, WIDER = 24, (0.3, 1.0, 3.0)
-"""Further starts where the first ones come to several costs, and how far they are bent."""
+MORE, WIDER, LASTING = 24, (0.3, 1.0, 3.0), (2.0, 4.0, 1.0)
+"""Further starts where the first ones come to several costs or to nothing, how far they are bent, and how long they
+last, as shares of the first guess, where the duration is free: the widest come first there, because detours take time.
+"""
 
 LOOKS = 5
 """Drawn points at which it is looked whether anything but time costs."""
@@ -117,6 +119,11 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found += [
             Plan(noise=noise, seed=seed, scale=scale)
             for noise, seed, scale in ((0.1, 1, 1.5), (0.3, 2, 2.0), (0.3, 3, 4.0))
+        ]
+        wider = WIDER[::-1]
+        found += [
+            Plan(noise=wider[k // len(LASTING) % len(wider)], seed=6 + k, scale=LASTING[k % len(LASTING)])
+            for k in range(MORE)
         ]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
