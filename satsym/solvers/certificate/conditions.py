@@ -111,9 +111,9 @@ def stationarity(solution: Solution) -> float:
     law = instance.model.control_law_batch(
         solution.times, solution.x, solution.lam, instance.parameters, instance.control_set.arguments
     )
+    law = np.where(undecided(instance, solution.times, solution.x, solution.lam), solution.u, law)
     size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
     apart = np.abs(instance.control_set.apart(law, solution.u))
-    apart[undecided(instance, solution.times, solution.x, solution.lam)] = 0.0
     return float(apart.max() / size) if size > 0.0 else 0.0
 
 

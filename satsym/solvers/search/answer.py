@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
@@ -14,6 +15,9 @@ from satsym.solvers.control.slopes import continued
 from satsym.solvers.multipoint.equations import between
 from satsym.solvers.multipoint.newton import Extremal
 from satsym.status import Status
+
+ROUNDING = 1e-16
+"""Share of costates near by that those are given which vanish exactly, where kernels divide by their norm."""
 
 
 def answered(instance: Instance, extremal: Extremal) -> Solution:
@@ -28,9 +32,13 @@ def answered(instance: Instance, extremal: Extremal) -> Solution:
     given = _with_values(instance, extremal)
     names = "".join(law.name for law in problem.laws)
     structure = f"structure {names}, " if len(names) > 1 else ""
-    times, z, u = _grid(extremal, np.linspace(given.t0, float(extremal.times[-1]), instance.solver.steps + 1))
+    with np.errstate(all="ignore"):  # where the slope by a direction vanishes its law is not a number
+        times, z, u = _grid(extremal, np.linspace(given.t0, float(extremal.times[-1]), instance.solver.steps + 1))
     n, m = problem.n, len(instance.model.spec.controls)
-    if instance.model.spec.directional and not structure:
+    open_ones = np.asarray(~np.isfinite(u).all(axis=0))
+    if open_ones.any() and not open_ones.all():
+        z = _beside_poles(z, n, open_ones)
+    if (instance.model.spec.directional and not structure) or open_ones.any():
         u = continued(given, times, z[:n], z[n:], u)
     switches = [
         (float(t), place)
@@ -56,6 +64,14 @@ def answered(instance: Instance, extremal: Extremal) -> Solution:
         history=(),
         wall_s=0.0,
     )
+
+
+def _beside_poles(z: Array, n: int, open_ones: NDArray[np.bool_]) -> Array:
+    """Values with costates that decide a direction at all times: as before or after, and as small as rounding."""
+    z, known = z.copy(), np.flatnonzero(~open_ones)
+    for at in np.flatnonzero(open_ones):
+        z[n:, at] += ROUNDING * z[n:, known[np.abs(known - at).argmin()]]
+    return z
 
 
 def _with_values(instance: Instance, extremal: Extremal) -> Instance:

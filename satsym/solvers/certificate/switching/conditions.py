@@ -22,6 +22,7 @@ from satsym.solvers.certificate.switching.next_switch import noise
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
 from satsym.solvers.certificate.switching.variation import curvature
+from satsym.solvers.control.slopes import undecided
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
@@ -201,6 +202,7 @@ def _excess_by_law(solution: Solution) -> float:
     instance, model = solution.instance, solution.instance.model
     t, x, lam, p = solution.times, solution.x, solution.lam, instance.parameters
     law = model.control_law_batch(t, x, lam, p, instance.control_set.arguments)
+    law = np.where(np.isnan(law) & undecided(instance, t, x, lam), solution.u, law)
     above = [model.hamiltonian_batch(t, x, u, lam, p) for u in (solution.u, law)]
     size = max(float(np.abs(law).max()), float(np.abs(solution.u).max()), 1e-300)
     outside = max(instance.control_set.violation(solution.u), 0.0) / size
