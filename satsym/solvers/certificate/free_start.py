@@ -26,7 +26,7 @@ from satsym.solvers.collocation.scaling import final_argument
 SWITCHED = "bang-bang"
 """The method of extremals between whose arcs controls switch, of which the field knows nothing."""
 
-TOLD_APART = 1e-9
+DISTINCT = 1e-9
 """Least singular value, relative, of the states in a plane of extremals that can be told from their start."""
 
 
@@ -78,7 +78,11 @@ def second_derivative(solution: Solution) -> Array | None:
     kept = plane @ kernel(plane[:n][~free])
     states, costates = kept[:n][free], kept[n:][free]
     values = np.linalg.svd(states, compute_uv=False)
-    if len(values) != int(free.sum()) or states.shape[0] != states.shape[1] or not values.min() > TOLD_APART * values.max():
+    if (
+        len(values) != int(free.sum())
+        or states.shape[0] != states.shape[1]
+        or not values.min() > DISTINCT * values.max()
+    ):
         return None
     unit = along.scale[:n][free]
     form = np.linalg.solve(states.T, costates.T).T * along.scale[n:][free][:, None] / unit
@@ -106,7 +110,7 @@ def _ended(solution: Solution, scale: Array) -> Array | None:
     if found.shape[1] != n:
         return None
     plane, triangle = np.linalg.qr(found)
-    return plane if np.abs(np.diag(triangle)).min() > TOLD_APART else None
+    return plane if np.abs(np.diag(triangle)).min() > DISTINCT else None
 
 
 def _inverse(symplectic: Array) -> Array:
