@@ -156,10 +156,10 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
 
 
 def draws_ends(instance: Instance) -> bool:
-    """Whether initial values are free, or the end is in part: then some starts have drawn values there."""
+    """Whether initial values are free, or the end is in part or within ranges: then some starts have drawn ones."""
     end = wanted(instance, instance.t0)
     begins = any(one.place is Place.INITIAL for one in instance.free)
-    return begins or bool(np.isnan(end).any() and not np.isnan(end).all())
+    return begins or bool(instance.ranges) or bool(np.isnan(end).any() and not np.isnan(end).all())
 
 
 def weak(instance: Instance, controls: Controls) -> list[Plan]:
@@ -285,6 +285,9 @@ def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> t
         drawn = FREELY * sizes * rng.normal(size=len(end))
         positive = np.array([state.positive for state in programme.instance.model.spec.states])
         end = np.where(np.isnan(end), np.where(positive, np.abs(drawn), drawn), end)
+    for name, (low, high) in programme.instance.ranges.items():
+        if np.isfinite(low) and np.isfinite(high):
+            end[programme.instance.model.spec.state_names.index(name)] = rng.uniform(low, high)
     return start, end
 
 
