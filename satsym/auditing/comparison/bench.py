@@ -117,7 +117,7 @@ class Bench:
         if row.key not in self._targets:
             found = self._both(row, formula)
             if not found.has_a_value:
-                raise BadInput("what it is held against has a division by zero")
+                raise BadInput("its holds divides by zero")
             self._targets[row.key] = found
         return self._targets[row.key]
 

@@ -52,7 +52,6 @@ LENGTHS = (0.25, 4.0, 0.06)
 TURNS = (0, -1, 1, 2, 3)
 """Revolutions that are tried where the duration is free; one less than none is the other way round."""
 
-
 DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)
 """Durations that are given at first, as shares of the first guess."""
 

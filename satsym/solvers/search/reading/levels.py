@@ -35,7 +35,7 @@ of ends that it meets, relative to sizes."""
 AT_BOUND = 0.02
 """Share of the width of its range by which a programme's control is off a bound at which it is."""
 
-WEIGHT_SHARE = 0.03
+RAISED = 0.03
 """Share by which switching functions are raised and lowered: arcs in which they hardly pass the weight of a magnitude
 may be shorter than an interval of the mesh, on which they then do not reach it."""
 
@@ -113,7 +113,7 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
         off, rounded = _off_bounds(instance, seen)
         if off.any():
             yield guess(instance, rounded, off)
-        for factor in (1.0 + WEIGHT_SHARE, 1.0 - WEIGHT_SHARE) if seen.weight.any() else ():
+        for factor in (1.0 + RAISED, 1.0 - RAISED) if seen.weight.any() else ():
             yield guess(instance, replace(seen, sigma=factor * seen.sigma))
         return
     read = read_norm(at)
