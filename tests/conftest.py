@@ -31,8 +31,8 @@ hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
-SHARE = 10
-"""Of the cases of slow tests every tenth runs, unless all are asked for."""
+SHARE = 20
+"""Of the cases of slow tests every twentieth runs, unless all are asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -84,7 +84,7 @@ def whole(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture(scope="session")
 def sample(whole: bool) -> Callable[[Iterable[Any]], list[Any]]:
-    """What is looked at of many cases in one test: every tenth, or all if all are asked for."""
+    """What is looked at of many cases in one test: every twentieth, or all if all are asked for."""
     step = 1 if whole else SHARE
     return lambda cases: list(cases)[::step]
 

@@ -26,6 +26,7 @@ def three_bodies() -> list[Judged]:
     return audit(auditing.read(EXAMPLES / "three_bodies.ledger.toml"))
 
 
+@pytest.mark.slow
 def test_of_the_velocity_frame_the_normal_alone_falls(velocity_frame: list[Judged]) -> None:
     assert {row.key: row.verdict for row in velocity_frame if row.verdict != "confirmed"} == {"7b": "misprint"}
     (finding,) = findings(velocity_frame)
@@ -56,6 +57,7 @@ def test_the_velocity_turns_as_the_conclusion_says() -> None:
         assert turned == pytest.approx(printed, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_of_the_three_bodies_one_line_falls(three_bodies: list[Judged]) -> None:
     fallen = {row.part: row for row in three_bodies if row.verdict != "confirmed"}
     assert set(fallen) == {"second line, left", "second line, right"}

@@ -145,6 +145,7 @@ def test_models_without_a_rotation_in_their_coordinates_show_none(name: str) -> 
     assert rotation(instance.load(name)) is None
 
 
+@pytest.mark.slow
 def test_a_hill_exactly_in_the_way_is_passed_on_one_side(tmp_path: Path) -> None:
     ends = "[initial]\nx1 = -1.0\n{}[final]\nx1 = 1.0\n{}[time]\ntf = 2.0\n"
     beside = solve(build(tmp_path, bump, ends.format("x2 = 0.0\n", "x2 = 0.0\n")))
@@ -258,6 +259,7 @@ def test_a_guess_is_honoured_and_what_is_cheaper_is_said(tmp_path: Path) -> None
     assert f"{costs[-1.6]:.6g}" in found.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["auto", "sweep"])
 def test_constraints_on_the_end_are_never_ignored(method: str, tmp_path: Path) -> None:
     """From rest x1 + x2 = 1 with x2 = 0 takes 0.9 s at the least with |u1| <= 5."""
@@ -292,6 +294,7 @@ def test_no_control_is_the_best_only_where_nothing_depends_on_the_state() -> Non
     assert not none_conceivable(replace(thesis, instance=replace(thesis.instance, parameters=weighed)))
 
 
+@pytest.mark.slow
 def test_starts_that_minimise_slowly_are_compared_with() -> None:
     """The state rests between both ends for a time of 10,000: Newton's method finishes what penalties leave undone."""
     found = solve(instance.load("hypersensitive-10000"))

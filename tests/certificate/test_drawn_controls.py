@@ -32,6 +32,7 @@ def solved(
     return satsym.solve(satsym.Instance.of(problem, initial={X: start}, parameters=values, tf=tf))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("running", "terminal"),
     [(U**2 / 2 - X**4, sp.Integer(0)), (U**2 / 2, -(X**3)), (U**2 / 2 - X**6, X**2)],

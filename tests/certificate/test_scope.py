@@ -38,6 +38,7 @@ def test_least_time_to_a_point_of_rest_is_global():
     assert scope_of(instance.load("double-integrator-time")) == (Verdict.CERTIFIED, Scope.GLOBAL, SOONEST)
 
 
+@pytest.mark.slow
 def test_least_time_to_a_point_that_cannot_be_held_is_local(tmp_path: Path):
     """From x = 1 at rest to x = 0 with v = 1: the motion passes the end, and nothing keeps it there."""
     verdict, scope, because = scope_of(

@@ -31,6 +31,7 @@ def fuel() -> Solution:
     return bang_bang(case(FUEL))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", starts(3))
 def test_least_times_are_certified(start: tuple[float, float]) -> None:
     found = solve.solve(case(TIME, initial=start))

@@ -133,6 +133,7 @@ def test_what_stands_above_a_panel_never_overlaps(size: str) -> None:
             assert left.x1 < right.x0, (name, axes.get_ylabel())
 
 
+@pytest.mark.slow
 def test_nothing_is_cut_off_in_a_column() -> None:
     """Titles, labels and legends of pictures with long ones, in the language that is longer."""
     from satsym import instance

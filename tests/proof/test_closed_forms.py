@@ -65,6 +65,7 @@ def test_a_wall_is_kept_at_least_cost() -> None:
         assert "global" in proof.theorem.claims[-1]
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_control_by_the_state_is_kept_and_its_cost_found() -> None:
     """The optimum is that of SciPy's integrator with a root finder, in tests/bench/optima.toml, to its digits."""
     proof = proved("rayleigh-mixed")
@@ -82,6 +83,7 @@ def test_where_nothing_is_asked_of_the_end_doing_nothing_is_best() -> None:
     assert float(proof.x_final["r"].centre) == pytest.approx(25.0, abs=0.6)  # on its parabola, as the README says
 
 
+@pytest.mark.slow
 def test_the_brachistochrone_is_a_cycloid() -> None:
     proof = proved("brachistochrone")
     assert proof.status is Outcome.PROVED

@@ -23,6 +23,7 @@ def solved() -> tuple[satsym.Solution, Proof]:
     return solution, solution.prove()
 
 
+@pytest.mark.slow
 def test_a_page_has_the_theorem_its_hypotheses_and_all_digits() -> None:
     solution, proof = solved()
     assert proof.status is Outcome.PROVED

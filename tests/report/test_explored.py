@@ -201,6 +201,7 @@ def test_without_its_library_the_command_says_what_to_install(run: Run, monkeypa
     assert not Path("page.html").exists()
 
 
+@pytest.mark.slow
 def test_the_answers_of_a_study_are_chosen_by_what_it_varies(run: Run, returned: Solution, tmp_path: Path) -> None:
     vary = ("--vary", "initial.r=1.1:1.2:3", "--workers", "1")
     assert run("study", "return-to-orbit", *vary, "--trajectories", "--out", str(tmp_path / "kept"))[0] == 0

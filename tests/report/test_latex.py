@@ -451,6 +451,7 @@ def test_the_phase_plane_of_least_time_leads_to_the_target_along_the_curve() -> 
         assert second[-1] == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_bodies_are_typeset_as_matrices_whose_longer_entries_an_appendix_has() -> None:
     text = render(shared.shipped("gimballed_wheel"))
     body, _, appendix = text.partition("\\appendix")

@@ -85,6 +85,7 @@ def test_it_loads_nothing_and_all_its_links_lead_somewhere_in_it(text: str) -> N
     assert all(after - before <= 1 for before, after in zip(page.headings, page.headings[1:], strict=False))
 
 
+@pytest.mark.slow
 def test_it_says_what_the_result_says(text: str, solution: Solution) -> None:
     assert f"{solution.objective:.10g} km²/s³" in text
     given = solution.instance.path.read_text(encoding="utf-8").splitlines()[0]

@@ -39,6 +39,7 @@ def test_the_law_of_a_thrust_is_that_of_the_problem_and_the_regularised_one_stan
     assert sp.simplify(sp.diff(h, share) - weight * norm) == 0  # so that |T| has the weight kappa w in it
 
 
+@pytest.mark.slow
 def test_sets_of_which_h_has_products_are_not_said_to_be_minimised_over_one_by_one() -> None:
     assert "products of" in step_of("shuttle", "control_parts")
     assert "product of sets" not in step_of("zermelo", "control_parts")

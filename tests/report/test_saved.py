@@ -154,6 +154,7 @@ def test_a_folder_names_what_its_result_is_of(folder: Path) -> None:
     assert "result.json: cannot be read" in done.stderr
 
 
+@pytest.mark.slow
 def test_pictures_are_drawn_for_print_too(folder: Path) -> None:
     plotted(NAME, "--from", folder, "--format", "pdf")
     pictures = list(folder.glob("*.pdf"))

@@ -162,6 +162,7 @@ def test_burns_are_drawn_apart_from_coasts() -> None:
     np.testing.assert_array_equal(np.isfinite(burns[0]), on)
 
 
+@pytest.mark.slow
 def test_points_on_the_way_are_marked_where_they_are_passed() -> None:
     found = solve(instance.load("inspection"))
     shown = Orbit.of(Scene.of(found))

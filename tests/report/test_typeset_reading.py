@@ -255,6 +255,7 @@ def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
     )
 
 
+@pytest.mark.slow
 def test_ratios_of_polynomials_stand_by_falling_powers() -> None:
     text = render(shipped("pitch_classical"))
     assert r"G_{\theta}(s) &= \frac{K_1 s + K_2}{I_y s^{2} + K_1 s + K_2}" in text

@@ -49,6 +49,7 @@ def assert_moved(found: Solution, moved: Solution) -> None:
     assert [e.t for e in moved.events] == pytest.approx([e.t + BY for e in found.events], rel=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALIKE)
 def test_answers_and_certificates_move_with_the_start(name: str) -> None:
     case = instance.load(name)

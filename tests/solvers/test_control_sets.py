@@ -87,6 +87,7 @@ def reached(slopes: np.ndarray, tf: float, least: float, largest: float) -> tupl
     return end, effort
 
 
+@pytest.mark.slow
 def test_the_thrust_of_minimum_time_points_against_the_primer_vector(tmp_path: Path):
     def missed(unknown: np.ndarray) -> np.ndarray:
         slopes, tf = unknown[:4], unknown[4]
@@ -100,12 +101,14 @@ def test_the_thrust_of_minimum_time_points_against_the_primer_vector(tmp_path: P
     assert np.abs(np.hypot(*found.u) - 1.0).max() < 1e-12
 
 
+@pytest.mark.slow
 def test_the_same_thrust_in_a_ring_leaves_its_hole_alone(tmp_path: Path):
     ring = Problem(name="quick_ring", title="r", model=POINT, running_cost=1, control_sets={"jet": Annulus("ux", "uy")})
     found = certified(case(tmp_path, ring, '"free"', "max_norm = 1.0\nmin_norm = 0.5"))
     assert found.objective == pytest.approx(2.752748183, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("limits", "least", "largest"), [("", 0.0, 9.0), ("min_norm = 0.3\nmax_norm = 1.0", 0.3, 1.0)])
 def test_a_thrust_in_a_ring_is_as_large_as_the_ring_allows(tmp_path: Path, limits: str, least: float, largest: float):
     expected = root(lambda slopes: reached(slopes, 4.0, least, largest)[0], [0.375, 0.99, -0.17, -0.4], tol=1e-13)

@@ -36,6 +36,7 @@ def certified(name: str) -> Solution:
     return found
 
 
+@pytest.mark.slow
 def test_the_bead_slides_along_a_cycloid():
     """x = a (phi - sin phi), y = 10 - a (1 - cos phi), in the time phi sqrt(a / g)."""
     phi = brentq(lambda p: (p - math.sin(p)) / (1.0 - math.cos(p)) - 2.0, 1.0, 6.0, xtol=1e-15)
@@ -68,6 +69,7 @@ def test_steering_follows_the_linear_tangent_law():
     assert found.u[0, [0, -1]] == pytest.approx(expected[:2], abs=1e-7)
 
 
+@pytest.mark.slow
 def test_the_ship_turns_as_the_current_asks():
     """Bryson and Ho, (2.7.25): y and x in terms of the headings, here at the start and at the end."""
     found = certified("zermelo")

@@ -357,6 +357,7 @@ def test_a_start_behind_a_wall_is_refused_whatever_the_end():
         satsym.solve(satsym.Instance.of(WALLED, initial={"x": 1.0, "v": 0.0}, final={"x": [0.0, 0.1]}, tf=1.0))
 
 
+@pytest.mark.slow
 def test_a_range_behind_a_wall_has_no_answer():
     given = {"parameters": {"l": 0.1}, "final": {"x": [0.2, 0.3], "v": 0.0}}
     found = satsym.solve(satsym.Instance.of(WALLED, **AT_REST, **given))

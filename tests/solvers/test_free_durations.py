@@ -115,6 +115,7 @@ def test_free_ends_have_a_best_final_time_where_moving_pays(c0, fraction):
     assert_least(found, FIVE, c0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("c0", [1.01 * UNMOVED, WEIGHTS[4], 1.0, 100.0])
 def test_free_ends_have_none_where_time_costs_more_than_moving_saves(c0):
     for guess in (None, 0.3):
@@ -173,6 +174,7 @@ def test_a_guess_that_leads_nowhere_does_no_harm(guess):
     assert_least(found, TWO, 0.07)
 
 
+@pytest.mark.slow
 def test_without_a_weight_on_time_nothing_is_said_to_be_cheaper_when_shorter():
     for name in (TWO, FOUR):
         assert "shorter" not in by_search.collocation(weighed(name, 0.0)).message

@@ -46,6 +46,7 @@ def hop(folder: Path, height: float, pull: float, decay: float) -> Instance:
     return build(folder, HOP, f'{ends}[parameters]\ng = {pull}\nk = {decay}\n[time]\ntf = "free"\n')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("decay", [0.0, 10.0])
 @pytest.mark.parametrize(("height", "pull"), [(1000.0, 1e-3), (6.0, 6e4)])
 def test_the_least_effort_of_a_hop_is_found_however_long_it_lasts(

@@ -118,6 +118,7 @@ def compared() -> list[comparison.Case]:
     return comparison.compare([instance.load(name) for name in names])
 
 
+@pytest.mark.slow
 def test_the_totals_of_the_comparison_are_those_of_the_closed_forms(compared: list[comparison.Case]) -> None:
     _, fast, hundred, sparing = (case.metrics for case in compared)
     unit = STEP * BODY * DAMPING

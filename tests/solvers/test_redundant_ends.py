@@ -37,6 +37,7 @@ def solved(folder: Path, rates: dict[Symbol, Expr], start: tuple[float, float], 
     return solve(build(folder, problem, text))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [(0.0, 1.0), (0.0, -1.0), (math.sqrt(0.75), -0.5)])
 def test_a_turn_ends_on_its_circle_whichever_way_it_is_asked(tmp_path: Path, end: tuple[float, float]) -> None:
     """The turn by an angle a in two units of time costs a^2 / 2."""

@@ -83,6 +83,7 @@ def test_a_jump_from_one_well_to_the_other_is_certified(tmp_path: Path) -> None:
     assert (jump, name) == (pytest.approx(1.0, rel=1e-11), "w")
 
 
+@pytest.mark.slow
 def test_where_both_wells_stay_as_good_neither_is_certified(tmp_path: Path) -> None:
     """Nothing weighs where q ends: speeds of one, of minus one, and any that take turns cost nothing."""
     case = build(

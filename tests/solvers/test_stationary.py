@@ -215,6 +215,7 @@ def test_where_h_is_not_convex_in_a_control_the_ends_are_compared(tmp_path: Path
     assert taken == {-1.0, 1.5, "between"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("weight", "control"), [(1.0, -0.5), (0.2, -1.0), (-1.0, -1.0), (-3.0, 1.5)])
 def test_the_better_end_is_part_of_the_answer(tmp_path: Path, weight: float, control: float):
     text = f"[parameters]\nk = {weight}\n[initial]\nx = 0.0\ny = 0.0\n[time]\ntf = 2.0\n{BOTH_BOUNDS}"
@@ -294,6 +295,7 @@ def test_several_local_minima_are_refused_with_the_reason():
         derive(scalar("rippled", -q + w, w**4 + cos(3 * w) + q**2, 0, "box"))
 
 
+@pytest.mark.slow
 def test_an_end_out_of_reach_is_no_answer(tmp_path: Path):
     text = (
         '[initial]\nx = 3.66\ny = -1.86\n[final]\nx = 0.0\ny = 0.0\n[time]\ntf = "free"\n[control]\nb = [-0.5, -0.4]\n'

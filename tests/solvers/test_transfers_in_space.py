@@ -170,6 +170,7 @@ def propelled() -> satsym.Instance:
     return satsym.Instance.of(with_mass(), initial=first, final=last, tf=WAIT, control=engine)
 
 
+@pytest.mark.slow
 def test_a_mass_that_is_free_at_the_end_leaves_revolutions_to_be_told(propelled: satsym.Instance) -> None:
     case = propelled.case
     assert going_round(case) == [Kind.REVOLUTIONS]

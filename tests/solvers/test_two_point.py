@@ -248,6 +248,7 @@ def test_a_bounded_control_may_come_with_a_free_final_time():
     assert hamiltonian(case, y) - y[6] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("free", [(), ("theta",)])
 def test_without_a_weight_on_time_there_is_no_minimiser(free):
     case = with_parameters(instance.load("ends-4-rendezvous"), c0=0.0)
@@ -270,6 +271,7 @@ def test_without_a_weight_on_time_there_is_no_minimiser(free):
     assert math.isnan(found.objective)
 
 
+@pytest.mark.slow
 def test_where_nothing_depends_on_the_final_time_that_is_said():
     case = replace(with_parameters(instance.load("ends-5-free"), c0=0.0, k1=0.0, k2=0.0, k4=0.0))
     found = solve(case)

@@ -41,6 +41,7 @@ def mapped(case: Path) -> Study:
     return study(case, case.parent / "map", vary=MAP, executor=lambda: Here(None), workers=1)
 
 
+@pytest.mark.slow
 def test_each_row_of_a_map_has_the_deeper_of_two_wells_and_says_on_which_side_it_is(mapped: Study) -> None:
     """Each row follows its neighbours, and all lie in one well until the other is known to be deeper somewhere."""
     truth = [least(*one) for one in zip(mapped["initial.q"], mapped["parameters.k"], strict=True)]

@@ -65,6 +65,7 @@ def test_a_car_goes_as_fast_as_it_may_and_brakes(top: float, braking: float):
     assert [one.t for one in found.events] == pytest.approx([begins, begins + cruise], rel=1e-10)
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_never_met_changes_nothing():
     found = solved(CAR, **(ACROSS | {"parameters": {"v_top": 2.0}}))
     assert found.objective == pytest.approx(2.0 * np.sqrt(3.0), rel=1e-12)
@@ -134,6 +135,7 @@ def test_an_arc_too_brief_to_be_seen_leads_to_the_boundary():
     assert found.events[0].t == pytest.approx(0.05, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_an_arc_beside_its_boundary_fails_the_certificate():
     """At a higher limit the same motion keeps to none."""
     found = solved(CAR, **ACROSS).found

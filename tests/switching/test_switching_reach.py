@@ -268,6 +268,7 @@ def test_a_later_start_and_a_control_without_room_change_nothing_but_times(axes:
     assert "not strict: other controls cost the same" not in {c.name for c in found.certificate.checks if not c.passed}
 
 
+@pytest.mark.slow
 def test_time_is_weighed_against_fuel_where_every_control_brakes_as_well() -> None:
     # One burn from the start, then a coast: fuel of a one-signed control is the speed, and the rest is time.
     found = solve.solve(case(FUEL, initial=(2.0, 1.0), tf=None, parameters=(0.2,)))

@@ -92,6 +92,7 @@ def test_the_transfer_of_minimum_fuel_is_a_strict_minimum():
     assert np.minimum(norms, np.abs(norms - 0.1)).max() < 1e-15
 
 
+@pytest.mark.slow
 def test_switching_times_that_are_wrong_fail():
     found = shipped("transfer-fuel")
     moved = tuple((row[0] + 1e-6, *row[1:]) for row in found.switching_times)

@@ -93,6 +93,7 @@ def test_an_independent_search_finds_the_same_equilibria(h):
         assert min(np.abs(other - each.cosines).max() for each in equilibria) < 1e-6
 
 
+@pytest.mark.slow
 def test_each_is_an_equilibrium_of_the_motion_with_those_eigenvalues():
     model, p = kernels.load("gyrostat"), (3.0, 2.0, 1.0, 1.0, 2.9)
     _, equilibria = all_of(gyrostat().at(numbers(3, 2, 1, "29/10")))

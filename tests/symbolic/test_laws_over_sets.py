@@ -73,6 +73,7 @@ def turned(drive: sp.Expr, across: sp.Expr) -> Problem:
     )
 
 
+@pytest.mark.slow
 def test_rounding_does_not_choose_between_opposite_vectors_at_opposite_angles() -> None:
     _, kernels = generated(derive(turned(sp.Integer(1), sp.atan(y) / 6)), "task.py")
     rng = random.Random(3)
@@ -81,6 +82,7 @@ def test_rounding_does_not_choose_between_opposite_vectors_at_opposite_angles() 
     assert all(force >= 0.0 for force in forces) or all(force <= 0.0 for force in forces)
 
 
+@pytest.mark.slow
 def test_a_law_that_has_the_magnitude_of_a_costate_is_generated() -> None:
     stated = turned(sp.Integer(1), sp.Integer(0))
     (thrust, angle) = sp.symbols("F b", real=True)

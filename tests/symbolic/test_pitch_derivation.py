@@ -80,6 +80,7 @@ def test_the_closed_loop_has_the_zero_of_proportional_and_differential_action(lo
     assert sp.simplify(loop.equation("poles_and_zeros.zero_1").rhs + k2 / k1) == 0
 
 
+@pytest.mark.slow
 def test_critical_damping_gives_the_gains_of_the_paper(loop: Derivation) -> None:
     s = symbols(loop)
     assert loop.equation("critical_damping.K1").rhs == 2 * s["E"] * s["I_y"]
