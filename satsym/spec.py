@@ -80,6 +80,8 @@ class Variable:
         for field in ("symbol", "latex", "unit", "meaning"):
             if not isinstance(value := getattr(self, field), str):
                 raise ValueError(f"variable {self.symbol!r}: {field} is {value!r}; write text in quotes")
+        if self.kind not in ("real", "angle"):
+            raise ValueError(f'variable {self.symbol!r}: kind is {self.kind!r}; write "real" or "angle"')
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
         if not self.latex.strip() or not _closed(self.latex):

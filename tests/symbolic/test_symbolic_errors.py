@@ -245,6 +245,11 @@ def test_vectors_need_as_many_components_as_there_are_directions(changes: Mappin
     assert "as many components as there are directions" in complaint(plane(**changes))
 
 
+def test_what_is_no_vector_is_named() -> None:
+    assert complaint(plane(position=a)) == "plane: the position must be a vector, such as Matrix([x, y])"
+    assert complaint(plane(forces={"thrust": u1})) == "plane: the force 'thrust' must be a vector, such as Matrix([x, y])"
+
+
 def test_newtons_law_has_to_determine_the_accelerations() -> None:
     for position in (Matrix([a + b, 2 * a + 2 * b]), Matrix([cos(a + b), sin(a + b)])):
         assert complaint(plane(position=position)) == "plane: Newton's law does not determine a_ddot, b_ddot"

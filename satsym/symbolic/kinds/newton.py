@@ -60,8 +60,10 @@ class Newton(Particle):
         if len(moving) != len(states) or set(moving) != set(states):
             odd = unlike(symbols_of(self.states), moving, "neither coordinate nor rate", "no state")
             yield f"the states must be the coordinates and their rates, each once; {odd or 'one is there twice'}"
-        vectors = (self.position, *self.directions.values(), *self.forces.values())
-        if {len(vector) for vector in vectors} != {len(self.directions)}:
+        vectors = {name: vector for name, vector, _ in self.stated()}
+        if others := [name for name, vector in vectors.items() if not isinstance(vector, sp.MatrixBase)]:
+            yield f"{others[0]} must be a vector, such as Matrix([x, y])"
+        elif {len(vector) for vector in vectors.values()} != {len(self.directions)}:
             yield "vectors need as many components as there are directions"
 
     def stated(self) -> Iterator[tuple[str, sp.Matrix, set[sp.Symbol]]]:
