@@ -246,8 +246,9 @@ def test_vectors_need_as_many_components_as_there_are_directions(changes: Mappin
 
 
 def test_what_is_no_vector_is_named() -> None:
-    assert complaint(plane(position=a)) == "plane: the position must be a vector, such as Matrix([x, y])"
-    assert complaint(plane(forces={"thrust": u1})) == "plane: the force 'thrust' must be a vector, such as Matrix([x, y])"
+    said = "must be a vector, such as Matrix([x, y])"
+    assert complaint(plane(position=a)) == f"plane: the position {said}"
+    assert complaint(plane(forces={"thrust": u1})) == f"plane: the force 'thrust' {said}"
 
 
 def test_newtons_law_has_to_determine_the_accelerations() -> None:
