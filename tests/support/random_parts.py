@@ -65,15 +65,16 @@ class Draw:
         inner = self.bounded(depth - 1) if depth > 0 and self.rng.random() < 0.4 else a
         c, d = self.coefficient(-1.5, 1.0), self.coefficient(-1.5, 1.5)
         e = self.coefficient()
+        less = "+" if a == b and c in ("1", "1.0", "Rational(1, 1)") else "-"  # a - a would be no function at all
         forms: list[str] = [
-            *(f"sin({inner})", f"cos({c}*{inner})", f"sin({a} - {c}*{b})", f"cos({inner} + {d})"),
+            *(f"sin({inner})", f"cos({c}*{inner})", f"sin({a} {less} {c}*{b})", f"cos({inner} + {d})"),
             *(
                 f"exp(-{c}*({inner})**2)",
                 f"exp(-({a})**2/({d} + ({b})**2))",
                 f"exp(sin({inner}))",
                 f"exp(-{c}*cos({a}))",
             ),
-            *(f"({inner})/(1 + {c}*({b})**2)", f"1/({d} + ({a})**2 + ({b})**2)", f"({a} - {c}*{b})/(1 + ({inner})**2)"),
+            *(f"({inner})/(1 + {c}*({b})**2)", f"1/({d} + ({a})**2 + ({b})**2)", f"({a} {less} {c}*{b})/(1 + ({inner})**2)"),
             *(f"sqrt(1 + {c}*({inner})**2)", f"sqrt({d} + ({a})**2 + ({b})**2)", f"1/sqrt(1 + ({a})**2)**3"),
             *(f"tanh({inner})", f"atan({d}*({a}))", f"log(1 + {e}*({inner})**2)", f"sin({a})*cos({b})"),
             *(f"(1 + {c}*({inner})**2)**-2", f"1/(1 + {e}*({a})**2)", f"(({a})**2 + {d})/(({b})**2 + {c})"),
