@@ -31,16 +31,21 @@ SCALES = 10.0 ** np.arange(-12.0, 7.0)
 def first_duration(instance: Instance, controls: Controls) -> float:
     """The duration that is given or guessed, or else the least in which constant controls have moved every state.
 
-    Where none of them moves any state far enough, the motion has to swing, for several of its time scales.
+    Where they move some states far enough and others not, it is no less than the time scale of the motion. Where none
+    of them moves any state far enough, the motion has to swing, for several of its time scales.
     """
     if instance.tf is not None:
         return instance.tf - instance.t0
     if instance.tf_guess is not None:
         return instance.tf_guess - instance.t0
     moved = _moved(instance, controls)
-    if np.isfinite(moved) and moved > 0.0:
-        return moved
-    return _time_scale(instance) * (SWINGING if moved > 0.0 else 1.0)
+    if not len(moved):
+        return _time_scale(instance)
+    if np.isfinite(moved).all():
+        return float(moved.max())
+    if np.isinf(moved).all():
+        return SWINGING * _time_scale(instance)
+    return max(float(moved[np.isfinite(moved)].max()), _time_scale(instance))
 
 
 def _time_scale(instance: Instance) -> float:
@@ -48,13 +53,12 @@ def _time_scale(instance: Instance) -> float:
     return tried(lambda: time_scale(instance)) or 1.0
 
 
-def _moved(instance: Instance, controls: Controls) -> float:
-    """When the last state has moved far enough that does; infinite where none does, zero where none is to move."""
+def _moved(instance: Instance, controls: Controls) -> Array:
+    """When each state that is to move has moved far enough under any constant control; infinite where none does it."""
     start = np.array(instance.initial)
     goal = np.abs(wanted(instance, instance.t0) - start)
     first = _reached(instance, controls, np.array(_constant(instance, controls)).T, start, goal)
-    found = first[(goal > 0.0) & np.isfinite(first)]
-    return float(found.max()) if len(found) else np.inf if (goal > 0.0).any() else 0.0
+    return np.asarray(first[goal > 0.0])
 
 
 def _affordable(instance: Instance, controls: Controls, k: int) -> float:

@@ -25,7 +25,9 @@ BETWEEN, FAINT_SLOPE, LASTING = 0.05, 1e-2, 0.35
 switching function decides nothing, and share of the time for which nothing decides it."""
 
 LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
-"""Multiples of the first guess of a free duration at which costs are looked at where no extremal is found."""
+FAR_LONGER = (128.0, 512.0, 2048.0)
+"""Multiples of the first guess of a free duration at which costs are looked at where no extremal is found: the last
+ones where they fall all along, because a weight on time may only tell where the guess is far too short."""
 
 FAR_OFF = 0.1
 """Relative miss of an end above which hardly any other start arrives."""
@@ -80,13 +82,21 @@ def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
     both = longer + shorter
     if longer and shorter and not any(_clearly_less(a, b) for a in both for b in both):
         return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix it"
-    if longer and all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
+    if _always_cheaper(instance, longer, limits):
         advice = "put a weight on time, or fix the final time"
         return Status.NO_MINIMISER, f"longer is always cheaper: {_listed(longer)}; {advice}"
     if shorter and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
         advice = "give time a smaller weight, constrain the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_listed(shorter)}; {advice}"
     return None
+
+
+def _always_cheaper(instance: Instance, longer: list[coarse.Priced], limits: Limits) -> bool:
+    """Whether each duration is clearly cheaper than the one before, and none that is far longer costs more again."""
+    if not longer or not all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
+        return False
+    far = coarse.costs_by_duration(instance, limits, FAR_LONGER)
+    return bool(far) and not any(_clearly_less(a, b) for a, b in pairwise([longer[-1], *far]))
 
 
 def _clearly_less(one: coarse.Priced, than: coarse.Priced, share: float = EVEN) -> bool:
