@@ -56,8 +56,8 @@ PROBLEMS = (effort,)
         ('"u", "u", "m/s^2"', '"u", "u", "m/s^^2"', None, "unit"),
         ('"u", "u", "m/s^2"', '"u", -1, "m/s^2"', "CONTROLS", "latex is -1; write text in quotes"),
         ('"u", "u", "m/s^2"', '"u", "u", "m/s^2", kind="turn"', "CONTROLS", 'kind is .turn.; write "real" or "angle"'),
-        ('"u", "u", "m/s^2"', '"u", " ", "m/s^2"', "CONTROLS", "latex is ' '; write how it is typeset, each { closed"),
-        ('"u", "u", "m/s^2"', '"u", "u}{", "m/s^2"', "CONTROLS", "latex is 'u}{'; write how it is typeset"),
+        ('"u", "u", "m/s^2"', '"u", " ", "m/s^2"', "CONTROLS", "latex is ' '; write its LaTeX, each { closed"),
+        ('"u", "u", "m/s^2"', '"u", "u}{", "m/s^2"', "CONTROLS", "latex is 'u}{'; write its LaTeX"),
         ("u - k * v", "u - 'k'(v)", "v: u", "not callable"),
     ],
 )

@@ -145,7 +145,7 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         (
             say("lag after a revolution"),
             figure(found.lag or 0.0) + unit,
-            say("if the speed is higher by <share>; the same again in each further revolution", share=f"{FASTER:g}"),
+            say("if the speed is <share> higher; the same each time", share=f"{FASTER:g}"),
         ),
     ]
     return table([("", "", ""), *rows], right=(1,))[1:]

@@ -10,7 +10,7 @@ import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, gradient, simplified, simplify, tidy, total_derivative, vanishes
-from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
+from satsym.symbolic.checks import Point, agree, compare, first_order_at_zero, identity, numeric, partial
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of, t
 from satsym.symbolic.motion.central_force import inertial_velocity, uncontrolled_force
@@ -222,7 +222,7 @@ def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
     crossed = [(sp.diff(generalised[p], q), sp.diff(generalised[q], p)) for p, q in combinations(generalised, 2)]
     one, other = (numeric([pair[k] for pair in crossed]) for k in range(2))
     moving = set(generalised).union(*(f.free_symbols for f in generalised.values()))
-    if crossed and not compare("curl", moving, lambda point: (one(point), other(point))).passed:
+    if crossed and not agree("curl", moving, lambda point: (one(point), other(point))):
         return None
     # an antiderivative that holds for positive coordinates holds for all, which the comparison below confirms
     positive = {q: sp.Dummy(q.name, positive=True) for q in generalised}
@@ -236,8 +236,8 @@ def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
     found = found.xreplace({dummy: q for q, dummy in positive.items()})
     forces, slopes = numeric(list(generalised.values())), numeric(gradient(-found, generalised))
     symbols = set(generalised).union(found.free_symbols, *(f.free_symbols for f in generalised.values()))
-    agree = compare("gradient of the potential", symbols, lambda point: (slopes(point), forces(point)))
-    return tidy(found) if agree.passed else None
+    check = compare("gradient of the potential", symbols, lambda point: (slopes(point), forces(point)))
+    return tidy(found) if check.passed else None
 
 
 def _antiderivative(function: sp.Expr, by: sp.Symbol) -> sp.Expr | None:
