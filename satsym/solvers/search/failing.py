@@ -92,11 +92,14 @@ def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
 
 
 def _always_cheaper(instance: Instance, longer: list[coarse.Priced], limits: Limits) -> bool:
-    """Whether each duration is clearly cheaper than the one before, and none that is far longer costs more again."""
+    """Whether each duration is clearly cheaper than the one before, and none cheaper than the longest of all.
+
+    Those that are so long that the coarse mesh does not resolve them may have no costs, or too high ones.
+    """
     if not longer or not all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
         return False
-    far = coarse.costs_by_duration(instance, limits, FAR_LONGER)
-    return bool(far) and not any(_clearly_less(a, b) for a, b in pairwise([longer[-1], *far]))
+    far = [one for share in FAR_LONGER for one in coarse.costs_by_duration(instance, limits, (share,))]
+    return not far or not any(_clearly_less(one, far[-1]) for one in [longer[-1], *far[:-1]])
 
 
 def _clearly_less(one: coarse.Priced, than: coarse.Priced, share: float = EVEN) -> bool:
