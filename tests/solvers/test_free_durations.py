@@ -196,3 +196,22 @@ def test_a_cold_start_does_not_depend_on_the_units() -> None:
     )
     assert found.objective == pytest.approx(plain.objective * radius**2 * rate**3, rel=1e-9)
     assert found.found.times[-1] == pytest.approx(plain.found.times[-1] / rate, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_a_state_that_hardly_has_to_move_does_not_tell_how_long_all_take() -> None:
+    """The angle is almost where it is to be, and the radius is not. Shorter and longer times cost more."""
+    start = {"r": 1.2872205337385993, "r_dot": 0.10399556602310338}
+    start |= {"theta": 0.02299817537359017, "theta_dot": 0.6845587803464064}
+    given = satsym.Instance.of(
+        "polar_orbit_timed",
+        initial=start,
+        final=dict.fromkeys(start, "reference"),
+        tf="free",
+        parameters={"c0": 0.0005350861598462447},
+    )
+    found = satsym.solve(given)
+    assert found.to_dict()["certificate"]["verdict"] == "certified"
+    best, least = float(found.found.times[-1]), found.objective
+    for share in AROUND:
+        assert solve(replace(given.case, tf=share * best)).objective > least
