@@ -115,7 +115,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
             out = _shape(function) if form else None
             begin = [*places[:MANY_DIGIT_POINTS], *limiting(kernels.spec, function, places[0])]
             for place in beside_thresholds(watched[function.name + form], function.arguments, out, begin, DIGITS):
-                if _ordered(kernels.spec, place) and (there := _moderate_values(of, place)) is not None:
+                if _allowed(kernels.spec, place) and (there := _moderate_values(of, place)) is not None:
                     _same_text(of, text, place, there, (form,))
         _same_values(of, kernels, text, places, [each[k] for each in expected])
     names = {f.name for f in found}
@@ -180,10 +180,15 @@ def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
     return place | {"t": draw(known.t)}
 
 
-def _ordered(spec: ProblemSpec, place: Arguments) -> bool:
-    """Whether lower bounds are negative, others positive, and the ends of rings in order, as :func:`drawn` has them."""
+def _allowed(spec: ProblemSpec, place: Arguments) -> bool:
+    """Whether signs are as :func:`drawn` has them, and the ends of rings in order.
+
+    Lower bounds are negative and others positive, as are states and parameters that are declared so.
+    """
     bounds = place["bounds"]
     signs = all((b < 0) == (i in spec.lower_bounds) for i, b in enumerate(bounds))
+    given = [*zip(spec.states, place["x"], strict=True), *zip(spec.parameters, place["p"], strict=True)]
+    signs = signs and all(value > 0 for declared, value in given if declared.positive)
     return signs and all(bounds[least] <= bounds[largest] for least, largest in spec.rings)
 
 
