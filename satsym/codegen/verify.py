@@ -210,10 +210,7 @@ def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterato
 
 
 def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
-    """The numbers of a function's expression at a place, if there are such: real ones, made of real ones alone.
-
-    Where a root is taken of something negative, numbers are complex, even if their imaginary parts cancel in the end.
-    """
+    """The numbers of a function's expression at a place, if there are such: real, and without roots of what is not."""
     with mp.workdps(DIGITS), suppress(*NO_NUMBERS):
         values = of.exact(symbols_at(of.function, of.known, place))
         if moderate(values) and not any(isinstance(value, mp.mpc) for value in values):
