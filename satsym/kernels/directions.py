@@ -140,8 +140,8 @@ def _short(of: Evaluation, flat: Array, angles: list[tuple[int, ControlSet]]) ->
     """What takes the place of cosine and sine of each angle: against the slope of H, as long as that allows."""
     found: list[tuple[Array, Array]] = []
     for row, part in angles:
-        whole, back, side = (of("hamiltonian", u=_turned(flat, row, turn)) for turn in (0.0, np.pi, np.pi / 2.0))
-        cosine, sine = (whole - back) / 2.0, side - (whole + back) / 2.0
+        # slopes have nothing in them of what does not turn, beside which the rest of H may be lost
+        sine, cosine = (of.slope("hamiltonian", "u", u=_turned(flat, row, turn))[row] for turn in (0.0, -np.pi / 2.0))
         slope = np.maximum(np.hypot(cosine, sine), 1e-300)
         factor = np.minimum(1.0 / np.asarray(_within(of).smoothing), np.asarray(part.radius) / slope)
         found.append((-cosine * factor, -sine * factor))
