@@ -198,18 +198,25 @@ def _jumps(arcs: Arcs) -> list[tuple[int, int, float]]:
 
 
 def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Touch points between which their constraint stays on its boundary: arcs on it, whose multiplier vanishes."""
+    """Contacts between which their constraint stays on its boundary: one arc on it, whose multiplier may vanish.
+
+    A constraint that holds a control is left out: what the law keeps to by itself is no arc (:func:`without_idle`).
+    """
     known, room = contacts(arcs), sizes(arcs)
-    for constraint in {one.constraint for one in known}:
+    for constraint in sorted({one.constraint for one in known}):
+        if _order(arcs, constraint) == 0:
+            continue
         own = [k for k, one in enumerate(known) if one.constraint == constraint]
         for j, k in pairwise(own):
-            first, second = known[j], known[k]
-            if not (first.touches and second.touches):
-                continue
-            if np.abs(_between(arcs, constraint, first.start, second.start)).max() < SLACK * room[constraint]:
-                one = Contact(constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
-                return "a free arc lies on a boundary", [_instead(arcs, (j, k), replace(one, closes=second.closes))]
+            if np.abs(_between(arcs, constraint, known[j].end, known[k].start)).max() < SLACK * room[constraint]:
+                return "a free arc lies on a boundary", [_instead(arcs, (j, k), _one_contact(known[j], known[k]))]
     return None
+
+
+def _one_contact(first: Contact, second: Contact) -> Contact:
+    """One contact from the start of a first with its constraint to the end of a second."""
+    jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
+    return Contact(first.constraint, first.start, second.end, jumps, first.opens, second.closes)
 
 
 def _between(arcs: Arcs, constraint: int, start: float, end: float) -> Array:
@@ -293,10 +300,8 @@ def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Struc
     place = sum(known[k].middle < 0.5 * (start + end) for k in own)
     if not 0 < place < len(own):
         return []
-    first, second = known[own[place - 1]], known[own[place]]
-    jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
-    one = Contact(constraint, first.start, second.end, jumps, first.opens, second.closes)
-    return [_instead(arcs, own[place - 1 : place + 1], one)]
+    pair = own[place - 1 : place + 1]
+    return [_instead(arcs, pair, _one_contact(*(known[k] for k in pair)))]
 
 
 def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
