@@ -12,6 +12,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -26,7 +28,7 @@ from satsym.codegen import verify
 from satsym.codegen.naming import code_of
 from satsym.kernels import loading
 from satsym.kernels.digest import sealed
-from satsym.kernels.many_digits import exactly, functions_of
+from satsym.kernels.many_digits import exactly, functions_of, watched
 from satsym.status import BadInput
 from satsym.symbolic import Derivation, DerivationError, pipeline
 from satsym.symbolic.checks import drawn_from, numeric, points
@@ -40,6 +42,9 @@ SHARE = 1e-9
 
 SIZE = (40, 40)
 """Shape of an array that has room for what any function of a random model fills."""
+
+JUMP = mp.mpf(10) ** -12
+"""Share of the largest number of a function that is more than the rounding of the constants in its text."""
 
 ATTEMPTS = 40
 """To find a term that large."""
@@ -249,6 +254,9 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
         effect = not _alone_in_a_condition(statement, total, term)
         if effect and not caught and (_iterated(function, statement) or _guards_only(function, statement)):
             effect = _changes(text, wrong, function.name, places)
+        if effect and not caught and _assigns_steps(statement):
+            between = list(_where_conditions_differ(text, wrong, function.name, places))
+            effect = not between or _changes(text, wrong, function.name, between, JUMP)
         return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught, effect), wrong
     return None
 
@@ -327,8 +335,78 @@ def _guards_only(function: ast.FunctionDef, statement: ast.stmt) -> bool:
     return True
 
 
-def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]]) -> bool:
-    """Whether two texts of a function have other numbers at some places, however many digits these have."""
+def _assigns_steps(statement: ast.stmt) -> bool:
+    """Whether a statement assigns nothing but steps, which change almost nowhere with what they are steps of."""
+    waiting, factors = [getattr(statement, "value", None)], []
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, ast.BinOp) and isinstance(one.op, ast.Mult):
+            waiting += [one.left, one.right]
+        else:
+            factors.append(one)
+    return all(isinstance(one, ast.Call) and ast.unparse(one.func) == "np.heaviside" for one in factors)
+
+
+def _where_conditions_differ(
+    text: str, wrong: str, name: str, places: list[dict[str, Any]]
+) -> Iterator[dict[str, Any]]:
+    """Places between the thresholds of a condition in two texts of a function, found by scaling single numbers.
+
+    Where a function is the same on both sides of a threshold, as H_u times a step is where H_u vanishes, no place shows
+    that the threshold is another one.
+    """
+    with mp.workdps(DIGITS):
+        both = [watched(one, {})[name] for one in (text, wrong)]
+        arguments = both[0][0].__code__.co_varnames[: both[0][0].__code__.co_argcount]
+
+        def gaps(place: dict[str, Any]) -> list[dict[int, Any]]:
+            for function, seen in both:
+                seen.clear()
+                given = [exactly(place[a]) for a in arguments if a != "out"]
+                function(*given, *([np.empty(SIZE, dtype=object)] if "out" in arguments else []))
+            return [dict(seen) for _, seen in both]
+
+        for place in places:
+            for argument in (a for a in ("lam", "bounds") if a in arguments):
+                for k in range(len(place[argument])):
+                    yield from _between_thresholds(gaps, partial(_scaled, place, argument, k))
+
+
+def _scaled(place: dict[str, Any], argument: str, component: int, factor: Any) -> dict[str, Any]:
+    """A place with one number multiplied by a factor."""
+    values = place[argument]
+    return place | {argument: tuple(factor * v if i == component else v for i, v in enumerate(values))}
+
+
+def _between_thresholds(
+    gaps: Callable[[dict[str, Any]], list[dict[int, Any]]], at: Callable[[Any], dict[str, Any]]
+) -> Iterator[dict[str, Any]]:
+    """Places at which a condition holds in one text and not in the other, along a grid of factors."""
+    factors = [mp.mpf(10) ** (k / 2) for k in range(-12, 5)]
+    found = [gaps(at(factor)) for factor in factors]
+    for (low, left), (high, right) in pairwise(zip(factors, found, strict=True)):
+        for condition in left[0].keys() & right[0].keys():
+            if all(a[condition] * b[condition] < 0 for a, b in zip(left, right, strict=True)):
+                roots = [_bisected(lambda f, j=j, c=condition: gaps(at(f))[j][c], low, high) for j in (0, 1)]  # type: ignore[misc]
+                middle = at(sum(roots) / 2)
+                if len({gap[condition] > 0 for gap in gaps(middle)}) == 2:
+                    yield middle
+
+
+def _bisected(value: Callable[[Any], Any], low: Any, high: Any) -> Any:
+    """Where a function changes its sign, to seven digits of a slip of 1e-6."""
+    sign = value(low) > 0
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (value(middle) > 0) == sign else (low, middle)
+    return (low + high) / 2
+
+
+def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]], jump: Any = 0) -> bool:
+    """Whether two texts of a function have other numbers at some places, however many digits these have.
+
+    Differences up to a share ``jump`` of the largest number do not count.
+    """
     for place in places:
         found = []
         for one in (text, wrong):
@@ -342,7 +420,9 @@ def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]]) -> 
                     given.append(np.empty(SIZE, dtype=object))
                 value = function(*given)
                 found.append(np.ravel(np.asarray(value, dtype=object)).tolist())
-        if any(abs(a - b) > mp.mpf(10) ** -DIGITS * abs(b) for a, b in zip(*found, strict=True) if a is not None):
+        numbers = [(a, b) for a, b in zip(*found, strict=True) if a is not None]
+        faint = jump * max(abs(b) for _, b in numbers)
+        if any(abs(a - b) > mp.mpf(10) ** -DIGITS * abs(b) + faint for a, b in numbers):
             return True
     return False
 
