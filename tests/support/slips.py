@@ -43,8 +43,9 @@ SHARE = 1e-9
 SIZE = (40, 40)
 """Shape of an array that has room for what any function of a random model fills."""
 
-JUMP = mp.mpf(10) ** -12
-"""Share of the largest number of a function that is more than the rounding of the constants in its text."""
+ROUNDING, JUMP = mp.mpf(10) ** -DIGITS, mp.mpf(10) ** -12
+"""Shares of the largest number of a function that are no change: where terms cancel that need no constants, and where
+they cancel but for the rounding of constants in the text."""
 
 ATTEMPTS = 40
 """To find a term that large."""
@@ -252,11 +253,9 @@ def in_text(derivation: Derivation, text: str, rng: random.Random) -> tuple[Slip
         caught = _verified(derivation, wrong)
         nested = total is not getattr(statement, "value", None)
         effect = not _alone_in_a_condition(statement, total, term)
-        if effect and not caught and (_iterated(function, statement) or _guards_only(function, statement)):
-            effect = _changes(text, wrong, function.name, places)
-        if effect and not caught and _assigns_steps(statement):
-            between = list(_where_conditions_differ(text, wrong, function.name, places))
-            effect = not between or _changes(text, wrong, function.name, between, JUMP)
+        if effect and not caught and not _changes(text, wrong, function.name, places):
+            settled = _iterated(function, statement) or _guards_only(function, statement)
+            effect = not settled and _moves_a_threshold(text, wrong, function.name, places)
         return Slip(function.name, ast.unparse(term)[:200], change, share, nested, caught, effect), wrong
     return None
 
@@ -335,16 +334,12 @@ def _guards_only(function: ast.FunctionDef, statement: ast.stmt) -> bool:
     return True
 
 
-def _assigns_steps(statement: ast.stmt) -> bool:
-    """Whether a statement assigns nothing but steps, which change almost nowhere with what they are steps of."""
-    waiting, factors = [getattr(statement, "value", None)], []
-    while waiting:
-        one = waiting.pop()
-        if isinstance(one, ast.BinOp) and isinstance(one.op, ast.Mult):
-            waiting += [one.left, one.right]
-        else:
-            factors.append(one)
-    return all(isinstance(one, ast.Call) and ast.unparse(one.func) == "np.heaviside" for one in factors)
+def _moves_a_threshold(text: str, wrong: str, name: str, places: list[dict[str, Any]]) -> bool:
+    """Whether two texts of a function that agree at random places may differ between the thresholds of conditions."""
+    if name not in watched(text, {}):
+        return False
+    between = list(_where_conditions_differ(text, wrong, name, places))
+    return not between or _changes(text, wrong, name, between, JUMP)
 
 
 def _where_conditions_differ(
@@ -402,7 +397,7 @@ def _bisected(value: Callable[[Any], Any], low: Any, high: Any) -> Any:
     return (low + high) / 2
 
 
-def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]], jump: Any = 0) -> bool:
+def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]], jump: Any = ROUNDING) -> bool:
     """Whether two texts of a function have other numbers at some places, however many digits these have.
 
     Differences up to a share ``jump`` of the largest number do not count.
@@ -422,7 +417,7 @@ def _changes(text: str, wrong: str, name: str, places: list[dict[str, Any]], jum
                 found.append(np.ravel(np.asarray(value, dtype=object)).tolist())
         numbers = [(a, b) for a, b in zip(*found, strict=True) if a is not None]
         faint = jump * max(abs(b) for _, b in numbers)
-        if any(abs(a - b) > mp.mpf(10) ** -DIGITS * abs(b) + faint for a, b in numbers):
+        if any(abs(a - b) > faint for a, b in numbers):
             return True
     return False
 
