@@ -62,6 +62,22 @@ def multipliers(
     return tuple(nu.tolist()), residual + slopes @ nu
 
 
+def boundary_slopes(solution: Solution) -> tuple[float, Array, Array]:
+    """The final time, how the boundary residuals change at the end, and the canonical rates there.
+
+    Returns
+    -------
+    Final time; derivatives by states, costates, multipliers and final time, shape (n+q+1, 2n+q+1); rates (2n,).
+    """
+    instance = solution.instance
+    tf, x, lam = final_values(solution)
+    arguments = instance.parameters, instance.control_set.arguments
+    nu, _ = multipliers(instance, tf, x, lam)
+    table = instance.model.boundary_jacobian(tf, x, lam, nu, *arguments, final_argument(instance))
+    slopes = np.array(table).reshape(len(x) + len(nu) + 1, -1)
+    return tf, slopes, np.array(instance.model.canonical(tf, x, lam, *arguments))
+
+
 def end_form(solution: Solution, scale: Array) -> EndForm:
     """The form at the end of a solution.
 
@@ -74,12 +90,7 @@ def end_form(solution: Solution, scale: Array) -> EndForm:
         the duration as its unit, the form the product of the units of a state and its costate.
     """
     instance, n = solution.instance, len(solution.x)
-    tf, x, lam = final_values(solution)
-    arguments = instance.parameters, instance.control_set.arguments
-    nu, _ = multipliers(instance, tf, x, lam)
-    table = instance.model.boundary_jacobian(tf, x, lam, nu, *arguments, final_argument(instance))
-    slopes = np.array(table).reshape(n + len(nu) + 1, -1)
-    rates = np.array(instance.model.canonical(tf, x, lam, *arguments))
+    tf, slopes, rates = boundary_slopes(solution)
     free_time, fixed = instance.tf is None, fixed_states(instance)
     # By dx, then by the final time with the costates along their own motion.
     by_end = np.column_stack([slopes[:, :n], slopes[:, n : 2 * n] @ rates[n:] + slopes[:, -1]])

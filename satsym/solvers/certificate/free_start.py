@@ -17,11 +17,10 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Solution
-from satsym.solvers.certificate.end_form import final_values, multipliers
+from satsym.solvers.certificate.end_form import boundary_slopes
 from satsym.solvers.certificate.jacobi import AFRESH, kernel
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.certificate.start import STILL, UNRESOLVED, Curvature, softest
-from satsym.solvers.collocation.scaling import final_argument
 
 SWITCHED = "bang-bang"
 """The method of extremals between whose arcs controls switch, of which the field knows nothing."""
@@ -92,12 +91,7 @@ def second_derivative(solution: Solution) -> Array | None:
 def _ended(solution: Solution, scale: Array) -> Array | None:
     """The plane at the end of neighbouring extremals that keep what is asked there, shape (2n, n), orthonormal."""
     instance, n = solution.instance, len(solution.x)
-    tf, x, lam = final_values(solution)
-    arguments = instance.parameters, instance.control_set.arguments
-    nu, _ = multipliers(instance, tf, x, lam)
-    table = instance.model.boundary_jacobian(tf, x, lam, nu, *arguments, final_argument(instance))
-    slopes = np.array(table).reshape(n + len(nu) + 1, -1)
-    rates = np.array(instance.model.canonical(tf, x, lam, *arguments))
+    tf, slopes, rates = boundary_slopes(solution)
     by_time = slopes[:, : 2 * n] @ rates + slopes[:, -1]
     rows = np.column_stack(
         [slopes[:, : 2 * n] * scale, slopes[:, 2 * n : -1], by_time * (tf - float(solution.times[0]))]

@@ -127,8 +127,9 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     filled = (switched(instance, at.u) - low) / np.where(high > low, high - low, 1.0)
     between = (filled > BETWEEN) & (filled < 1.0 - BETWEEN)
     sigma, priced = (signs(instance, at.times, at.x, costates)[0] for costates in (at.lam, np.zeros_like(at.lam)))
-    with np.errstate(all="ignore"):  # where norms cost nothing nothing is faint
-        faint = (np.abs(sigma) <= FAINT_SLOPE * np.abs(priced).max(axis=1, keepdims=True)) & (sigma != 0.0)
+    price = np.abs(priced).max(axis=1, keepdims=True)
+    with np.errstate(all="ignore"):  # where norms cost nothing, no slope is small beside their price
+        faint = (np.abs(sigma) <= FAINT_SLOPE * price) & (price > 0.0)
     if not ((between | faint[:, 1:]) @ at.steps > LASTING * at.steps.sum()).any():
         return ""
     single = [c for part in spec.control_parts if part.branch == "switched" for c in part.controls]
