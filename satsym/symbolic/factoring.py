@@ -1,6 +1,7 @@
 """Factors of expressions, found by FLINT.
 
-The result is that of :func:`sympy.factor`, whose polynomials in many symbols take it up to a hundred times as long.
+The result is that of :func:`sympy.factor`. Polynomials in many symbols take sympy up to a hundred times as long, and a
+few take it minutes, depending on the random numbers that it draws for the evaluation points of Wang's algorithm.
 """
 
 from __future__ import annotations
@@ -14,11 +15,6 @@ HIGHEST_DEGREE = 200
 
 To sympy exp(-6.537 x) is the power 6537 of exp(-x/1000), and FLINT looks for factors of that degree.
 """
-
-
-def as_factors(expression: sp.Expr) -> sp.Expr:
-    """As by sympy's factor; what has decimals is factored by FLINT, for their letters are many symbols."""
-    return factored(expression) if expression.has(sp.Float) else sp.factor(expression)
 
 
 def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
@@ -45,7 +41,7 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
         elif not (base.is_Add or base.has(sp.exp)):  # exponentials of sums have factors, too
             factors.append(part)
         elif exponent.is_Integer:
-            content, found = _factors(base)
+            content, found = factor_list(base)
             coefficient *= content**exponent
             factors += [factor ** (exponent * times) for factor, times in found]
         elif exponent.is_Rational:
@@ -64,14 +60,14 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
 
 def _roots(base: sp.Expr, exponent: sp.Rational) -> list[sp.Expr]:
     """Factors of a root of a polynomial: those that are positive have roots of their own."""
-    content, found = _factors(base)
+    content, found = factor_list(base)
     alone = [factor ** (times * exponent) for factor, times in found if factor.is_positive]
     rest = [factor**times for factor, times in found if not factor.is_positive]
     (alone if content.is_positive else rest).append(content**exponent if content.is_positive else content)
     return [*alone, sp.Mul(*rest) ** exponent]
 
 
-def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]]]:
+def factor_list(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]]]:
     """Content and irreducible factors with multiplicities; each has a positive leading coefficient, as in sympy."""
     from flint import Ordering, fmpz_mpoly_ctx
 
@@ -82,7 +78,7 @@ def _factors(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]
     if max(poly.degree_list()) > HIGHEST_DEGREE and (exponentials := sorted(polynomial.atoms(sp.exp), key=str)):
         letters = {e: sp.Symbol(f"exponential_{k}", positive=True) for k, e in enumerate(exponentials)}
         back = {letter: e for e, letter in letters.items()}
-        content, found = _factors(polynomial.xreplace(letters))
+        content, found = factor_list(polynomial.xreplace(letters))
         return content, [(factor.xreplace(back), times) for factor, times in found]
     if not (poly.domain.is_ZZ or poly.domain.is_QQ):
         content, found = sp.factor_list(polynomial)

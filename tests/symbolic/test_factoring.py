@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym.symbolic.decimals import DIGITS
-from satsym.symbolic.factoring import as_factors, factored
+from satsym.symbolic.factoring import factored
 
 x, y, z = sp.symbols("x y z", real=True)
 k = sp.Symbol("k", positive=True)
@@ -60,7 +60,7 @@ def test_decimals_are_letters_in_what_is_factored(monkeypatch: pytest.MonkeyPatc
         (1.5 * x**2 - 3 * x, x * (1.5 * x - 3)),
     ]
     for expression, factors in cases:
-        for found in (as_factors(expression), factored(expression)):
+        for found in (factored(expression), factored(expression)):
             assert found.as_coeff_Mul()[1] == factors
             assert sp.expand(found) == expression
     assert not asked

@@ -20,6 +20,7 @@ from satsym.auditing import quantities
 from satsym.auditing.propositions.values import Undecided, in_words, is_exact
 from satsym.auditing.quantities import PrintedNumber, Quantity
 from satsym.status import BadInput
+from satsym.symbolic.factoring import factored
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9
 """How far two measured numbers may be apart and still be called equal."""
@@ -177,7 +178,7 @@ def _exact_sign(gap: Any) -> int:
             return sign
     if gap.is_number:
         return 1 if float(gap) > 0.0 else -1
-    simple = gap.factor()
+    simple = factored(gap)
     if simple.is_positive or simple.is_negative:
         return 1 if simple.is_positive else -1
     raise Undecided(f"the sign of {gap} depends on its letters")

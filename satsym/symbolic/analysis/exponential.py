@@ -7,7 +7,7 @@ import sympy as sp
 from satsym.symbolic.analysis.components import Component, components
 from satsym.symbolic.analysis.field import Field, shortest, sign_of
 from satsym.symbolic.analysis.spectrum import Spectrum
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import t
 
 
@@ -54,9 +54,9 @@ def _simple(field: Field, component: Component) -> list[tuple[sp.Expr, sp.Matrix
 def _pair(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """cosh(d t) and sinh(d t)/d for the root d of ``square``, written for what its sign is."""
     if sign_of(square) == -1:
-        frequency = sp.sqrt(as_factors(-square))
+        frequency = sp.sqrt(factored(-square))
         return sp.cos(frequency * t), sp.sin(frequency * t) / frequency
-    rate = sp.sqrt(as_factors(square))
+    rate = sp.sqrt(factored(square))
     return sp.cosh(rate * t), sp.sinh(rate * t) / rate
 
 

@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.polys.constructor import construct_domain
 from sympy.polys.matrices import DomainMatrix
 
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factor_list, factored
 
 
 class NotExact(ValueError):
@@ -96,7 +96,7 @@ def shortest(expression: sp.Expr) -> sp.Expr:
     if expression.is_Atom:
         return expression
     whole = sp.cancel(expression) if expression.is_rational_function() else expression
-    candidates = [whole, sp.expand(whole), as_factors(whole)]
+    candidates = [whole, sp.expand(whole), factored(whole)]
     return min(candidates, key=lambda e: (sp.count_ops(e), sp.default_sort_key(e)))
 
 
@@ -116,8 +116,8 @@ def sign_of(expression: sp.Expr) -> int | None:
 
 def never_zero(expression: sp.Expr) -> bool:
     """Whether the expression is certainly not zero, whatever values its symbols take."""
-    factors = sp.factor_list(sp.fraction(sp.together(expression))[0])
-    return factors[0] != 0 and all(bool(sign_of(f)) or f.is_nonzero for f, _ in factors[1])
+    content, factors = factor_list(sp.fraction(sp.together(expression))[0])
+    return content != 0 and all(bool(sign_of(f)) or f.is_nonzero for f, _ in factors)
 
 
 def certain_rank(matrix: sp.MatrixBase) -> tuple[int, tuple[sp.Expr, ...]]:
@@ -151,7 +151,7 @@ def _best_pivot(field: Field, rows: list[list[Any]]) -> tuple[int, int, bool] | 
 
 
 def _sign_of_product(expression: sp.Expr) -> int | None:
-    content, factors = sp.factor_list(expression) if expression.free_symbols else (expression, [])
+    content, factors = factor_list(expression) if expression.free_symbols else (expression, [])
     sign = 0 if content == 0 else 1 if content.is_positive else -1
     for factor, power in factors:
         known = _sign_of_sum(factor)

@@ -15,7 +15,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from satsym.symbolic.analysis.field import Field, exact, never_zero, shortest, sign_of
 from satsym.symbolic.analysis.routh import routh
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 
 LAMBDA = sp.Symbol("eigenvalue")
 """What characteristic polynomials are polynomials in."""
@@ -180,7 +180,7 @@ def _biquadratic(p: sp.Expr, q: sp.Expr) -> tuple[sp.Expr, ...]:
 
 def _root(square: sp.Expr) -> sp.Expr:
     """The square root, with squares of what is positive taken out of it."""
-    return sp.sqrt(as_factors(square))
+    return sp.sqrt(factored(square))
 
 
 def _assumed(field: Field, factors: list[sp.Poly]) -> tuple[sp.Expr, ...]:

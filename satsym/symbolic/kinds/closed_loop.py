@@ -17,7 +17,7 @@ from satsym.symbolic.algebra import simplify, tidy, vanishes
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, power_of, product
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import commanded as cn
 from satsym.symbolic.kinds import step_answers
 from satsym.symbolic.kinds.commanded import COMMAND, SECONDS, Statement, control_of, loop_of, s
@@ -114,7 +114,7 @@ def critical_damping(so_far: Derivation) -> Step:
     found = sp.solve(wanted, gains, dict=True)
     if len(found) != 1 or set(found[0]) != set(gains):
         raise DerivationError(f"{model.name}: the gains cannot give both poles")
-    equations = tuple(Equation(k.name, k, as_factors(found[0][k])) for k in gains)
+    equations = tuple(Equation(k.name, k, factored(found[0][k])) for k in gains)
     value = numeric([polynomial, sp.diff(polynomial, s)])
     gain = numeric([e.rhs for e in equations])
 
@@ -162,7 +162,7 @@ def _as_ratio(expression: sp.Expr) -> sp.Expr:
     lead = sp.Poly(denominator, s).LC()
     above = sp.Poly(sp.cancel(numerator / lead), s)
     below = sp.Poly(sp.cancel(denominator / lead), s)
-    written = [sp.Add(*(as_factors(c) * s**k for (k,), c in p.terms())) for p in (above, below)]
+    written = [sp.Add(*(factored(c) * s**k for (k,), c in p.terms())) for p in (above, below)]
     return sp.factor_terms(written[0]) / written[1]
 
 

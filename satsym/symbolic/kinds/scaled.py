@@ -15,7 +15,7 @@ from satsym.symbolic.algebra import definitions_of, tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step, resolved
 from satsym.symbolic.dimension_algebra import Dimension
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import SECOND, SpecialCase, original_equations, there_and_back
 from satsym.symbolic.linear.notation import TRANSITION
@@ -254,4 +254,4 @@ def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
 
 def _reduced(expression: sp.Expr) -> sp.Expr:
     """A rational function of the symbols and of their roots, without common factors."""
-    return sp.powdenest(as_factors(sp.cancel(sp.together(sp.expand(expression)))), force=True)
+    return sp.powdenest(factored(sp.cancel(sp.together(sp.expand(expression)))), force=True)

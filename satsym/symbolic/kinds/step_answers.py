@@ -16,7 +16,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import simplify
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import commanded as cn
 from satsym.symbolic.kinds.commanded import SECONDS, control_of, loop_of, s
 from satsym.symbolic.model import symbols_of
@@ -66,9 +66,9 @@ def extremes(so_far: Derivation) -> Step:
     before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
     pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
     signs = numeric(pieces)({symbol: mp.mpf(1) for piece in pieces for symbol in piece.free_symbols})
-    total = as_factors(sp.Add(*(piece * (1 if sign > 0 else -1) for piece, sign in zip(pieces, signs, strict=True))))
+    total = factored(sp.Add(*(piece * (1 if sign > 0 else -1) for piece, sign in zip(pieces, signs, strict=True))))
     square = _integral(sp.expand(control**2))
-    squared = as_factors(_in_the_end(square, damping) - square.subs(SECONDS, 0))
+    squared = factored(_in_the_end(square, damping) - square.subs(SECONDS, 0))
     ends = {x: _in_the_end(value, damping) for x, value in answers.items()}
     starts = {x: value.subs(SECONDS, 0) for x, value in answers.items()}
     equations = [
@@ -119,14 +119,14 @@ def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
             f"{model.name}: {symbol.name} answers a step with something more singular than an impulse"
         )
     value = sp.Integer(0)
-    for part in sp.Add.make_args(sp.apart(as_factors((rest / denominator).as_expr()), s)):
+    for part in sp.Add.make_args(sp.apart(factored((rest / denominator).as_expr()), s)):
         above, below = sp.fraction(sp.together(part))
         ((root, order),) = sp.roots(sp.Poly(below, s)).items() if below.has(s) else ((sp.Integer(0), 0),)
         if order:
             lead = sp.Poly(below, s).LC()
             value += above / lead * SECONDS ** (order - 1) / sp.factorial(order - 1) * sp.exp(root * SECONDS)
     (damping,) = symbols_of((model.damping,))
-    return as_factors(quotient.as_expr()), sp.collect(sp.expand(value), sp.exp(-damping * SECONDS), as_factors)
+    return factored(quotient.as_expr()), sp.collect(sp.expand(value), sp.exp(-damping * SECONDS), factored)
 
 
 def _zeros(answer: sp.Expr, damping: sp.Symbol) -> list[sp.Expr]:
@@ -141,7 +141,7 @@ def _integral(answer: sp.Expr) -> sp.Expr:
 
 def _in_the_end(answer: sp.Expr, damping: sp.Symbol) -> sp.Expr:
     """What is left of an answer when all that decays has decayed."""
-    return as_factors(
+    return factored(
         sp.expand(answer).replace(lambda e: isinstance(e, sp.exp) and e.has(damping), lambda _: sp.Integer(0))
     )
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 
 HUNDREDTHS = (100, 1000, 10000)
 """Whole numbers below a fraction line that are better read as a decimal number."""
@@ -181,7 +181,7 @@ def _as_product(total: sp.Expr) -> sp.Expr:
     """A sum below a fraction line as a product, if that is shorter."""
     if len(total.args) > MOST_TERMS or total.has(sp.Float):
         return total
-    return min(total, as_factors(total), key=sp.count_ops)
+    return min(total, factored(total), key=sp.count_ops)
 
 
 def _factors(expression: sp.Expr) -> Iterator[sp.Expr]:

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 
 
 def readable(expression: sp.Expr) -> sp.Expr:
@@ -62,7 +62,7 @@ def _one_exponential(product: sp.Expr) -> sp.Expr:
     powers = [f for f in product.args if isinstance(f, sp.exp)]
     rest = [f for f in product.args if not isinstance(f, sp.exp)]
     if len(powers) > 1:
-        product = sp.Mul(*rest, sp.exp(as_factors(sp.Add(*(p.args[0] for p in powers)))))
+        product = sp.Mul(*rest, sp.exp(factored(sp.Add(*(p.args[0] for p in powers)))))
     sums = [f for f in rest if f.is_Add and any(t.has(sp.exp) for t in f.args)]
     if not powers or len(sums) != 1:
         return product

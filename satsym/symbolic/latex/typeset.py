@@ -10,7 +10,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.latex.printer import Kind, Printer
 from satsym.symbolic.latex.products import Term
 from satsym.symbolic.latex.rewriting import readable
@@ -82,7 +82,7 @@ class Typesetter:
     def in_laplace(self, polynomial: Any) -> list[Term]:
         """Likewise of one in the variable of Laplace transforms, with factors drawn out of its coefficients."""
         s = sp.Symbol(LAPLACE)
-        return [term for (k,), c in sp.Poly(polynomial, s).terms() for term in self.terms(as_factors(c) * s**k)]
+        return [term for (k,), c in sp.Poly(polynomial, s).terms() for term in self.terms(factored(c) * s**k)]
 
     def ratio_in_laplace(self, ratio: Any) -> tuple[list[Term], list[Term]]:
         """Numerator and denominator of a ratio of such polynomials, without fractions in them."""

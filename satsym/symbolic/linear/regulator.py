@@ -20,7 +20,7 @@ from satsym.symbolic.analysis.spectrum import spectrum
 from satsym.symbolic.analysis.structure import LinearSystem, controllability
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.matrices import analysable, entries, numeric_matrix, sign_function, system_of
 from satsym.symbolic.model import Problem, symbols_of
@@ -116,7 +116,7 @@ def lqr(so_far: Derivation) -> Step | None:
     if not stabilisable(system):
         return None
     p, r = ln.symmetric("P", states), ln.symmetric("R", controls)
-    gain = sp.ImmutableMatrix((inverse(r) * system.b.T * p).applyfunc(as_factors))
+    gain = sp.ImmutableMatrix((inverse(r) * system.b.T * p).applyfunc(factored))
     residual = so_far.equation("lqr_differential_riccati.riccati").rhs
     return Step(
         "lqr",
@@ -162,7 +162,7 @@ def _coupling(so_far: Derivation) -> sp.ImmutableMatrix:
 
 @lru_cache(maxsize=16)
 def _coupled(b: sp.ImmutableMatrix, r: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    return sp.ImmutableMatrix((b * inverse(r) * b.T).applyfunc(as_factors))
+    return sp.ImmutableMatrix((b * inverse(r) * b.T).applyfunc(factored))
 
 
 def _named_coupling(so_far: Derivation) -> sp.ImmutableMatrix:

@@ -16,6 +16,7 @@ from sympy.functions.elementary.trigonometric import TrigonometricFunction
 from satsym.formula.budget import charge
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
 from satsym.symbolic.checks import POINTS, points
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.functions.minimisers import Clip, Shorten, Shrink, Switch, by_signs
 
 _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
@@ -274,7 +275,7 @@ def nonvanishing_quotient(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
     """
     if is_zero(other) or is_zero(one):
         return None
-    quotient = sp.factor(sp.cancel(sp.together(one / other)))
+    quotient = factored(sp.cancel(sp.together(one / other)))
     if not all(symbol.is_positive for symbol in quotient.free_symbols):
         return None
     return quotient if quotient.is_positive or quotient.is_negative else None
@@ -296,7 +297,7 @@ def short(expression: sp.Expr) -> sp.Expr:
     expanded = sp.expand(expression)
     ways = [expanded, sp.together(expanded)]
     if max(map(_box, sp.fraction(ways[-1]))) <= _MOST_COEFFICIENTS:
-        ways.insert(1, sp.factor(expanded))
+        ways.insert(1, factored(expanded))
     return min(ways, key=sp.count_ops)
 
 

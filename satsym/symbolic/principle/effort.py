@@ -18,7 +18,7 @@ from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import Model, Problem, symbols_of, t, variables_of
 from satsym.symbolic.notation import free_letter, indexed, named
 from satsym.symbolic.principle import parts
@@ -37,9 +37,9 @@ def exact_differential(so_far: Derivation) -> Step | None:
     if potential is None:
         return None
     rates = so_far.rhs("first_order").xreplace(definitions_of(so_far.model))
-    gradient = [as_factors(sp.diff(potential, x)) for x in states]
+    gradient = [factored(sp.diff(potential, x)) for x in states]
     change = sum(g * f for g, f in zip(gradient, rates, strict=True))
-    reduced = as_factors(sp.expand(cost.xreplace(definitions_of(so_far.model)) - change))
+    reduced = factored(sp.expand(cost.xreplace(definitions_of(so_far.model)) - change))
     costates = [n.costate_of(x) for x in states]
     shifted = {
         lam: reduced_costate_of(x) - sign(problem) * g for lam, x, g in zip(costates, states, gradient, strict=True)
@@ -87,19 +87,19 @@ def minimum_effort(so_far: Derivation) -> Step | None:
     law = sp.expand(simplify((-b.T * power.T * pull)[0]))
     later = sp.Dummy("z")
     path = (_flow(a, t) * start + _integral(_flow(a, t - later) * b * law.xreplace({t: later}), later)).applyfunc(
-        lambda e: sp.collect(sp.expand(e), t, as_factors)
+        lambda e: sp.collect(sp.expand(e), t, factored)
     )
-    spent = as_factors(simplify(weight * sp.integrate(sp.expand(law**2), (t, 0, end))))
+    spent = factored(simplify(weight * sp.integrate(sp.expand(law**2), (t, 0, end))))
     rest = dict.fromkeys(start[1:], sp.Integer(0))
-    from_rest = as_factors(law.xreplace(rest))
+    from_rest = factored(law.xreplace(rest))
     peak = sp.Abs(from_rest.subs(t, 0))
     equations = [
-        Equation(control.name, control, sp.collect(law, t, as_factors)),
+        Equation(control.name, control, sp.collect(law, t, factored)),
         *(Equation(x.name, x, value) for x, value in zip(states, path, strict=True)),
         Equation("cost", MINIMUM_COST, spent),
         Equation("from_rest", n.answer_of(control), from_rest),
         Equation("peak", peak_of(control), simplify(peak)),
-        Equation("cost_from_rest", COST_FROM_REST, as_factors(spent.xreplace(rest))),
+        Equation("cost_from_rest", COST_FROM_REST, factored(spent.xreplace(rest))),
     ]
     value, slopes = numeric([*path, law]), a * path + b * law
     proofs = identity(
@@ -160,7 +160,7 @@ def _potential(so_far: Derivation) -> sp.Expr | None:
     if solution is None:
         return None
     found = ansatz.xreplace(solution).xreplace(dict.fromkeys(unknown, sp.Integer(0)))
-    return as_factors(found) if found != 0 else None
+    return factored(found) if found != 0 else None
 
 
 def _chain(so_far: Derivation) -> tuple[sp.Matrix, sp.Matrix, sp.Expr] | None:

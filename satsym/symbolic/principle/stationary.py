@@ -19,7 +19,7 @@ from satsym.agreement import DIGITS, equal, finite
 from satsym.symbolic.algebra import simplify, tidy, vanishes
 from satsym.symbolic.checks import Point, numeric, points, with_digits
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.functions.minimisers import Clip
 from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Middle, root_of
 from satsym.symbolic.principle.control_sets import by_circle
@@ -90,7 +90,7 @@ def with_angle(
         return None
     rest, *pair = circle
     moved = sp.Add(*(term for term in sp.Add.make_args(sp.expand(rest)) if term.has(u)))
-    (cosine, one), (sine, other) = (as_factors(e).as_independent(u, as_Add=False) for e in pair)
+    (cosine, one), (sine, other) = (factored(e).as_independent(u, as_Add=False) for e in pair)
     ratio = simplify(other / one)
     if ratio.has(u):
         return None
@@ -110,7 +110,7 @@ def with_angle(
     excess = values[0] - values[1]
     if arc is None:
         first, second = sp.Dummy("first", real=True), sp.Dummy("second", real=True)
-        product = as_factors(value.xreplace({u: first}) - value.xreplace({u: second, length: -length}))
+        product = factored(value.xreplace({u: first}) - value.xreplace({u: second, length: -length}))
         excess = product.xreplace({first: laws[0], second: laws[1]}).xreplace({length: sizes[0]})
     return Choice(excess, *laws), Choice(excess, *turns)
 

@@ -18,7 +18,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, simplify
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
-from satsym.symbolic.factoring import as_factors
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.functions.minimisers import Switch
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
@@ -138,7 +138,7 @@ def _arc(chain: Chain, bound: sp.Symbol) -> sp.Expr:
     before = sp.Dummy("before", real=True)
     position, rate = _moved(chain, bound, before, chain.target)
     (moment,) = sp.solve(rate - chain.rate, before)
-    return as_factors(simplify(position.xreplace({before: moment}) - chain.target[0]))
+    return factored(simplify(position.xreplace({before: moment}) - chain.target[0]))
 
 
 def _between_rests(chain: Chain) -> tuple[sp.Expr, sp.Expr]:
@@ -150,11 +150,11 @@ def _between_rests(chain: Chain) -> tuple[sp.Expr, sp.Expr]:
         middle = _moved(chain, level, first, (sp.Integer(0), sp.Integer(0)))
         end = _moved(chain, last, duration - first, middle)
         (fraction,) = sp.solve(end[1], first)
-        found.append((as_factors(fraction / duration), as_factors(end[0].xreplace({first: fraction}) / duration**2)))
+        found.append((factored(fraction / duration), factored(end[0].xreplace({first: fraction}) / duration**2)))
     (fraction, reached), (other, _) = found
     side = sp.sign(way)
     total = sp.sqrt(sp.Abs(way) * sp.expand(1 / reached))
-    return total, s.TRANSITION * (as_factors(fraction + other) / 2 + as_factors(fraction - other) / 2 * side)
+    return total, s.TRANSITION * (factored(fraction + other) / 2 + factored(fraction - other) / 2 * side)
 
 
 @dataclass(frozen=True)
