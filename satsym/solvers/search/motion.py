@@ -10,8 +10,12 @@ from satsym.arrays import Array
 from satsym.control_set import bound_names
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
+from satsym.solvers.constrained.arcs import sizes, values
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.transcription import DEGREE, RADAU, basis
+
+CROSSED = 1e-3
+"""Share of its size by which a path constraint is violated between the points of a motion that is none."""
 
 START = np.array([[one(0.0)] for one in basis(RADAU)])
 """Weights of the points of an interval in the value at its start."""
@@ -78,6 +82,15 @@ def motion(found: Found) -> Motion:
     jumps = found.multipliers[programme.kinds["way"].places] * scale if len(passed) else np.empty(0)
     whole = np.concatenate([first, lam], axis=1)
     return Motion(instance, times, x, u, whole, _pushes(found), steps, found.objective, nu, passed, jumps)
+
+
+def violated(at: Motion) -> bool:
+    """Whether a motion violates a path constraint halfway between its points."""
+    if not at.instance.model.spec.path_constraints:
+        return False
+    points = at.times[1:], at.x[:, 1:], at.u
+    middles = (0.5 * (row[..., :-1] + row[..., 1:]) for row in points)
+    return bool((values(at.instance, *middles) > CROSSED * sizes(at.instance, *points)[:, None]).any())
 
 
 def _pushes(found: Found) -> Array:

@@ -23,7 +23,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.search import nlp, starts
 from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR, STARTS, at_edge, same, started
 from satsym.solvers.search.mesh import refined
-from satsym.solvers.search.motion import Motion, motion
+from satsym.solvers.search.motion import Motion, motion, violated
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.starts import Plan
@@ -48,9 +48,9 @@ path constraints it is AROUND."""
 BESIDE, ON_FINER_MESH = 120, 200
 """Iterations of the interior-point code for a competitor, and for a finer mesh."""
 
-MESHES, SETTLED_COST, SMOOTHINGS = 5, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
-"""Number of finer meshes at most, relative change of cost from one to the next at which they end, and smoothings of
-norms on each."""
+MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.2, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
+"""Number of finer meshes at most, share of the work that those of one start may take (a wild motion needs ever more
+intervals), relative change of cost from one to the next at which they end, and smoothings of norms on each."""
 
 CHEAPER = 1e-9
 """Relative difference from which one exact cost is less than another."""
@@ -59,9 +59,10 @@ PARALLELS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
 """Motions at the cost of an answer that are made exact at most, if they go another way; the number of times at which
 ways are compared; and the share of the range of a state by which two ways differ at least."""
 
-FALLING, RESOLVED = 1e-2, 1e-2
+FALLING, RESOLVED, UNCERTAIN = 1e-2, 1e-2, 10.0
 """Share of its cost by which a motion that costs more than an answer must become cheaper from one mesh to the next to
-be followed further, and the residual of its coarse mesh, relative to the sizes of states, up to which it is not."""
+be followed further; the residual of its coarse mesh, relative to the sizes of states, up to which it is not; and the
+uncertainty of a cost in units of its last change."""
 
 MOST_COSTS, KEPT_COST = 3, 0.5
 """Different costs after which the search ends if none of their motions could be made exact. A motion whose cost finer
@@ -70,9 +71,6 @@ many."""
 
 ENDLESS = 2
 """Starts with the shortest or the longest duration that is allowed, after which the search ends."""
-
-FINER = 0.2
-"""Fraction of the work that the finer meshes of one start may take: a wild motion needs ever more intervals."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +82,7 @@ class Tried(Generic[Answer]):
     plan
         How it began.
     cost
-        NaN where the start was not solved.
+        NaN where the start was not solved, or neither an extremal nor finer meshes tell the cost of its motion.
     exact
         The extremal, if it costs less than the answer.
     """
@@ -238,10 +236,12 @@ def _followed(
     """What a motion on a coarse mesh comes to beside an answer of some cost, and the extremal if that costs less.
 
     A motion that costs more is solved on finer meshes as long as these make it much cheaper: it may only seem dear
-    because the coarse mesh does not resolve it.
+    because the coarse mesh does not resolve it. A motion that costs less on all meshes is cheaper even if it is near no
+    extremal that was found. Smoothing adds to its cost.
     """
-    before, came = None, found.objective
+    before, came, at, change = None, found.objective, None, np.inf
     for at in _finer(found, limits):
+        change = np.inf if before is None else abs(at.cost - before)
         came = at.cost
         if came < cost - SIMILAR * abs(cost):
             answer = exact(at)
@@ -252,7 +252,8 @@ def _followed(
         elif refined(found)[1] <= RESOLVED if before is None else came >= before - FALLING * abs(before):
             return came, None
         before = came
-    return (float("nan") if came < cost else came), None
+    surely = came + UNCERTAIN * change < cost - SIMILAR * abs(cost) and at is not None and not violated(at)
+    return (came if surely or came >= cost else float("nan")), None
 
 
 def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
