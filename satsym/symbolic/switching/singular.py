@@ -33,7 +33,7 @@ def singular_arcs(so_far: Derivation) -> Step:
     conclusions: list[Conclusion] = []
     found = searches(so_far)
     for search in found:
-        suffix = "" if _alike(found, search) else search.branch
+        suffix = _suffix(found, search)
         for k, derivative in enumerate(search.derivatives, 1):
             name = f"{search.control.name}{suffix}_{k}"
             equations[name] = Equation(name, s.derivative_of(search.control, k, suffix), derivative)
@@ -65,13 +65,14 @@ def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
     """What a singular arc needs in order to minimise; nothing where no derivative contains the control."""
     assert so_far.problem is not None
     equations, checks, conclusions = [], [], []
-    for search in searches(so_far):
+    found = searches(so_far)
+    for search in found:
         if search.outcome != "order" or search.order % 2:
             continue
         value = _kelley(search)
         symbol = s.kelley(search.control, search.branch)
         equations.append(Equation(f"{search.control.name}{search.branch}", symbol, value))
-        checks.append(_slope_of_differences(so_far, search))
+        checks.append(_slope_of_differences(so_far, search, _suffix(found, search)))
         needed = sign(so_far.problem) * value
         verdict = "satisfied" if needed.is_positive else "violated" if needed.is_negative else "open"
         conclusions.append(
@@ -116,9 +117,10 @@ def _kept(search: Search) -> tuple[sp.Expr, ...]:
     return search.derivatives[:-1]
 
 
-def _alike(found: Sequence[Search], search: Search) -> bool:
-    """Whether the derivatives are the same at all thresholds of the control."""
-    return all(o.derivatives == search.derivatives for o in found if o.control == search.control)
+def _suffix(found: Sequence[Search], search: Search) -> str:
+    """What names of derivatives end with: nothing where they are the same at all thresholds of the control."""
+    alike = all(o.derivatives == search.derivatives for o in found if o.control == search.control)
+    return "" if alike else search.branch
 
 
 def _on_surface(search: Search) -> Any:
@@ -145,10 +147,16 @@ def _stays(so_far: Derivation, search: Search) -> Check:
     return compare("vanish on the arc", _symbols(so_far, conditions, rates), sides)
 
 
-def _slope_of_differences(so_far: Derivation, search: Search) -> Check:
-    """Compare what multiplies the control with the slope, in the control, of differences along extremals."""
+def _slope_of_differences(so_far: Derivation, search: Search, suffix: str) -> Check:
+    """Compare what multiplies the control with the slope, in the control, of differences along extremals.
+
+    They are differences of the derivative before the last one as the step ``singular_arcs`` has it.
+    """
     rates = {z: rate.xreplace(dict(search.magnitude)) for z, rate in flow(so_far).items()}
-    before = [search.threshold, *(d.xreplace({search.control: sp.Integer(0)}) for d in _kept(search))][-1]
+    before = search.threshold
+    if search.order > 1:
+        stated = so_far.equation(f"singular_arcs.{search.control.name}{suffix}_{search.order - 1}").rhs
+        before = stated.xreplace({search.control: sp.Integer(0)})
     everything = _symbols(so_far, [before], rates)
     values, motion = numeric([before]), numeric(list(rates.values()))
     slope, move = numeric([search.slope]), _on_surface(search)
