@@ -84,7 +84,7 @@ def motion(found: Found) -> Motion:
     return Motion(instance, times, x, u, whole, _pushes(found), steps, found.objective, nu, passed, jumps)
 
 
-def violated(at: Motion) -> bool:
+def violates(at: Motion) -> bool:
     """Whether a motion violates a path constraint halfway between its points."""
     if not at.instance.model.spec.path_constraints:
         return False

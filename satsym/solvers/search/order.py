@@ -23,7 +23,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.search import nlp, starts
 from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR, STARTS, at_edge, same, started
 from satsym.solvers.search.mesh import refined
-from satsym.solvers.search.motion import Motion, motion, violated
+from satsym.solvers.search.motion import Motion, motion, violates
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.starts import Plan
@@ -252,7 +252,7 @@ def _followed(
         elif refined(found)[1] <= RESOLVED if before is None else came >= before - FALLING * abs(before):
             return came, None
         before = came
-    surely = came + UNCERTAIN * change < cost - SIMILAR * abs(cost) and at is not None and not violated(at)
+    surely = came + UNCERTAIN * change < cost - SIMILAR * abs(cost) and at is not None and not violates(at)
     return (came if surely or came >= cost else float("nan")), None
 
 
