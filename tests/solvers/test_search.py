@@ -24,7 +24,7 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import answer, nlp, order, solving, starts
+from satsym.solvers.search import answer, motion, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
@@ -419,3 +419,25 @@ def test_a_motion_that_only_a_coarse_mesh_makes_dear_is_followed(
     monkeypatch.setattr(order, "_finer", lambda *_: (SimpleNamespace(cost=cost) for cost in costs))
     monkeypatch.setattr(order, "refined", lambda _: ([], residual))
     assert order._followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact")) == came
+
+
+@pytest.mark.parametrize(("name", "cost"), [("return-to-orbit", None), ("bryson-denham", 4.0)])
+def test_a_motion_that_costs_less_counts_even_if_no_extremal_is_found_near_it(name: str, cost: float | None) -> None:
+    """Bryson and Ho, 3.11: 4/(9 l), with l = 1/9."""
+    case = instances.load(name)
+    cost = solvers.solve(case).objective if cost is None else cost
+    work = replace(LIMITS, work=solving.WORK)
+    dear = order.others(case, work, lambda at, limits: None, 2.0 * cost, lambda one: one)
+    assert next(dear).cost == pytest.approx(cost, rel=1e-4)
+    near = order.others(case, work, lambda at, limits: None, cost * (1.0 + 3e-5), lambda one: one)
+    assert next(near).cost == cost * (1.0 + 3e-5)
+
+
+def test_a_motion_that_steps_over_a_constraint_is_seen_to_violate_it() -> None:
+    case = instances.load("bryson-denham")
+    _, found = next(order.started(case, replace(LIMITS, work=solving.WORK), ""))
+    at = motion.motion(found)
+    assert not motion.violates(at)
+    over = np.array(at.x)
+    over[0, 1::2], over[0, 2::2] = 0.0, 0.3  # the wall is at 1/9
+    assert motion.violates(replace(at, x=over))

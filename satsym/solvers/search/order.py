@@ -164,8 +164,7 @@ def others(
     """
     seen: list[tuple[float, float]] = []  # on the coarse mesh, and what each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
-    quiet, solved, begun = 0, 0, limits.meter.spent
-    spent = begun
+    quiet, solved, begun, spent = 0, 0, limits.meter.spent, limits.meter.spent
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
@@ -239,17 +238,18 @@ def _followed(
     because the coarse mesh does not resolve it. A motion that costs less on all meshes is cheaper even if it is near no
     extremal that was found. Smoothing adds to its cost.
     """
-    before, came, at, change = None, found.objective, None, np.inf
+    meshes, residual = refined(found)
+    change = np.inf if sum(len(mesh) - 1 for mesh in meshes) > found.programme.intervals else 0.0
+    before, came, at = None, found.objective, None
     for at in _finer(found, limits):
-        change = np.inf if before is None else abs(at.cost - before)
-        came = at.cost
+        change, came = change if before is None else abs(at.cost - before), at.cost
         if came < cost - SIMILAR * abs(cost):
             answer = exact(at)
             if answer is not None:
                 return answer
         elif came <= cost + SIMILAR * abs(cost):
             return cost, None
-        elif refined(found)[1] <= RESOLVED if before is None else came >= before - FALLING * abs(before):
+        elif residual <= RESOLVED if before is None else came >= before - FALLING * abs(before):
             return came, None
         before = came
     surely = came + UNCERTAIN * change < cost - SIMILAR * abs(cost) and at is not None and not violates(at)
