@@ -1,9 +1,11 @@
 """The order of the search: starts one after the other, each on finer meshes, then its arcs, then Newton's method.
 
-1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved on a coarse mesh.
-2. The solution of a start is solved again on finer meshes until its cost settles. Its arcs are read after each mesh
+1. A list of starts that is fixed for an instance (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved
+   on a coarse mesh.
+2. The arcs of a solution are read on the coarse mesh, then on finer ones until its cost settles
    (:mod:`~satsym.solvers.search.reading`).
-3. The first arcs that Newton's method makes exact are the answer: :func:`searched`.
+3. The first arcs that Newton's method makes exact are the answer: :func:`searched`. The search ends without one after
+   so many starts that fail, or so many costs of which none could be made exact.
 4. The same starts give competitors of an answer, whichever method found it: :func:`others`. The list ends after so many
    starts in a row that show nothing new; that number grows with the number of different costs found.
 """
@@ -30,20 +32,18 @@ from satsym.solvers.search.starts import Plan
 
 Answer = TypeVar("Answer")
 
-FAILING, ANY_DURATION, CONVEX = 8, 12, 2
-"""The search ends after so many starts in a row if none at all was solved, with a free duration after a few more; fewer
-are enough if the problem is convex, because all starts lead to one motion then."""
-
-DOUBTFUL = 3
-"""Failing starts in a row after which the search asks whether any motion reaches the end."""
+FAILING, ANY_DURATION, CONVEX, DOUBTFUL = 8, 12, 2, 3
+"""Number of failing starts that end the search as long as none has succeeded: FAILING, ANY_DURATION where the duration
+is free, and CONVEX where the problem is convex, because all starts lead to one motion then. After DOUBTFUL of them the
+search asks whether any motion reaches the end."""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
 cost that was found. Where ends are drawn, or path constraints separate the ways, it ends after PATIENCE in a row."""
 
 PROBE, AROUND = 160_000, 600_000
-"""Unknowns times iterations after which the list ends if at least two starts were solved and all led to one cost. With
-path constraints it is AROUND."""
+"""Unknowns times iterations after which the list ends if at least two starts were solved and all led to one cost, but
+for starts with other turns or durations. With path constraints it is AROUND."""
 
 BESIDE, ON_FINER_MESH = 120, 200
 """Iterations of the interior-point code for a competitor, and for a finer mesh."""
@@ -56,21 +56,18 @@ CHEAPER = 1e-9
 """Relative difference from which one exact cost is less than another."""
 
 PARALLELS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
-"""Motions at the cost of an answer that are made exact at most, if they go another way; the number of times at which
-ways are compared; and the share of the range of a state by which two ways differ at least."""
+"""At most so many motions at the cost of an answer that take another way are made exact. Ways are compared at SHOWN
+times, and differ where a state does by ALIKE_RANGE of its range."""
 
 FALLING, RESOLVED, UNCERTAIN = 1e-2, 1e-2, 10.0
-"""Share of its cost by which a motion that costs more than an answer must become cheaper from one mesh to the next to
-be followed further; the residual of its coarse mesh, relative to the sizes of states, up to which it is not; and the
-uncertainty of a cost in units of its last change."""
+"""A motion that costs more than an answer is followed as long as each finer mesh makes it cheaper by the share FALLING,
+but not where the residual of its coarse mesh, relative to the sizes of states, is at most RESOLVED. A cost is uncertain
+by UNCERTAIN times its last change."""
 
-MOST_COSTS, KEPT_COST = 3, 0.5
-"""Different costs after which the search ends if none of their motions could be made exact. A motion whose cost finer
-meshes change by more than this share was none, as the coarse mesh stepped over something; of these it takes twice as
-many."""
-
-ENDLESS = 2
-"""Starts with the shortest or the longest duration that is allowed, after which the search ends."""
+MOST_COSTS, KEPT_COST, ENDLESS = 3, 0.5, 2
+"""The search ends after MOST_COSTS different costs of motions that could not be made exact; after twice as many if
+finer meshes change some by more than KEPT_COST, as the coarse mesh stepped over something there; and after ENDLESS
+motions with the shortest or the longest duration allowed."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +79,8 @@ class Tried(Generic[Answer]):
     plan
         How it began.
     cost
-        NaN where the start was not solved, or neither an extremal nor finer meshes tell the cost of its motion.
+        That of the answer where both seem to be one. NaN where the start was not solved, and where neither an extremal
+        nor finer meshes confirm that its motion is cheaper.
     exact
         The extremal, if it costs less than the answer.
     """
@@ -114,7 +112,7 @@ def searched(
     """
     costs: list[float] = []
     patience = FAILING if instance.tf is not None else ANY_DURATION
-    failing, failed, endless, kept = CONVEX if convex(instance) else patience, 0, 0, 0
+    failing, failed, endless, stable = CONVEX if convex(instance) else patience, 0, 0, 0
     for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
         if found.solved and at_edge(found):
             endless += 1
@@ -127,9 +125,9 @@ def searched(
                 if answer is not None or limits.expired:
                     return answer
             costs.append(found.objective)
-            kept += abs(last - found.objective) <= KEPT_COST * abs(found.objective)
+            stable += abs(last - found.objective) <= KEPT_COST * abs(found.objective)
         failed = 0 if costs else failed + (not plan.loosened)
-        if kept >= MOST_COSTS or len(costs) >= 2 * MOST_COSTS or failed >= failing or number + 1 >= STARTS:
+        if stable >= MOST_COSTS or len(costs) >= 2 * MOST_COSTS or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():
             break
@@ -158,11 +156,11 @@ def others(
     way
         Times and states of the answer, for the coarse mesh.
     hidden
-        Difference of costs below the accuracy of the interior-point code.
+        Difference up to which costs count as one, because the interior-point code tells no better.
     known_costs
         How many other costs are known already.
     """
-    seen: list[tuple[float, float]] = []  # on the coarse mesh, and what each came to
+    seen: list[tuple[float, float]] = []  # costs on the coarse mesh, and the cost that each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun, spent = 0, 0, limits.meter.spent, limits.meter.spent
     constrained = bool(instance.model.spec.path_constraints)
@@ -175,7 +173,7 @@ def others(
         if not found.solved:
             yield Tried(plan, float("nan"))
         elif abs(found.objective - cost) <= hidden:
-            seen = seen or [(found.objective, cost)]
+            seen = seen or [(found.objective, cost)]  # so that the cost of the answer is among them
             yield Tried(plan, cost)
         elif _another_way(found, cost, shapes):
             answer = next(filter(None, (exact(at, limits) for at in _finer(found, limits))), None)
@@ -232,28 +230,29 @@ def _costing(answer: Answer | None, cost_of: Callable[[Answer], float]) -> tuple
 def _followed(
     found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None]
 ) -> tuple[float, Answer | None]:
-    """What a motion on a coarse mesh comes to beside an answer of some cost, and the extremal if that costs less.
+    """What a motion on a coarse mesh comes to beside an answer, and an extremal near it if it seems cheaper.
 
     A motion that costs more is solved on finer meshes as long as these make it much cheaper: it may only seem dear
-    because the coarse mesh does not resolve it. A motion that costs less on all meshes is cheaper even if it is near no
-    extremal that was found. Smoothing adds to its cost.
+    because the coarse mesh does not resolve it. A motion that costs less and whose cost finer meshes hardly change is
+    cheaper, even if no extremal was found near it.
     """
+    margin, costs = SIMILAR * abs(cost), list[float]()
     meshes, residual = refined(found)
-    change = np.inf if sum(len(mesh) - 1 for mesh in meshes) > found.programme.intervals else 0.0
-    before, came, at = None, found.objective, None
     for at in _finer(found, limits):
-        change, came = change if before is None else abs(at.cost - before), at.cost
-        if came < cost - SIMILAR * abs(cost):
+        falling = at.cost < costs[-1] - FALLING * abs(costs[-1]) if costs else residual > RESOLVED
+        costs.append(at.cost)
+        if at.cost < cost - margin:
             answer = exact(at)
             if answer is not None:
                 return answer
-        elif came <= cost + SIMILAR * abs(cost):
+        elif at.cost <= cost + margin:
             return cost, None
-        elif residual <= RESOLVED if before is None else came >= before - FALLING * abs(before):
-            return came, None
-        before = came
-    surely = came + UNCERTAIN * change < cost - SIMILAR * abs(cost) and at is not None and not violates(at)
-    return (came if surely or came >= cost else float("nan")), None
+        elif not falling:
+            return at.cost, None
+    finest = sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals
+    change = abs(costs[-1] - costs[-2]) if len(costs) > 1 else 0.0 if finest else np.inf
+    surely = costs[-1] + UNCERTAIN * change < cost - margin and not violates(at)
+    return (costs[-1] if surely or costs[-1] >= cost else float("nan")), None
 
 
 def _finer(found: Found, limits: Limits) -> Iterator[Motion]:

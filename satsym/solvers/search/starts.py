@@ -1,4 +1,4 @@
-"""Where programmes are started: a short fixed list of motions, whatever the problem.
+"""Where programmes are started: a short list of motions that is fixed for an instance.
 
 The straight line to the end, controls that are held next to a bound where no end is given, coasts from both ends,
 revolutions about the origin, the straight line with controls bent by drawn waves; durations that are free are guessed
