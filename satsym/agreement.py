@@ -116,7 +116,7 @@ def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
 
 
 def finite(values: Iterable[Any]) -> bool:
-    """Whether all of these are numbers."""
+    """Whether all of these are finite numbers."""
     return all(abs(value) < math.inf for value in values)
 
 

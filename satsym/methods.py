@@ -151,7 +151,7 @@ def names() -> tuple[str, ...]:
 
 
 def possible(name: str) -> list[Method]:
-    """The methods by which an instance may come to be solved that names one, or leaves it open."""
+    """The methods that may solve an instance: all where its method is ``"auto"``, else the one that it names."""
     return [method for method in METHODS.values() if name in (AUTO, method.name)]
 
 

@@ -290,7 +290,10 @@ class _Field:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """States that extremals pass, in units of what is known."""
+    """States at which drawn extremals are at given nodes, divided by the sizes of the known solution's states.
+
+    The costs are those of these extremals up to there.
+    """
 
     states: Array
     costs: Array

@@ -80,7 +80,10 @@ def with_letters(function: Callable[[sp.Expr], sp.Expr], expression: sp.Expr) ->
 
 
 def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], dict[sp.Symbol, sp.Float]]:
-    """Letters for decimals, and these; small multiples of one, or of a small part of it, share its letter."""
+    """Positive symbols in the place of decimals: each decimal by its symbol, and the decimal of each symbol.
+
+    Decimals whose ratio is a fraction of small numbers share a symbol.
+    """
     letters: dict[sp.Float, sp.Expr] = {}
     meant: dict[sp.Symbol, sp.Float] = {}
     for decimal in sorted(decimals, key=lambda d: (abs(d), d)):

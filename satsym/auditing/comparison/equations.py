@@ -139,7 +139,10 @@ class Multiple(Plan):
         return self.vanish(difference(found.trees, tree), found.exact - quotient * self._exact)
 
     def _may_be_multiple(self, cells: Cells) -> bool:
-        """Whether the quotient of the differences may be made of positive symbols alone: then only these change it."""
+        """Whether what is printed may differ from what it should be by a factor of positive symbols alone.
+
+        Then the differences of both sides have one ratio at all random points that agree in these symbols.
+        """
         positive = self.bench.names.positive
         parts = [substituted(cell, self.meanings) for cell in cells]
         for call in (
@@ -175,7 +178,7 @@ class _SamePositive(field.Point):
         self._shared = field.Point("same", positive)
 
     def symbol(self, name: str) -> int:
-        """The value of a symbol."""
+        """The value of a symbol, modulo the prime: for positive symbols that of all such points, for others its own."""
         return self._shared.symbol(name) if name in self._positive else super().symbol(name)
 
     def value_of_call(self, node: Call) -> int:

@@ -200,7 +200,7 @@ class _Reader:
         return replace(row, **found, **self._explanations(index, row, scope, own=True))
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
-        """A row that a proposition judges: its own, or what it is held against."""
+        """Read a row that a proposition judges: a claim prints it, a row of another kind names it with ``holds``."""
         table, words = row.table, measurements.words(scope.meanings)
         own = table.kind != "claim"
         with self._telling("row", "printed", index, row.key):

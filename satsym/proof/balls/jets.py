@@ -161,7 +161,10 @@ def variables(values: Sequence[Ball], among: int | None = None) -> list[Jet]:
 
 
 def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ball], list[list[Ball]]]:
-    """Value, gradient and Hessian of what a function of no argument returns."""
+    """Value, gradient and Hessian of the jet that a function returns, by the first ``count`` :func:`variables`.
+
+    The function has these variables at hand and takes no arguments.
+    """
     found = _jet(function())
     first = [value(found.first[i]) if i in found.first else arb(0) for i in range(count)]
     second = [[arb(0)] * count for _ in range(count)]

@@ -1,6 +1,7 @@
 """Motions about a central body as other programs read them: OEM of CCSDS, CZML of Cesium, ephemerides of STK, CSV.
 
-Each format is a module with one function from an :class:`~satsym.report.exchange.ephemeris.Ephemeris` to text.
+Each format has one function from an :class:`~satsym.report.exchange.ephemeris.Ephemeris` to text; :func:`_writer` names
+it.
 """
 
 from __future__ import annotations
@@ -45,14 +46,8 @@ def exported(result: Solution | Simulation, kind: str) -> str:
 
 
 def _writer(kind: str) -> Callable[[Ephemeris], str]:
-    """The function that writes a format; its module is loaded now."""
-    if kind == "oem":
-        return oem
-    if kind == "czml":
-        return czml
-    if kind == "stk":
-        return stk
-    return table
+    """The function that writes a format."""
+    return {"oem": oem, "czml": czml, "stk": stk, "csv": table}[kind]
 
 
 COLUMNS = (

@@ -256,7 +256,10 @@ def _slopes(problem: Problem, law: Law, t: Array, z: Array, p: Parameters) -> Ar
 
 
 def _by_free(one: Assembly) -> None:
-    """What is free: the cost and the end do not change with it, to first order, all along the extremal."""
+    """Add rows that make the cost stationary in the free parameters.
+
+    H_p is integrated along the extremal, and what the end contributes is added.
+    """
     problem, v = one.problem, one.v
     at, n, d, places = problem.layout, problem.n, 2 * problem.n, problem.parameters
     times, instance = problem.times(v), problem.instance

@@ -118,7 +118,10 @@ class Equations:
         return np.concatenate([self.sizes[n:], times, np.tile(self.sizes, len(self.stops)), jumps, multipliers])
 
     def _room(self, constraint: int) -> float:
-        """The size of a constraint, as the start shows it."""
+        """Typical size of a path constraint, the unit of its jumps.
+
+        It is the value at the initial state, or what it changes by with the sizes of the states, if that is more.
+        """
         start = [*self.instance.initial, *np.zeros(len(self.instance.initial))]
         value, gradient, _ = off_boundary(self.instance, constraint, self.instance.t0, start)
         return max(abs(value), float(np.abs(gradient) @ self.sizes), 1e-300)

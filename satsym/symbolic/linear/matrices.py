@@ -117,7 +117,10 @@ def entries(matrices: Iterable[Any]) -> list[Any]:
 
 
 def numeric_rank(matrix: Any) -> int:
-    """The rank of a numeric matrix: singular values count that two thirds of the digits tell from zero."""
+    """The rank of a numeric matrix: the number of singular values that are not rounding beside the largest one.
+
+    Two thirds of the working digits decide.
+    """
     if not any(entries([matrix])):
         return 0
     wide = matrix if matrix.rows >= matrix.cols else matrix.T

@@ -1,4 +1,4 @@
-"""The three kinds of control set: what projection onto them is, and where it minimises the Hamiltonian.
+"""No bounds, a box and a ball as the set of all controls: projection onto it, and where that minimises H.
 
 H is quadratic in the controls. On a box its minimiser is the clipped unconstrained one only if H_uu is
 diagonal; on a ball it is the shortened one only if H_uu is a multiple of the identity.

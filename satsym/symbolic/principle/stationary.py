@@ -76,12 +76,14 @@ def with_angle(
     """The control and the angle at which H is least, where the control multiplies what the angle turns.
 
     ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is the lesser of ``c + l m`` and
-    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser. Which one is
-    less is asked of a product: where both are equal because the controls are opposite, a factor of it vanishes, while
-    rounding would be left of a sum.
+    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser. The sign
+    of the difference of their values, written as a product, decides between the two: where both are equal because the
+    controls are opposite, a factor of the product is exactly zero, while a sum would leave rounding.
 
     Parameters
     ----------
+    ends
+        Bounds of the control.
     arc
         Between which ends the angle lies; ``None`` where nothing limits it.
     """

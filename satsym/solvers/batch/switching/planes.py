@@ -29,7 +29,7 @@ DIP = 0.02
 
 
 def put(into: Array, values: Array) -> None:
-    """Values into the place of others."""
+    """Copy values into an array, row by row."""
     for i in range(len(into)):
         into[i] = values[i]
 

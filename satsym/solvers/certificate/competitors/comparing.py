@@ -80,7 +80,13 @@ def switching(solution: Solution) -> bool:
 def _from_controls(
     solution: Solution, seed: int, limits: Limits, free: tuple[Unknown, ...]
 ) -> tuple[Compared | None, Solution | None]:
-    """The cheapest of controls that are drawn, if one costs less, and the extremal to which it leads the search."""
+    """Compare a solution with the cheapest of the drawn controls, and search from that control.
+
+    Returns
+    -------
+    What the comparison comes to, ``None`` if no drawn control costs less than the solution; and the extremal found from
+    that control, ``None`` if none was found that costs no more than the control.
+    """
     drawn = drawn_below(solution, seed)
     if drawn is None:
         return None, None

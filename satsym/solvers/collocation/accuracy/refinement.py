@@ -111,7 +111,7 @@ def _error(problem: TwoPoint, corrected: Corrected, met: Array, jumps: list[Jump
 
 
 def _jumping_off(problem: TwoPoint, curve: Curve, jumps: list[Jump]) -> float:
-    """What jumps off the nodes leave out: the change of the rates up to the node beside them."""
+    """The error that jumps between the nodes cause: the change of the rates times the time to the nearest node."""
     if not jumps:
         return 0.0
     met = np.array([jump.time for jump in jumps])
