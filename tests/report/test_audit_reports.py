@@ -283,7 +283,7 @@ def test_each_finding_is_told_once_and_those_of_weight_in_full(
 ) -> None:
     text = " ".join(audit_text([document], judged).split())
     assert text.index("Overturns a conclusion 1. 2: misprint") < text.index("Wrong results 2. 4 <: wrong")
-    assert text.count("spoils 3") == 1
+    assert text.count("affects 3") == 1
     assert "right" not in text.partition("1. 2: misprint")[2].partition("Wrong results")[0]  # the edit says it
     assert "Not judged 5." in text
 

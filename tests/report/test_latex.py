@@ -272,7 +272,7 @@ def test_works_are_listed_in_the_order_in_which_they_are_cited() -> None:
 def test_what_bounds_of_controls_leave_as_it_is_is_not_shown_again() -> None:
     text = render(shared.shipped("inspection"))
     assert "inspection:mixed_costates" not in text
-    assert r"$\Gamma_{4}$ contain no state, the costate equations stay as they are" in text
+    assert r"$\Gamma_{4}$ contain no state, the costate equations do not change" in text
 
 
 def test_bodies_are_named_in_the_language_of_the_document() -> None:

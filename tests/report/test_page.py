@@ -286,7 +286,7 @@ def test_nothing_of_an_uncontrolled_motion_that_stays_near_is_cut(solution: Solu
     ("name", "said"),
     [
         ("polar_orbit_ball", "The norm of the control is bounded"),
-        ("return_above", "At all times the motion obeys the path constraint"),
+        ("return_above", "At all times, the motion satisfies the path constraint"),
         ("polar_orbit", "Each control is bounded"),
     ],
 )

@@ -132,8 +132,8 @@ def test_the_second_derivative_by_one_control_is_a_number() -> None:
 
 
 def test_one_body_is_no_plural() -> None:
-    assert "A rigid body turns" in render(shipped("gyrostat"))
-    assert "Rigid bodies turn" in render(shipped("gimballed_wheel"))
+    assert "A rigid body rotates" in render(shipped("gyrostat"))
+    assert "Rigid bodies rotate" in render(shipped("gimballed_wheel"))
 
 
 def test_minors_are_positive_and_not_merely_not_negative() -> None:

@@ -92,7 +92,7 @@ def test_a_single_control_is_spoken_of_as_one(name: str) -> None:
     text = render(shipped(name))
     assert "Each control" not in text
     assert "The control is bounded" in text
-    assert "The control stays between its bounds" in text
+    assert "The control must lie between its bounds" in text
 
 
 def test_a_single_control_has_one_switching_function() -> None:
@@ -264,7 +264,7 @@ def test_ratios_of_polynomials_stand_by_falling_powers() -> None:
 
 def test_fixed_axes_are_not_said_to_turn() -> None:
     assert "The unit vectors are fixed" in render(shipped("two_body"))
-    assert "The unit vectors turn" in render(shipped("polar_orbit"))
+    assert "The unit vectors rotate" in render(shipped("polar_orbit"))
 
 
 @pytest.mark.slow
