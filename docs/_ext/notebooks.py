@@ -25,7 +25,7 @@ def page(path: Path) -> str:
             parts.append(source)
             continue
         parts += [f"```python\n{source}\n```", shown(source, known)]
-    parts.append(f"The same to run: {{download}}`{path.name} <{path.name}>`.")
+    parts.append(f"This page is a notebook; to run it, download {{download}}`{path.name} <{path.name}>`.")
     return "\n\n".join(filter(None, parts)) + "\n"
 
 

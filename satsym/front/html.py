@@ -22,19 +22,25 @@ def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     kept = [k for k, column in enumerate(zip(*shown, strict=True)) if any(column)]
     body = []
     for row in shown:
-        cells = (escape(unit_text(row[k]) if header[k] == "unit" else row[k]) for k in kept)
-        body.append(f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
+        cells = (_cell(unit_text(row[k]) if header[k] == "unit" else row[k]) for k in kept)
+        body.append(f"<tr>{''.join(cells)}</tr>")
     head = "".join(f'<th scope="col">{escape(header[k])}</th>' if header[k] else "<td></td>" for k in kept)
     return "\n".join(["<table>", f"<tr>{head}</tr>", *body, "</table>"]) if body else ""
 
 
 def facts(values: Mapping[str, Any]) -> str:
     """A table of names and values, without a header."""
-    rows = (
-        f'<tr><th scope="row">{escape(name)}</th><td>{escape(_shown(value))}</td></tr>'
-        for name, value in values.items()
-    )
+    rows = (f'<tr><th scope="row">{escape(name)}</th>{_cell(_shown(value))}</tr>' for name, value in values.items())
     return "\n".join(["<table>", *rows, "</table>"]) if values else ""
+
+
+def _cell(text: str) -> str:
+    """An element with a text; a number stays in one line, which a browser would break after the sign of an exponent."""
+    try:
+        float(text)
+    except ValueError:
+        return f"<td>{escape(text)}</td>"
+    return f'<td style="white-space: nowrap">{escape(text)}</td>'
 
 
 def _shown(cell: Any) -> str:

@@ -13,6 +13,7 @@ import sympy
 
 import satsym
 from satsym.cli import main
+from satsym.front import html
 from satsym.front.between import Motion
 from satsym.front.trajectory import Trajectory
 from satsym.instance.files import SHIPPED
@@ -244,6 +245,13 @@ def test_html_holds_no_foreign_markup_and_nothing_from_elsewhere() -> None:
     assert "&lt;b&gt;&amp;" in named._repr_html_()
     assert "&lt;script&gt;" in named._repr_html_()
     assert "certified" in named._repr_html_()
+
+
+def test_numbers_in_tables_stay_in_one_line_and_words_do_not() -> None:
+    shown = html.table(("condition", "measured", "limit"), [("conditions at both ends met", -4e-13, 1e-9)])
+    assert shown.count("white-space: nowrap") == 2
+    assert "<td>conditions at both ends met</td>" in shown
+    assert "nowrap" not in html.facts({"method": "collocation, 4 iterations"})
 
 
 @pytest.mark.slow
