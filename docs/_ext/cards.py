@@ -1,5 +1,6 @@
 """Pictures of an example: the overview for its page, and one panel of it for its card in the gallery."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -29,24 +30,52 @@ def written(case: Any, folder: Path) -> dict[str, str]:
     found = sorted(folder.glob("*.svg"), key=lambda path: path.stem not in ("overview", "orbit", "responses"))
     texts = {path.stem: path.read_text("utf-8") for path in found}
     names = ["", *(f"-{name}" for name in list(texts)[1:])]
-    first = next((name for name in ("equilibria", "eigenvalues") if name in texts), next(iter(texts)))
-    card = _conic(case) if "orbit" in texts else texts[first]
+    panels = {"orbit": _conic, "equilibria": _attitudes, "eigenvalues": _loops}
+    panel = next((panels[name] for name in panels if name in texts), None)
+    card = _alone(panel, case) if panel else next(iter(texts.values()))
     return dict(zip(names, texts.values(), strict=True)) | {CARD: card}
 
 
-def _conic(case: Any) -> str:
+def _alone(panel: Callable[[Any, Any], None], case: Any) -> str:
+    """One panel on a card of its own, so that its words are as large as on any other card."""
+    from satsym.report.look import Look
+    from satsym.report.plots import style
+
+    with style.applied(Look(("svg",), titled=False, size="page")):
+        page = _empty()
+        panel(page.subplots(), case)
+        return _svg(style.finished(page))
+
+
+def _conic(axes: Any, case: Any) -> None:
     """An orbit from where it shows best."""
     from satsym.analysis.subject import survey
     from satsym.report import display
-    from satsym.report.look import Look
-    from satsym.report.plots import conics, style, views
+    from satsym.report.plots import conics, views
 
-    with style.applied(Look(("svg",), titled=False, size="page")):
-        page, drawn = _empty(), conics.Drawn.of(survey(case))
-        unit = display.length_unit(v.unit for v in case.model.spec.states)
-        view = views.views([drawn.curve], ("$x$", "$y$", "$z$"))[0]
-        conics.panel(page.subplots(), drawn, view, unit)
-        return _svg(style.finished(page))
+    drawn = conics.Drawn.of(survey(case))
+    unit = display.length_unit(v.unit for v in case.model.spec.states)
+    conics.panel(axes, drawn, views.views([drawn.curve], ("$x$", "$y$", "$z$"))[0], unit)
+
+
+def _attitudes(axes: Any, case: Any) -> None:
+    """The equilibria of an attitude over a parameter."""
+    from satsym.report.plots import systems
+    from satsym.report.results.linear import attitudes
+
+    found = attitudes(case)
+    unit = next(v.unit for v in case.model.spec.parameters if v.symbol == found.parameter)
+    systems.angles(axes, found, unit)
+
+
+def _loops(axes: Any, case: Any) -> None:
+    """The eigenvalues of a regulator, without notes."""
+    from satsym.analysis.regulator.feedback import designed
+    from satsym.report.plots import plane
+
+    plane.loops(axes, designed(case), with_notes=False)
+    if axes.get_xscale() == "linear":
+        axes.locator_params(nbins=5)
 
 
 def _empty() -> Any:

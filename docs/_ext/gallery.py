@@ -26,8 +26,8 @@ COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\
 WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
 HEAD = f"""{WRITTEN}# Gallery
 
-Every shipped instance, by subject. Each page has the problem, the code, the picture, and all that the command prints,
-the certificate among it.
+Every shipped instance, by subject. Each page shows the problem, the code, the pictures, and everything that the command
+prints, including the certificate.
 """
 COMMANDS = {
     "lqr": "geo-lqr uny-lqr uny-lqr-both lapan-roll-yaw-lqr",
@@ -144,7 +144,7 @@ def page(known: dict[str, Any], root: Path) -> str:
     """The page of one instance."""
     name, model = known["name"], known["model"]
     motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
-    motion = f"{motion}\n\n" if motion else "Its equations are long: they are in the derivation.\n\n"
+    motion = f"{motion}\n\n" if motion else "The equations are long and are therefore shown in the derivation only.\n\n"
     alone = "--lang id" if known["command"] in ("lqr", "analyse", "compare") else "--json"
     python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
     call = python.get(known["command"], "found = satsym.analyse")

@@ -73,21 +73,26 @@ def of_analysis(found: Analysis) -> Figure:
 
 def of_design(design: Design) -> Figure:
     """The eigenvalues before and after the loop is closed."""
-    from satsym.analysis.linear.spectrum import spectrum
-
-    spec, before, after = design.about.model.spec, spectrum(design.about.system.A), design.regulator.eigenvalues
     page = style.titled(design.title, SIDE, SIDE + 0.3)
     axes = page.subplots()
     axes.set_title(say("eigenvalues"))
-    factor = _plane(axes, spec, [*(each.value for each in before), *after.tolist()])
-    _open_loop(axes, before, factor)
-    axes.plot(after.real * factor, after.imag * factor, **CLOSED)
+    loops(axes, design)
     entries = [
         (legend.line(**OPEN), say("uncontrolled")),
         (legend.line(**CLOSED), say("with <law>", law="$u = -K\\,x$")),
     ]
     legend.below(page, entries)
     return page
+
+
+def loops(axes: Axes, design: Design, with_notes: bool = True) -> None:
+    """Draw the eigenvalues of the open and the closed loop, with notes on multiple ones where there is room."""
+    from satsym.analysis.linear.spectrum import spectrum
+
+    before, after = spectrum(design.about.system.A), design.regulator.eigenvalues
+    factor = _plane(axes, design.about.model.spec, [*(each.value for each in before), *after.tolist()])
+    _open_loop(axes, before, factor, with_notes)
+    axes.plot(after.real * factor, after.imag * factor, **CLOSED)
 
 
 def of_point(found: Survey) -> Figure:
@@ -151,12 +156,12 @@ def _decades(axes: Axes, nearest: float, furthest: float) -> float:
     return 10.0 * furthest
 
 
-def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
+def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float, with_notes: bool = True) -> None:
     """Circles, with the sizes of the Jordan blocks beside those that are multiple."""
     for each in found:
         at = (each.value.real * factor, each.value.imag * factor)
         axes.plot([at[0]], [at[1]], **OPEN)
-        if each.algebraic > 1:
+        if with_notes and each.algebraic > 1:
             blocks = "Jordan block <sizes>" if each.geometric == 1 else "Jordan blocks <sizes>"
             sizes = say(blocks, sizes=" + ".join(map(str, each.blocks)))
             said = f"{say('multiplicity <n>', n=each.algebraic)}, {sizes}"

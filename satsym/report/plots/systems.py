@@ -16,6 +16,7 @@ from satsym.report.results import files
 from satsym.report.said import message, say
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from satsym.analysis.regulator.feedback import Design
@@ -146,6 +147,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     "unstable": {"color": style.VERMILION, "marker": ".", "markersize": 3.0},
     "degenerate": {"color": style.INK, "marker": "x", "markersize": 5.0},
 }
+DOTTED: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0, (2, 3))}
 
 
 def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
@@ -167,25 +169,33 @@ def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
     above.set_ylabel(textwrap.fill(say("number of equilibria"), 20))
     above.set_ylim(0, 1.08 * max(counts))
     above.set_yticks(sorted({0, *counts}))
+    seen = angles(below, found, unit)
+    for change in found.followed.changes:
+        above.axvline((change.below + change.above) / 2, **DOTTED)
+    legend.below(sheet, seen)
+    return sheet
+
+
+def angles(axes: Axes, found: Attitudes, unit: str = "") -> list[tuple[Any, str]]:
+    """Draw the angle between the y of body and orbit over the parameter, and return what a legend needs."""
+    if found.followed is None:
+        return []
     seen = []
     for kind, look in LOOKS.items():
         points = [
             (value, np.degrees(np.arccos(np.clip(each.cosines[1, 1], -1.0, 1.0))))
-            for value, group in zip(values, sets, strict=True)
+            for value, group in zip(found.followed.values, found.followed.equilibria, strict=True)
             for each in group
             if each.kind.value == kind
         ]
         if points:
-            below.plot(*np.array(points).T, linestyle="none", **look)
+            axes.plot(*np.array(points).T, linestyle="none", **look)
             seen.append((legend.line(linestyle="none", **look), message(kind)))
-    dotted: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0, (2, 3))}
-    for axes in (above, below):
-        for change in found.followed.changes:
-            axes.axvline((change.below + change.above) / 2, **dotted)
+    for change in found.followed.changes:
+        axes.axvline((change.below + change.above) / 2, **DOTTED)
     if found.followed.changes:
-        seen.append((legend.line(**dotted), say("number or kinds change")))
-    below.set_ylabel(say("from the orbit's y to the body's [deg]"))
-    below.set_xlabel(display.labelled(found.parameter, unit))
-    below.set_yticks(range(0, 181, 30))
-    legend.below(sheet, seen)
-    return sheet
+        seen.append((legend.line(**DOTTED), say("number or kinds change")))
+    axes.set_ylabel(say("from the orbit's y to the body's [deg]"))
+    axes.set_xlabel(display.labelled(found.parameter, unit))
+    axes.set_yticks(range(0, 181, 30))
+    return seen
