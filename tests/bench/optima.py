@@ -42,12 +42,13 @@ TURNS, LONG = 3, 5.0
 
 INTRODUCTION = """# Known optima
 
-This table, made by `make bench-optima`, has the shipped instances whose optimum is known. Each is solved from a cold
-start, without an initial guess. The *independent* optimum was found without satsym; how is said below the table.
-*Direct* is CasADi's collocation with Ipopt for the same problem, on the first mesh with a relative error of at most
-1e-7 in the objective; the time for coarser meshes is not counted. *Ratio* is its time divided by ours. As it
-certifies nothing, our time is taken without the certificate, except where the certificate found the answer. Times are
-seconds of processor time: the minimum of three runs after a warm-up run, so that loading libraries is not counted.
+This table lists the shipped instances whose optimum is known; `make bench-optima` writes it. Each instance is solved
+from a cold start, without an initial guess. The *independent* optimum was found without satsym, as described below the
+table. *Direct* is CasADi's collocation with Ipopt for the same problem, on the first mesh with a relative error of at
+most 1e-7 in the objective; the time for coarser meshes is not counted. *Ratio* is the time of the direct method divided
+by that of satsym. Because the direct method certifies nothing, the time of satsym is taken without the certificate,
+except where the certificate found the answer. Times are seconds of processor time: the minimum of three runs after a
+warm-up run, so that loading libraries is not counted.
 
 """
 HEADS = tuple("instance source independent satsym difference verdict time certified direct ratio".split())
@@ -150,7 +151,9 @@ def summary(rows: list[Row]) -> str:
     right = sum(one.difference <= WITHIN for one in rows)
     ahead = sum(one.peer is not None and one.theirs > one.seconds for one in rows)
     took = sum(one.whole for one in rows)
-    return f"{right} of {len(rows)} within {WITHIN:.0e}, {ahead} quicker than the direct method; {took:.0f} s in all."
+    agree = f"{right} of {len(rows)} optima agree to within {WITHIN:.0e};"
+    quicker = f"satsym is quicker than the direct method in {ahead} cases."
+    return f"{agree} {quicker} All solutions with their certificates took {took:.0f} s."
 
 
 def _reason(entry: Mapping[str, Any]) -> str:
