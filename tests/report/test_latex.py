@@ -418,7 +418,7 @@ def test_appendices_stand_before_the_references() -> None:
 def test_a_linearisation_says_where_it_divides_by_a_norm_that_vanishes() -> None:
     said = shared.shipped("transfer_fuel").step("linearisation").conclusions
     assert [one.key for one in said] == ["divided by a norm"]
-    assert r"$B$ divides by $\sqrt{T_r^{2} + T_\theta^{2}}$, which vanishes where" in render(
+    assert r"$B$ contains a division by $\sqrt{T_r^{2} + T_\theta^{2}}$, which vanishes where" in render(
         shared.shipped("transfer_fuel")
     )
     assert shared.shipped("polar_orbit").step("linearisation").conclusions == ()

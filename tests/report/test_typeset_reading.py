@@ -99,7 +99,7 @@ def test_a_single_control_has_one_switching_function() -> None:
     text = render(shipped("double_integrator_fuel"))
     assert "{Switching function}" in text
     assert r"is linear in the control and in its magnitude, $H = H_0 + \sigma u_1 + w |u_1|$" in text
-    assert r"with $\tfrac{1}{2} \varepsilon u_1^2$, $\varepsilon > 0$, added" in text
+    assert r"$\tfrac{1}{2} \varepsilon u_1^2$ with $\varepsilon > 0$ is added" in text
     assert r"\sum_i" not in text
 
 
@@ -107,8 +107,8 @@ def test_what_there_is_one_of_is_spoken_of_as_one() -> None:
     text = render(shipped("hypersensitive"))
     assert r"The state $x$ obeys the equation of motion~\eqref{hypersensitive:first_order.x}, and" in text
     assert "The control is not bounded." in text
-    assert "obeys the path constraint\n" in render(shipped("beam"))
-    assert "obeys the path constraints\n" in render(shipped("approach_cone"))
+    assert "satisfies the path constraint\n" in render(shipped("beam"))
+    assert "satisfies the path constraints\n" in render(shipped("approach_cone"))
     assert "Eigenvalues with positive real parts, $2$ and $1$, make" in render(shipped("three_modes"))
     assert "An eigenvalue with a positive real part, $3$, makes" in render(shipped("saddle"))
 
@@ -164,8 +164,8 @@ def test_works_cited_together_are_in_the_order_of_their_numbers() -> None:
 
 
 def test_what_is_said_of_a_kind_leads_to_its_literature_where_there_is_one_of_that_kind() -> None:
-    assert "primer vector see" in render(shipped("transfer_fuel"))
-    assert "primer vector see" not in render(shipped("brachistochrone"))
+    assert "primer vector, see" in render(shipped("transfer_fuel"))
+    assert "primer vector, see" not in render(shipped("brachistochrone"))
 
 
 def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas() -> None:
@@ -247,7 +247,7 @@ def test_laws_list_what_they_are_made_of_and_no_more() -> None:
 def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
     text = render(shipped("reorientation"))
     arcs = text.partition(r"\satsymstep{reorientation:singular_arcs}")[2].partition(r"\satsymstep")[0]
-    assert r"$\sigma_{u_1}^{(3)}$, $\sigma_{u_2}^{(3)}$ and $\sigma_{u_3}^{(3)}$" in arcs.partition("Not shown")[2]
+    assert r"$\sigma_{u_1}^{(3)}$, $\sigma_{u_2}^{(3)}$ and $\sigma_{u_3}^{(3)}$" in arcs.partition("are not shown")[2]
     assert r"\sigma_{u_1}^{(3)} &=" not in arcs
     assert all(
         rf"{{reorientation:singular_arcs.{e.name}}}" in arcs

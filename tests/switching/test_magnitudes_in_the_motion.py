@@ -155,7 +155,7 @@ def test_the_law_is_typeset_as_a_comparison_of_three_values(side: str, value: st
     text = render(derive(problem("fuel", BURNING, Integer(0), -m, convention=side)))
     among = r"z \in \{u^{\min},\, \max\{u^{\min},\, \min\{u^{\max},\, 0\}\},\, u^{\max}\}"
     assert rf"{{{among}}} ({value} + w |z|)" in text
-    assert f"may have either sign: $H$ is {side[:-2]}ised at a bound" in text
+    assert f"the one with the {'smallest' if side == 'minimum' else 'largest'} $H$ is taken" in text
 
 
 @pytest.mark.parametrize(
