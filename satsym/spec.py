@@ -24,7 +24,7 @@ MOST_LETTERS = 24
 pages and say nothing."""
 
 ControlSetKind = Literal["free", "box", "ball"]
-NAMES = "a small letter, then small letters, digits and underscores"
+NAMES = "a lower-case letter, followed by lower-case letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PRODUCT: Literal["product"] = "product"
@@ -79,20 +79,25 @@ class Variable:
     def __post_init__(self) -> None:
         for field in ("symbol", "latex", "unit", "meaning"):
             if not isinstance(value := getattr(self, field), str):
-                raise ValueError(f"variable {self.symbol!r}: {field} is {value!r}; write text in quotes")
+                raise ValueError(f"variable {self.symbol!r}: got {value!r} for {field}; write text in quotes")
         if self.kind not in ("real", "angle"):
-            raise ValueError(f'variable {self.symbol!r}: kind is {self.kind!r}; write "real" or "angle"')
+            raise ValueError(f'variable {self.symbol!r}: got the kind {self.kind!r}; write "real" or "angle"')
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
         if not self.latex.strip() or not _closed(self.latex):
             raise ValueError(f"variable {self.symbol!r}: latex is {self.latex!r}; write its LaTeX, each {{ closed")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
-            raise ValueError(f"variable {self.symbol!r}: default is {self.default!r}; give a finite number")
+            raise ValueError(
+                f"variable {self.symbol!r}: the default must be a number, not {self.default!r}; give a finite number"
+            )
         if self.typical is not None:
             low, high = self.typical if len(self.typical) == 2 else (inf, inf)
             if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
                 wanted = "0 < low < high" if self.positive else "low < high"
-                raise ValueError(f"variable {self.symbol!r}: typical is {self.typical!r}; give two numbers, {wanted}")
+                raise ValueError(
+                    f"variable {self.symbol!r}: the typical range must be a pair of numbers, not {self.typical!r}; "
+                    f"give two numbers, {wanted}"
+                )
 
 
 def _closed(latex: str) -> bool:
@@ -366,7 +371,7 @@ class ProblemSpec:
         """
         stated = dict(literal)
         if stated.pop("format", None) != FORMAT:
-            raise ValueError(f"written in another format than {FORMAT}")
+            raise ValueError(f"is not written in the format {FORMAT}")
         try:
             for key in _OF_VARIABLES:
                 entries = stated[key] if key not in _UNLESS_DEFAULT else stated.get(key, ())
@@ -378,7 +383,7 @@ class ProblemSpec:
             stated["interior"] = tuple(InteriorPoint(**entry) for entry in stated.get("interior", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
-            raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
+            raise ValueError(f"its MODEL has fields that this version of satsym does not know ({error})") from None
 
 
 def is_name(name: object) -> bool:

@@ -38,10 +38,11 @@ class Status(str, Enum):
 _ADVICE = {
     Status.CONVERGED: "",
     Status.NOT_CONVERGED: "try more steps, another method, or a guess closer to the answer",
-    Status.INFEASIBLE: "give it more time, or wider bounds on the control",
+    Status.INFEASIBLE: "allow more time, or widen the bounds of the control",
     Status.NO_MINIMISER: "",
-    Status.LEFT_DOMAIN: "check the initial state, shorten the horizon, or widen the control bounds",
-    Status.NON_FINITE: "check the initial state and the parameters for values that divide by zero or overflow",
+    Status.LEFT_DOMAIN: "check the initial state, shorten the horizon, or widen the bounds of the control",
+    Status.NON_FINITE: "check the initial state and the parameters for values that cause a division by zero "
+    "or an overflow",
     Status.TIME_LIMIT: "raise [solver] max_seconds, or use fewer steps",
 }
 

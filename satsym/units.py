@@ -57,10 +57,15 @@ def parse_quantity(text: str, unit: str) -> float:
         raise BadInput(f"{shown(text)} has no unit; write {match[1]} without quotes, or add a unit after it")
     given, wanted = _unit(text[match.end() :]), _unit(unit)
     if given.dimensionality != wanted.dimensionality:
-        raise BadInput(f'{shown(text)} is not of the dimension of "{unit}", which is wanted; write it in such a unit')
+        raise BadInput(
+            f'{shown(text)} does not have the required dimension, that of "{unit}"; write it in a unit of this '
+            "dimension"
+        )
     if _has_angle(wanted) and not _has_angle(given):
         # pint counts radians as plain numbers, so that 1 Hz would silently become 1 rad/s
-        raise BadInput(f'{shown(text)} is not an angle, but the model wants "{unit}"; write it with rad, deg or turn')
+        raise BadInput(
+            f'{shown(text)} is not an angle, but the model requires "{unit}"; write it with rad, deg or turn'
+        )
     value = _convert(float(match[1]), given, wanted)
     if not math.isfinite(value):
         raise BadInput(f'{shown(text)} is out of range in "{unit}"; write a smaller number')
@@ -152,7 +157,7 @@ def time_unit(units: Iterable[str]) -> str:
                 found.setdefault(_named(name), name)
     if len(found) > 1:
         several = '" and "'.join(sorted(found.values()))
-        raise BadInput(f'the model counts time in "{several}"; write times as plain numbers')
+        raise BadInput(f'the model measures time in "{several}"; write times as numbers without a unit')
     return next(iter(found.values()), "s")
 
 
@@ -179,7 +184,7 @@ def _factors(expression: str) -> dict[str, int]:
     found = _product(expression, 0) if len(expression) <= MAX_LENGTH else None
     if found is None or found[1] != len(expression) or any(abs(n) > MAX_EXPONENT for n in found[0].values()):
         raise BadInput(
-            f"unit {shown(expression)} is not readable; write names joined by * or /, with exponents up to "
+            f"the unit {shown(expression)} cannot be read; write names joined by * or /, with exponents up to "
             f'{MAX_EXPONENT}, for instance "km/s^2"'
         )
     return found[0]
@@ -235,7 +240,10 @@ def _named(name: str) -> Any:
     except (pint.PintError, ArithmeticError, AttributeError, TypeError, ValueError):
         raise BadInput(f'unit "{name}" is unknown; write a name such as km, s, rad, deg, day') from None
     if zero != 0.0:
-        raise BadInput(f'unit "{name}" does not start at zero; write the quantity in a plain unit such as kelvin')
+        raise BadInput(
+            f'the scale of the unit "{name}" does not start at zero; write the quantity in an absolute unit such '
+            "as kelvin"
+        )
     return unit
 
 

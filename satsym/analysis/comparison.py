@@ -77,8 +77,8 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
         shared = min(len(spec.states), len(first.states))
         if spec.controls != first.controls or spec.states[:shared] != first.states[:shared]:
             raise BadInput(
-                f"{other.name}: its model {spec.name} has other states or controls than {first.name}, that of "
-                f"{instances[0].name}; compare instances of one system"
+                f"{other.name}: its model {spec.name} does not have the states and controls of {first.name}, "
+                f"the model of {instances[0].name}; compare instances of one system"
             )
     found = []
     for instance in instances:
@@ -192,7 +192,9 @@ def _driving(instance: Instance, case: Case) -> Case:
     if not case.answered:
         raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no answer: {case.message}")
     if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
-        raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no {name}; name instances that do")
+        raise BadInput(
+            f"{instance.called}: [driven] by: {case.instance.name} has no {name}; name instances that have this control"
+        )
     return case
 
 
@@ -220,9 +222,11 @@ def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[flo
     """
     options = instance.classical
     if options is None or options.damping is None:
-        raise BadInput(f"{instance.called}: [classical] damping: missing; a range of values needs an initial value")
+        raise BadInput(
+            f"{instance.called}: [classical] damping: missing; a range of dampings requires an initial value"
+        )
     if not all(d > 0.0 and math.isfinite(d) for d in dampings):
-        raise BadInput(f"{instance.called}: a range of dampings must be positive")
+        raise BadInput(f"{instance.called}: all dampings of a range must be positive")
     spec, shape = instance.model.spec, (len(dampings), len(commands))
     control, impulse = np.empty(shape), np.empty(shape)
     peaks = {name: np.empty(shape) for name in spec.state_names}

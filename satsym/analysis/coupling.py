@@ -51,7 +51,7 @@ def nodes_of(instance: Instance) -> Array:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a driven motion needs a final time; write a number")
+        raise BadInput(f"{instance.called}: time.tf: a driven motion requires a final time; write a number")
     return Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
 
 
@@ -116,7 +116,11 @@ def reached(instance: Instance, driver: Driver, still: Array, progress: Progress
 
 def _said(names: Sequence[str], difference: Array) -> str:
     untouched = [name for name, value in zip(names, difference, strict=True) if value == 0.0]
-    return f"not reached at all: {', '.join(untouched)}" if untouched else "every state is reached"
+    return (
+        f"states that the driving control does not affect: {', '.join(untouched)}"
+        if untouched
+        else "the driving control affects every state"
+    )
 
 
 def _signals(driver: Driver, name: str) -> tuple[list[tuple[float, float, Callable[[Array], Array]]], float]:

@@ -61,9 +61,8 @@ def examined(given: Instance | Kernels) -> tuple[Analysis | None, Survey | None]
     if isinstance(given, Kernels):
         if spec.keplerian and not spec.has_reference:
             raise BadInput(
-                f"{spec.name}: has neither an equilibrium nor a reference, and a model alone has no initial state to "
-                f"start an orbit from; write an "
-                "instance with its initial state"
+                f"{spec.name}: the model has neither an equilibrium nor a reference, and without an instance "
+                "there is no initial state of an orbit; write an instance with an initial state"
             )
         return analyse(given), None
     orbit = survey(given) if spec.keplerian else None
@@ -126,12 +125,12 @@ def _polynomial(given: LinearSystem, eigenvalues: Sequence[Eigenvalue]) -> tuple
 def _verdict(about: Linearisation, possible: Sequence[Sequence[Eigenvalue]]) -> Stability:
     """The verdict of the eigenvalues, unless they decide nothing."""
     if not about.constant:
-        reason = "the coefficients depend on time, and eigenvalues at one time decide nothing"
+        reason = "the coefficients depend on time, so the eigenvalues at one time do not decide the stability"
         return Stability(None, reason, False)
     found = stability(*possible)
     if found.decides or not about.nonlinear:
         return found
-    reason = f"{found.reason}; for the nonlinear motion, the linearisation alone decides nothing"
+    reason = f"{found.reason}; the linearisation alone does not decide the stability of the nonlinear motion"
     return Stability(found.verdict, reason, False)
 
 
@@ -162,7 +161,9 @@ def survey(case: Instance) -> Survey:
         state = case.model.inertial_state(case.t0, case.initial, case.parameters)
         found = elements(state[:3], state[3:6], state[6])
     except ArithmeticError:
-        raise BadInput(f"{case.called}: [initial]: beyond the range of floats; check the units") from None
+        raise BadInput(
+            f"{case.called}: [initial]: a result exceeds the range of floating-point numbers; check the units"
+        ) from None
     except BadInput as error:
         raise BadInput(f"{case.called}: [initial]: {error}") from None
     return Survey(case, found, at_start(case, found), floquet(found))

@@ -102,7 +102,7 @@ def printed_number(text: str) -> PrintedNumber:
     part, power = match["part"], int(match["power"] or 0)
     digits = f"{match['whole']}{part or ''}"
     if len(digits) > MAX_DIGITS:
-        raise BadInput(f"{shown(text)} has more than {MAX_DIGITS} digits; nothing is measured so exactly")
+        raise BadInput(f"{shown(text)} has more than {MAX_DIGITS} digits; no measured value has so many digits")
     significant = digits if part is not None else digits.rstrip("0") or "0"
     last = power - len(part or "") + len(digits) - len(significant)
     value = Fraction(int(digits)) * Fraction(10) ** (power - len(part or ""))
@@ -134,19 +134,20 @@ def one(unit: str) -> Quantity:
 def base_unit(dimension: Mapping[str, Fraction]) -> str:
     """The product of base units of a dimension."""
     if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
-        raise BadInput("a unit with broken exponents")
+        raise BadInput("the exponents of a unit must be integers")
     return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
 
 
 def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
     """Refuse names in the formula of a number that are neither stated by the document nor published constants."""
     if isinstance(tree, Equality):
-        raise BadInput("is an equality; write the expression of the number")
+        raise BadInput("is an equation; write only the expression for the number")
     known = {*inputs, *PUBLISHED, "pi"}
     for _, part in walk(tree):
         if isinstance(part, Sym) and part.name not in known:
             raise BadInput(
-                f"{shown(part.name)} is neither in [inputs] nor a published constant; {suggestion(part.name, known)}"
+                f"{shown(part.name)} is neither in [inputs] nor one of the published constants; "
+                f"{suggestion(part.name, known)}"
             )
 
 
@@ -236,9 +237,9 @@ def _evaluated(tree: Node, known: Mapping[str, Quantity]) -> Quantity:
             return arguments[0] ** Fraction(1, 2)
         shared = _same(arguments)
         if shared and tree.function != "atan2":
-            raise BadInput(f"{tree.function} needs a plain number")
+            raise BadInput(f"the argument of {tree.function} must be dimensionless")
         return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), {})
-    raise BadInput("only numbers and their functions may stand here")
+    raise BadInput("only numbers and functions of numbers are allowed here")
 
 
 def _same(quantities: list[Quantity]) -> Mapping[str, Fraction]:

@@ -176,7 +176,7 @@ def _unheard(error: Unheard) -> int:
     if isinstance(error.cause, BrokenPipeError):
         return CLOSED_PIPE
     reason = error.cause.strerror or "not open"
-    complain(said.say("stdout cannot be written (<reason>); send it elsewhere", reason=reason))
+    complain(said.say("the standard output cannot be written (<reason>); redirect it", reason=reason))
     return ExitCode.BAD_INPUT
 
 
@@ -188,4 +188,4 @@ def _unforeseen(error: BaseException) -> None:
         return
     what = printable(" ".join(str(error).split()), 300)
     about = f"{type(error).__name__}{what and ': '}{what}"
-    complain(said.say("unforeseen <error> (SATSYM_DEBUG=1 shows where)", error=about))
+    complain(said.say("unexpected <error> (set SATSYM_DEBUG=1 to see where)", error=about))

@@ -32,7 +32,7 @@ class Place(click.Path):
         """
         if value == "":
             name = param.opts[-1] if param else "path"
-            raise BadInput(f"{name}: the name is empty; give one, or . for the current folder")
+            raise BadInput(f"{name}: the name is empty; give a name, or . for the current folder")
         return super().convert(value, param, ctx)
 
 
@@ -136,7 +136,7 @@ def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., A
         @functools.wraps(function)
         def called(*, plot: bool, formats: tuple[str, ...], size: str | None, untitled: bool, **arguments: Any) -> Any:
             if (formats or size or untitled) and not plot:
-                raise click.UsageError("--format, --size and --no-title need --plot.")
+                raise click.UsageError("--format, --size and --no-title require --plot.")
             return function(look=_look(formats, untitled, size) if plot else None, **arguments)
 
         return drawn(_format_option(_size_option(_title_option(called))))

@@ -152,4 +152,4 @@ def _require_same(
         raise unusable(listing, f"belongs to {theirs}, not to {own or model} (model {model})", found.command, more)
     file = file_of(given) if given else None
     if file and written.instance_file and file["digest"] != written.instance_file.digest:
-        raise unusable(listing, f"was made from {own} before its file was changed", found.command, more)
+        raise unusable(listing, f"was computed from {own} before its file was changed", found.command, more)

@@ -54,8 +54,9 @@ def refuse_other_versions() -> None:
     for pinned in requirements():
         if pinned.extra == "derive" and (version := pinned.installed) and not pinned.allows(version):
             raise BadInput(
-                f"{pinned.name} {version} is installed, and generated/ is written with {pinned.name}{pinned.versions}; "
-                f"install it (pip install '{pinned.name}{pinned.versions}'), or derive elsewhere with --out DIR"
+                f"{pinned.name} {version} is installed, but generated/ must be written with version "
+                f"{pinned.name}{pinned.versions}; install that version (pip install "
+                f"'{pinned.name}{pinned.versions}'), or derive elsewhere with --out DIR"
             )
 
 

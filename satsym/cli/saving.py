@@ -106,7 +106,7 @@ def saved_folder(name: str, command: str | None) -> Path:
     if found is None:
         home, which = Path(RESULTS, name), f"of `satsym {command}` " if command else ""
         raise BadInput(
-            f"{printable(name)}: no results {which}in {printable(str(home))}; `satsym {command or 'solve'} "
-            f"{printable(name)} --plot` writes them, or say with --from where they are"
+            f"{printable(name)}: there are no results {which}in {printable(str(home))}; write them with `satsym "
+            f"{command or 'solve'} {printable(name)} --plot`, or give their folder with --from"
         )
     return found

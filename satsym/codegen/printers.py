@@ -66,7 +66,9 @@ class _Printer(PythonCodePrinter):
     def _print_Function(self, expr: Any) -> str:
         name = expr.func.__name__
         if name not in self.functions:
-            raise DerivationError(f"generated code has no function {name}; it has {', '.join(sorted(self.functions))}")
+            raise DerivationError(
+                f"generated code has no function {name}; available are {', '.join(sorted(self.functions))}"
+            )
         return f"{self.module}.{self.functions[name]}({', '.join(self._print(a) for a in expr.args)})"
 
     _print_sin = _print_cos = _print_tan = _print_asin = _print_acos = _print_atan = _print_atan2 = _print_Function

@@ -72,7 +72,7 @@ SHORTEST, FARTHEST = 15, 10.0
 """Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
 """Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
-LIE = "give the range of the variables: Variable(..., typical=(low, high)); nothing written"
+LIE = "give the ranges of the variables: Variable(..., typical=(low, high)); nothing was written"
 
 FAR_FACTOR = 1e9
 """How many times as large, or as small, as at random what regularises is; bounds are so by the square of it."""
@@ -156,7 +156,7 @@ def _places(
         if len(places) == POINTS:
             return places, expected
     raise DerivationError(
-        f"{derivation.name}: generated functions have no finite values at random points of size one; {LIE}"
+        f"{derivation.name}: the generated functions have no finite values at random points of order one; {LIE}"
     )
 
 
@@ -378,7 +378,9 @@ def _same_loops(
             if moved.all() and moderate([cost]) and np.isrealobj(along):
                 break
     else:
-        raise DerivationError(f"{derivation.name}: no step, however short, is possible at random points; {LIE}")
+        raise DerivationError(
+            f"{derivation.name}: no integration step is possible at random points, even a very short one; {LIE}"
+        )
     for name, sides in loops(kernels.spec, text, place, (times, u, u_mid)).items():
         _refuse(derivation.name, name, disagreement(sides))
 
@@ -391,7 +393,9 @@ def moderate(values: Iterable[Any]) -> bool:
 def _refuse(model: str, what: str, error: float) -> None:
     """Raise if numbers of many digits disagree."""
     if not error <= EQUAL:
-        raise DerivationError(f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written")
+        raise DerivationError(
+            f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing was written"
+        )
 
 
 def _error(found: Any, expected: Any) -> float:

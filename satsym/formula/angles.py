@@ -100,7 +100,7 @@ def _atom(node: Node, exponent: Fraction) -> dict[Monomial, Complex]:
 def _times(one: Mapping[Monomial, Complex], other: Mapping[Monomial, Complex]) -> dict[Monomial, Complex]:
     total: dict[Monomial, Complex] = {}
     if len(one) * len(other) > _MOST_TERMS:
-        raise TooManyTerms("an angle of too many terms")
+        raise TooManyTerms("an angle has too many terms")
     for left, (a, b) in one.items():
         for right, (c, d) in other.items():
             _enter(total, _joined(left, right), (a * c - b * d, a * d + b * c))

@@ -59,7 +59,7 @@ class Calculus(Engine[Node]):
     def determinant(self, matrix: Matrix[Node]) -> Node:
         """By minors of the first row."""
         if matrix.shape[0] != matrix.shape[1]:
-            raise BadInput("the determinant of a matrix that is not square")
+            raise BadInput("a determinant requires a square matrix")
         if matrix.shape == (1, 1):
             return matrix.rows[0][0]
         terms = []
@@ -86,7 +86,7 @@ class Calculus(Engine[Node]):
         except field.Undecided:  # without a value at zero, where the slope and the rest are taken
             linear = unique = False
         if not (linear and unique):
-            raise BadInput(f"solve(...) needs what is linear in {by}")
+            raise BadInput(f"solve(...) requires an equation that is linear in {by}")
 
     def _weighed(self, tree: Node) -> Node:
         """The tree, unless it is too heavy for what sympy, or the field, would be asked to do with it next."""
@@ -155,7 +155,7 @@ def derivative(node: Node, by: str) -> Node:
         return product([number(exponent), raised(node.base, exponent - 1), derivative(node.base, by)])
     if isinstance(node, Call):
         return _chain(node, by)
-    raise BadInput(f"no derivative of {written(node)}")
+    raise BadInput(f"{written(node)} cannot be differentiated")
 
 
 def _chain(node: Call, by: str) -> Node:
@@ -164,7 +164,7 @@ def _chain(node: Call, by: str) -> Node:
         return ZERO
     rules = _SLOPES.get(node.function)
     if rules is None:
-        raise BadInput(f"no derivative of {node.function}(...)")
+        raise BadInput(f"{node.function}(...) cannot be differentiated")
     return product([rules(node.arguments[0]), inner[0]])
 
 

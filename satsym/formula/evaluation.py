@@ -106,14 +106,14 @@ class Engine(ABC, Generic[S]):
         """The meaning of a formula that is no matrix; of an equation, its right-hand side."""
         found = self.operand(tree)
         if isinstance(found, Matrix | Roots | Kernel):
-            raise BadInput("a matrix stands where an expression is needed")
+            raise BadInput("a matrix is given where an expression is needed")
         return found
 
     def matrix(self, tree: Node) -> Matrix[S]:
         """The meaning of a formula that is a matrix."""
         found = self.operand(tree)
         if not isinstance(found, Matrix):
-            raise BadInput("an expression stands where a matrix is needed")
+            raise BadInput("an expression is given where a matrix is needed")
         return found
 
     def characteristic(self, matrix: Matrix[S], variable: S) -> S:
@@ -131,7 +131,7 @@ class Engine(ABC, Generic[S]):
     def product(self, one: Matrix[S], other: Matrix[S]) -> Matrix[S]:
         """The product of two matrices."""
         if one.shape[1] != other.shape[0]:
-            raise BadInput(f"a product of a {size_of(one)} and a {size_of(other)} matrix")
+            raise BadInput(f"a {size_of(one)} matrix cannot be multiplied by a {size_of(other)} matrix")
         columns = list(zip(*other.rows, strict=True))
         return Matrix(
             tuple(
@@ -148,7 +148,7 @@ class Engine(ABC, Generic[S]):
     def _grid(self, tree: Grid) -> Matrix[S]:
         rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in tree.entries]
         if not rows or len({len(row) for row in rows}) > 1 or not rows[0]:
-            raise BadInput("the rows of a matrix differ in length")
+            raise BadInput("all rows of a matrix must have the same length")
         return Matrix(tuple(tuple(self.scalar(entry) for entry in row) for row in rows))
 
     def _sum(self, terms: Sequence[Value]) -> Value:
@@ -156,7 +156,7 @@ class Engine(ABC, Generic[S]):
         if not matrices:
             return self.add([plain(term) for term in terms])
         if len(matrices) < len(terms) or len({m.shape for m in matrices}) > 1:
-            raise BadInput("a sum of what differs in size")
+            raise BadInput("matrices of different sizes cannot be added")
         m, n = matrices[0].shape
         return Matrix(
             tuple(tuple(self.add([term.rows[i][j] for term in matrices]) for j in range(n)) for i in range(m))
@@ -185,7 +185,7 @@ class Engine(ABC, Generic[S]):
         if not isinstance(base, Matrix):
             return self.power(plain(base), exponent)
         if exponent.denominator != 1 or exponent < 0:
-            raise BadInput("a matrix has whole powers from 0 up; write inverse(...)")
+            raise BadInput("a matrix can be raised only to a nonnegative integer power; write inverse(...)")
         result = self.identity(square(base))
         for _ in range(int(exponent)):
             result = self.product(result, base)
@@ -206,7 +206,7 @@ class Engine(ABC, Generic[S]):
         """The meaning of a formula that is an equation."""
         found = self.value(tree)
         if not isinstance(found, Relation):
-            raise BadInput("an expression stands where an equation is needed")
+            raise BadInput("an expression is given where an equation is needed")
         return found
 
     def along(self, expression: S) -> S:

@@ -16,7 +16,7 @@ MOST_ARGUMENTS = 20
 
 def _symbol(engine: Engine[S], tree: Node) -> str:
     if not isinstance(tree, Sym):
-        raise BadInput("a plain symbol is needed here")
+        raise BadInput("a single symbol is needed here")
     return engine.sources.symbol(tree.name)
 
 
@@ -63,7 +63,7 @@ def _subs(engine: Engine[S], tree: Call) -> Value:
 def _norm(engine: Engine[S], tree: Call) -> Value:
     column = engine.matrix(tree.arguments[0])
     if column.shape[1] != 1:
-        raise BadInput("norm(...) takes a column")
+        raise BadInput("norm(...) requires a column vector")
     squares = [engine.power(row[0], Fraction(2)) for row in column.rows]
     return engine.power(engine.add(squares), Fraction(1, 2))
 
@@ -98,7 +98,7 @@ def _jacobian(engine: Engine[S], tree: Call) -> Value:
     column, symbols = engine.matrix(tree.arguments[0]), tree.arguments[1]
     names = [_symbol(engine, entry) for entry in (symbols.entries if isinstance(symbols, Grid) else (symbols,))]
     if column.shape[1] != 1:
-        raise BadInput("jacobian(...) takes a column")
+        raise BadInput("jacobian(...) requires a column vector")
     return Matrix(tuple(tuple(engine.derivative(row[0], name) for name in names) for row in column.rows))
 
 

@@ -104,7 +104,7 @@ def statement(text: str, *, judging: bool = False) -> Node | Equality:
     measured(text, judging)
     sides = _sides(text)
     if len(sides) > 2:
-        raise BadInput("has several equality signs; write a row for each equality")
+        raise BadInput("has more than one equals sign; write a separate row for each equation")
     read = [expression(side, judging=judging) for side in sides]
     return read[0] if len(read) == 1 else Equality(read[0], read[1])
 
@@ -120,7 +120,7 @@ def checked_name(name: str) -> str:
     if len(name) > MAX_NAME:
         raise BadInput(f"the name {shown(name)} is longer than {MAX_NAME} characters")
     if not NAME.match(name):
-        raise BadInput(f"{shown(name)} is not a name; use letters, digits and single underscores, no TeX")
+        raise BadInput(f"{shown(name)} is not a name; use letters, digits and single underscores, without TeX")
     return name
 
 
@@ -248,7 +248,7 @@ class _Reader:
             return Div(left, right)
         if isinstance(link.op, ast.Mult) or (isinstance(link.op, ast.MatMult) and self._judging):
             return Mul((*left.factors, right) if isinstance(left, Mul) else (left, right))
-        raise BadInput(f"only + - * / ** are known here{_column(link)}")
+        raise BadInput(f"only the operators + - * / ** are known here{_column(link)}")
 
     def _power(self, found: ast.BinOp, depth: int) -> Node:
         base, exponent = self.node(found.left, depth + 1), self.node(found.right, depth + 1)
@@ -271,7 +271,7 @@ class _Reader:
                 f"the function {shown(name)} is unknown{_column(found.func)}; {suggestion(name, self._functions)}"
             )
         if found.keywords and not self._judging:
-            raise BadInput(f"{name} takes no arguments by name{_column(found.func)}")
+            raise BadInput(f"{name} takes no keyword arguments{_column(found.func)}")
         least, most = self._functions[name]
         if not least <= len(found.args) <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"

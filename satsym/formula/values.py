@@ -83,7 +83,7 @@ def without(matrix: Matrix[S], i: int, j: int) -> Matrix[S]:
 def stacked(matrices: Sequence[Matrix[S]], beside: bool) -> Matrix[S]:
     """Matrices beside or below each other."""
     if len({matrix.shape[0 if beside else 1] for matrix in matrices}) > 1:
-        raise BadInput("matrices that are put together differ in size")
+        raise BadInput("the matrices that form a block matrix differ in size")
     if beside:
         return Matrix(
             tuple(tuple(e for row in rows for e in row) for rows in zip(*(m.rows for m in matrices), strict=True))
@@ -99,14 +99,14 @@ def transposed(matrix: Matrix[S]) -> Matrix[S]:
 def plain(value: Value) -> Any:
     """The value, if it is a scalar."""
     if isinstance(value, Matrix | Roots | Kernel):
-        raise BadInput("a matrix stands where an expression is needed")
+        raise BadInput("a matrix is given where an expression is needed")
     return value
 
 
 def square(matrix: Matrix[S]) -> int:
     """The number of rows of a square matrix."""
     if matrix.shape[0] != matrix.shape[1]:
-        raise BadInput(f"a {size_of(matrix)} matrix stands where a square one is needed")
+        raise BadInput(f"a {size_of(matrix)} matrix is given where a square matrix is needed")
     return matrix.shape[0]
 
 

@@ -73,7 +73,9 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
         room = ROUNDING * (end - begin)
         outside = asked[~((asked >= begin - room) & (asked <= end + room))]
         if outside.size:
-            raise BadInput(f"{self._what}: {float(outside[0]):.10g} is not in the time from {begin:.10g} to {end:.10g}")
+            raise BadInput(
+                f"{self._what}: the time {float(outside[0]):.10g} does not lie between {begin:.10g} and {end:.10g}"
+            )
         found = self._between(np.clip(asked.ravel(), begin, end))
         shaped = found.reshape((*found.shape[:-1], *asked.shape))
         return float(shaped) if shaped.ndim == 0 else shaped

@@ -263,7 +263,7 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
         subject, path = loader.problem(str(subject))
         source, stating = artefacts.source_of(path), loader.stating(path)
     if not isinstance(subject, Problem | Model):
-        raise BadInput(f"{shown(subject)} cannot be derived from; give a Problem, a model, or the name of one")
+        raise BadInput(f"nothing can be derived from {shown(subject)}; give a Problem, a model, or the name of one")
     if convention not in (None, "minimum", "maximum"):
         raise BadInput(f'convention: {shown(convention)} is neither "minimum" nor "maximum"')
     chosen = in_convention(subject, convention)

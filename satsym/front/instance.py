@@ -216,5 +216,7 @@ def _kernels(model: Any) -> Kernels | None:
 def _checked(name: str) -> str:
     """A name that files of results can have."""
     if not isinstance(name, str) or not _NAME.match(name):
-        raise BadInput(f"name: {shown(name)} is not a name for an instance; write letters, digits, hyphens and dots")
+        raise BadInput(
+            f"name: {shown(name)} is not a valid name of an instance; write letters, digits, hyphens and dots"
+        )
     return name

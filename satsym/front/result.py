@@ -49,7 +49,7 @@ class Pictures(Mapping[str, "Figure"]):
 
     def __getitem__(self, name: str) -> Figure:
         if name not in self._figures:
-            raise BadInput(f"no picture {shown(name)}; {suggestion(str(name), self._figures)}")
+            raise BadInput(f"there is no picture {shown(name)}; {suggestion(str(name), self._figures)}")
         return self._figures[name]
 
     def __contains__(self, name: object) -> bool:
@@ -204,7 +204,7 @@ class Result(ABC, Generic[Found]):
         case, found = saved.read(Path(folder), instance)
         if isinstance(found, Solution) != (cls._command == "solve"):
             other = "simulate" if cls._command == "solve" else "solve"
-            raise BadInput(f"{printable(str(folder))}: holds the result of {other}, not of {cls._command}")
+            raise BadInput(f"{printable(str(folder))}: contains the result of {other}, not of {cls._command}")
         return cls(case, found)  # type: ignore[arg-type]
 
     @abstractmethod

@@ -74,13 +74,13 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
     if case is None:
         raise unusable(
             folder / LIST,
-            f"was made from {printable(name)}, which is neither there nor a shipped instance; "
+            f"was computed from {printable(name)}, which is neither an existing file nor a shipped instance; "
             f'give its file as well, as in Solution.load(FOLDER, "{printable(name)}.toml")',
         )
     case = _with(case, msgspec.json.decode(listed.result).get("set", {}))
     found, _ = trajectory.read(case.case, folder)
     if given and own and (changed := [part for part in ASKED if _part(given, part) != _part(own, part)]):
-        raise unusable(folder / LIST, f"was made from another {given.name}: {', '.join(changed)} differ")
+        raise unusable(folder / LIST, f"was computed from a different {given.name}: {', '.join(changed)} differ")
     return case, found
 
 

@@ -127,7 +127,7 @@ def study(
         found["objective"].max()
     """
     if not isinstance(folder, str | Path):
-        raise BadInput(f"folder: {shown(folder)} is none; give the path of one")
+        raise BadInput(f"folder: {shown(folder)} is not a path; give the path of a folder")
     case, place = as_case(instance), Path(folder)
     said = {"vary": _said(vary, ":"), "normal": _said(normal, ","), "uniform": _said(uniform, ",")}
     said |= {"sample": sample, "method": method, "seed": seed}

@@ -56,12 +56,14 @@ def varied(
         place = f"[continuation] {printable(name)}"
         key = named(name, given, place, without=Table.CONTROL)
         if any(one.key == key for one in found):
-            raise BadInput(f"{place}: is there twice, as {key.short} and as {key.text}; remove one of the two")
+            raise BadInput(f"{place}: is given twice, as {key.short} and as {key.text}; remove one of the two")
         begin, end = (key.value(one, spec, place) for one in ends)
         if begin == end:
-            raise BadInput(f"{place}: both values are {shown(ends[0])}; write where it begins and where it ends")
+            raise BadInput(
+                f"{place}: both values are {shown(ends[0])}; write two different values, the first and the last"
+            )
         if not key.given(given):
-            raise BadInput(f"{place}: the instance gives no number for it; give it one")
+            raise BadInput(f"{place}: the instance gives no number for this key; give it a number")
         found.append(Varied(key, begin, end))
     for share in (0.0, 1.0):
         case = given

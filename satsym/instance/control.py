@@ -31,7 +31,10 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
         key = f"[control] {printable(name)}"
         if name in sets and name in spec.control_names and name not in sets[name].controls:
             others = ", ".join(sets[name].controls)
-            raise BadInput(f"{key}: {printable(name)} is a control and the set of {others}; give the set another name")
+            raise BadInput(
+                f"{key}: the name {printable(name)} denotes both a control and the set of {others}; give the set "
+                "another name"
+            )
         if name in sets and not (name in spec.control_names and isinstance(value, tuple)):
             norms |= _of_set(value, sets[name], spec, f"[control.{name}]")
         elif name in (MAX_NORM, MIN_NORM) and len(normed) == 1:
@@ -56,7 +59,7 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
     switched = (
         c for part in spec.control_parts if part.branch in SWITCHED and part.kind == "box" for c in part.controls
     )
-    needed |= dict.fromkeys(switched, "the square of this control is not in the cost")
+    needed |= dict.fromkeys(switched, "the cost has no term in the square of this control")
     for name, reason in needed.items():
         if not math.isfinite(lower[name]) or not math.isfinite(upper[name]):
             raise BadInput(f"[control] {name}: {reason}, so it needs both bounds; write {name} = [lower, upper]")
@@ -64,8 +67,8 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
         if part.turned_by and lower[part.controls[0]] < 0.0:
             (name,) = part.controls
             raise BadInput(
-                f"[control] {name}: it is the magnitude of a vector that {part.turned_by} rotates, "
-                f"so it must not be negative; write {name} = [0, upper]"
+                f"[control] {name}: this control is the magnitude of a vector with the direction "
+                f"{part.turned_by}, so it must not be negative; write {name} = [0, upper]"
             )
     return tuple(lower.values()), tuple(upper.values()), norms
 
@@ -82,8 +85,8 @@ def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
     for part in spec.control_parts:
         if part.branch != "quadratic" and part.normed and part.name not in norms:
             raise BadInput(
-                f"[control.{part.name}]: nothing limits {', '.join(part.controls)}, whose squares are not in the cost; "
-                f"write {MAX_NORM} = a number"
+                f"[control.{part.name}]: {', '.join(part.controls)} have no bounds, and the cost has no term "
+                f"in their squares; write {MAX_NORM} = a number"
             )
 
 
@@ -109,7 +112,7 @@ def _norm(value: Any, unit: str, key: str) -> float:
         raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
     number = quantity(value, unit, key)
     if number <= 0:
-        raise BadInput(f"{key}: {shown(value)} leaves no control; write a positive number")
+        raise BadInput(f"{key}: with {shown(value)}, no control remains; write a positive number")
     return number
 
 
@@ -118,7 +121,7 @@ def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
         raise BadInput(f"{key}: got {shown(value)}; write both bounds, such as [-0.2, 0.2]")
     low, high = (quantity(bound, unit, key) for bound in value)
     if low > high:
-        raise BadInput(f"{key}: the lower bound {shown(value[0])} is above the upper, {shown(value[1])}; swap them")
+        raise BadInput(f"{key}: the lower bound {shown(value[0])} exceeds the upper bound {shown(value[1])}; swap them")
     return low, high
 
 

@@ -52,17 +52,21 @@ def ranges(table: Final, spec: ProblemSpec) -> dict[str, tuple[float, float]]:
             continue
         key = f"[final] {variable.symbol}"
         if REFERENCE in written:
-            raise BadInput(f'{key}: a range cannot end at "{REFERENCE}"; write two numbers')
+            raise BadInput(f'{key}: "{REFERENCE}" cannot be a limit of a range; write two numbers')
         if not spec.has_cost:
-            raise BadInput(f"{key}: the model {spec.name} has no cost, so nothing chooses in a range; write a number")
+            raise BadInput(
+                f"{key}: the model {spec.name} has no cost that could determine a value in a range; write a number"
+            )
         lower, upper = (
             sign * math.inf if end == FREE else value_of(variable, end, key)
             for end, sign in zip(written, (-1.0, 1.0), strict=True)
         )
         if math.isinf(lower) and math.isinf(upper):
-            raise BadInput(f"{key}: both ends are free; leave the state out of [final]")
+            raise BadInput(f"{key}: both limits of the range are free; leave the state out of [final]")
         if lower > upper:
-            raise BadInput(f"{key}: the range is empty, {shown(written[0])} is above {shown(written[1])}; swap them")
+            raise BadInput(
+                f"{key}: the range is empty, because {shown(written[0])} exceeds {shown(written[1])}; swap the two"
+            )
         if lower < upper:
             found[variable.symbol] = (lower, upper)
     return found

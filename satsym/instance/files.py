@@ -97,7 +97,7 @@ def finite(tree: dict[str, Any]) -> dict[str, Any]:
     """
     for key, value in _leaves(tree):
         if not _finite(value):
-            raise BadInput(f"{key}: the number is {_excess(value)}; write a finite one")
+            raise BadInput(f"{key}: the number {_excess(value)} is not finite; write a finite number")
     return tree
 
 
@@ -107,7 +107,7 @@ def _parse(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise BadInput(f"not valid TOML: {printable(str(error), 150)}; {_repair(str(error))}") from None
     except RecursionError:
-        raise BadInput("brackets are nested too deeply; a matrix needs two levels") from None
+        raise BadInput("brackets are nested too deeply; a matrix needs only two levels") from None
     except ValueError:
         # Python reads no int of more than 4300 digits; one of a few hundred is too large as well, but has a key
         shorter = _MANY_DIGITS.sub("9" * 400, text)
@@ -143,8 +143,8 @@ def text(path: Path) -> str:
     try:
         if path.suffix == ".py" and path.is_file():
             raise BadInput(
-                "is a Python file, and what is solved is a TOML file; derive a model with `satsym derive FILE --out "
-                'DIR`, then write an instance of it that begins with model = "DIR/NAME"'
+                "is a Python file, but a TOML file is needed; derive a model with `satsym derive FILE --out "
+                'DIR`, then write an instance of the model that begins with model = "DIR/NAME"'
             )
         if path.is_dir():
             raise BadInput("is a directory; give the path of a TOML file")
@@ -158,13 +158,16 @@ def text(path: Path) -> str:
         reason = getattr(error, "strerror", None) or "not a path"
         raise BadInput(f"cannot be read ({reason}); check its name and permissions") from None
     if len(data) > MAX_BYTES:
-        raise BadInput(f"larger than {MAX_BYTES} bytes; an instance holds a few numbers, remove the rest")
+        raise BadInput(
+            f"larger than {MAX_BYTES} bytes, which is too large for an instance file; remove what does not belong "
+            "to the instance"
+        )
     try:
         found = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise BadInput(f"not UTF-8 text (byte {error.start}); save it as UTF-8") from None
     if "\0" in found:
-        raise BadInput("holds NUL characters, so it is not text; give the path of a TOML file")
+        raise BadInput("contains NUL characters, so it is not a text file; give the path of a TOML file")
     return found
 
 

@@ -118,7 +118,9 @@ def _model(model: str, folder: Path) -> Kernels:
 def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     spec = model.spec
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
-        raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
+        raise BadInput(
+            f"title: {shown(file.title)} is not a single short line; write at most {MAX_TITLE} printable characters"
+        )
     file, free = unknowns.begun(file, spec)
     t0, tf, tf_guess = resolve.times(file.time, spec)
     lower, upper, norms = control.bounds(file.control, spec)
@@ -165,15 +167,18 @@ def _refuse_beside_limits(instance: Instance) -> None:
     for name in instance.ranges:
         if name in instance.solver.free_angles:
             key = f"[final] {name}: a range"
-            raise BadInput(f"{key} does not count modulo a turn; leave the state out of [solver] free_angles")
+            raise BadInput(f"{key} is not counted modulo a full turn; leave the state out of [solver] free_angles")
     for name in instance.end_limits:
         if instance.free:
             key = instance.free[0].key
             raise BadInput(
-                f'{key}: "{resolve.FREE}" cannot be combined with limits at the end ({name}); write a number'
+                f'{key}: "{resolve.FREE}" cannot be combined with limits on the final state or time ({name}); '
+                "write a number"
             )
         if instance.continuation:
-            raise BadInput(f"[continuation]: cannot be combined with limits at the end ({name}); leave it out")
+            raise BadInput(
+                f"[continuation]: cannot be combined with limits on the final state or time ({name}); leave it out"
+            )
 
 
 def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptions | None:
@@ -191,19 +196,24 @@ def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptio
         raise BadInput(f"[classical] follows: the model has no state {shown(table.follows)}; states here: {have}")
     state = spec.states[spec.state_names.index(table.follows)]
     if len(spec.controls) != 1:
-        raise BadInput(f"[classical] the law has one control, but model {spec.name} has {len(spec.controls)}")
+        raise BadInput(
+            f"[classical] the control law has one control, but the model {spec.name} has {len(spec.controls)}"
+        )
     if (table.damping is None) == (table.gains is None):
-        raise BadInput("[classical] damping: write either the damping, such as 0.01, or gains, and not both")
+        raise BadInput("[classical] damping: write either the damping, such as 0.01, or the gains, but not both")
     damping = None if table.damping is None else quantity(table.damping, _rate(spec), "[classical] damping")
     if damping is not None and damping <= 0.0:
-        raise BadInput(f"[classical] damping: {shown(table.damping)} is not positive; the loop would not settle")
+        raise BadInput(f"[classical] damping: {shown(table.damping)} is not positive, so the loop would not be stable")
     differentiator = time(table.differentiator, "[classical] differentiator", spec)
     if differentiator < 0.0:
         raise BadInput(
-            f"[classical] differentiator: {shown(table.differentiator)} is negative; write a time, or 0 for none"
+            f"[classical] differentiator: {shown(table.differentiator)} is negative; write a time constant, or "
+            "0 for an ideal differentiator"
         )
     if table.gains is not None and min(table.gains) <= 0.0:
-        raise BadInput(f"[classical] gains: {shown(table.gains)} are not both positive; the loop would not settle")
+        raise BadInput(
+            f"[classical] gains: {shown(table.gains)} are not both positive, so the loop would not be stable"
+        )
     return ClassicalOptions(
         follows=table.follows,
         command=value_of(state, table.command, "[classical] command"),
@@ -246,15 +256,15 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
         return None
     if not spec.switching_curve:
         raise BadInput(
-            f"[switching] model {spec.name} has no switching curve in closed form, as minimum-time problems with "
-            "two integrators have; leave the table out"
+            f"[switching] model {spec.name} has no switching curve in closed form, as only minimum-time "
+            "problems of double integrators have; leave the table out"
         )
     position = spec.states[spec.state_names.index(spec.switching_curve[0])]
     found = quantity(table.deadband, position.unit, "[switching] deadband")
     if found <= 0.0:
         raise BadInput(
-            f"[switching] deadband: {shown(table.deadband)} is not positive; "
-            f"write the error of {position.symbol} that is allowed"
+            f"[switching] deadband: {shown(table.deadband)} is not positive; write the allowed error of "
+            f"{position.symbol}"
         )
     return found
 

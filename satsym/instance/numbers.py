@@ -71,14 +71,14 @@ class Key:
         place = place or self.text
         if isinstance(given, str) and given.lstrip().startswith("["):
             raise BadInput(
-                f"{place}: {shown(given)} is not a number; ranges and bounds are set in the instance file alone"
+                f"{place}: {shown(given)} is not a number; ranges and bounds can be set only in the instance file"
             )
         if self.table is Table.TIME:
             return time(given, place, spec)
         if self.table is Table.CONTROL:
             number = quantity(given, self.unit(spec), place)
             if self.name == MAX_NORM and number <= 0.0:
-                raise BadInput(f"{place}: {shown(given)} leaves no control; write a positive number")
+                raise BadInput(f"{place}: with {shown(given)}, no control remains; write a positive number")
             return number
         if self.table is Table.LQR:
             return quantity(given, "1", place)
@@ -203,12 +203,14 @@ def find(text: str, instance: Instance) -> Key:
     """
     key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
-        raise BadInput(f"{key.text}: {instance.called} has a range for it, which can be set only in its file")
+        raise BadInput(
+            f"{key.text}: {instance.called} gives a range for this key, which can be set only in the instance file"
+        )
     guessed = key.name == GUESS and key.table is Table.TIME
     if guessed and instance.tf is not None:
-        raise BadInput(f"{key.text}: {instance.called} gives the final time; set time.tf, or leave this out")
+        raise BadInput(f"{key.text}: {instance.called} gives the final time; set time.tf, or leave out this key")
     if not guessed and not key.given(instance):
-        raise BadInput(f"{key.text}: {instance.called} gives no number for it; give it one there")
+        raise BadInput(f"{key.text}: {instance.called} gives no number for this key; add a number there")
     return key
 
 
@@ -285,7 +287,7 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
         parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
     for name, low, high in zip(spec.control_names, found.lower, found.upper, strict=True):
         if low > high:
-            raise BadInput(f"control.{name}: lower bound {low:g} is above the upper one, {high:g}; exchange them")
+            raise BadInput(f"control.{name}: the lower bound {low:g} exceeds the upper bound {high:g}; exchange them")
     if instance.continuation:
         ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
         found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))

@@ -25,12 +25,14 @@ Weights = Sequence[float | Sequence[float]]
 def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
     """The options, if they fit together and the angles are angles of the model."""
     if options.relaxation is not None and not any(method.relaxed for method in possible(options.method)):
-        raise BadInput('[solver] relaxation: only sweeps have one; remove it, or write method = "sweep"')
+        raise BadInput(
+            '[solver] relaxation: only the sweep method uses relaxation; remove it, or write method = "sweep"'
+        )
     angles = [v for v in spec.states if v.kind == "angle"]
     for name in options.free_angles:
         if name not in [v.symbol for v in angles]:
             have = ", ".join(v.symbol for v in angles) or "none"
-            raise BadInput(f"[solver] free_angles: {shown(name)} is not an angle among the states; angles here: {have}")
+            raise BadInput(f"[solver] free_angles: {shown(name)} is not a state that is an angle; angles here: {have}")
     _no_repetition(options.free_angles, "[solver] free_angles")
     refuse_too_many_steps(options, spec)
     return options
@@ -47,7 +49,7 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
             raise BadInput(f"[lqr] inputs: the model has no control {shown(name)}; controls here: {have}")
     _no_repetition(inputs, "[lqr] inputs")
     if not inputs:
-        raise BadInput("[lqr] inputs: no input is left to control with; name at least one control")
+        raise BadInput("[lqr] inputs: no control input remains; name at least one control")
     horizon = None if table.horizon is None else time(table.horizon, "[lqr] horizon", spec)
     if horizon is not None and horizon <= 0:
         raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; write a length of time, or remove it")
@@ -61,7 +63,7 @@ def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> 
     if table.allowed:
         for name, given in (("Q", table.Q), ("R", table.R), ("N", table.N)):
             if given is not None:
-                raise BadInput(f"[lqr] {name}: [lqr.allowed] gives the weights already; remove one of the two")
+                raise BadInput(f"[lqr] {name}: [lqr.allowed] already gives the weights; remove one of the two")
         return weights.from_allowed(table.allowed, spec.states, inputs)
     if table.Q is None or table.R is None:
         name, of = ("Q", "states") if table.Q is None else ("R", "inputs")
@@ -94,7 +96,7 @@ def _values(value: float | str | list[float | str], variable: Variable, what: st
     if what == "costate":
         for entry in values:
             if isinstance(entry, str):
-                raise BadInput(f"{key}: {shown(entry)} is text; write a costate as a plain number")
+                raise BadInput(f"{key}: {shown(entry)} is text, but a costate must be a number without a unit")
         return tuple(quantity(entry, "1", key) for entry in values)
     return tuple(value_of(variable, entry, key) for entry in values)
 
@@ -102,7 +104,7 @@ def _values(value: float | str | list[float | str], variable: Variable, what: st
 def _no_repetition(names: Sequence[str], key: str) -> None:
     for name in names:
         if names.count(name) > 1:
-            raise BadInput(f"{key}: {shown(name)} stands there twice; name each once")
+            raise BadInput(f"{key}: {shown(name)} is listed twice; name each control only once")
 
 
 MOST_BYTES = 2**31

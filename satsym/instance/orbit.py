@@ -99,7 +99,7 @@ def orbit(table: OrbitTable | None, spec: ProblemSpec) -> OrbitOptions | None:
     plane = {"inclination": table.inclination, "node": table.node, "argument": table.argument}
     for key, value in plane.items():
         if value is not None and len(spec.position) == SPACE:
-            raise BadInput(f"[orbit] {key}: the model {spec.name} is in space, not in a plane; leave it out")
+            raise BadInput(f"[orbit] {key}: the model {spec.name} is not planar; leave out this key")
     angles = {key: quantity(value or 0.0, "rad", f"[orbit] {key}") for key, value in plane.items()}
     return OrbitOptions(_epoch(table.epoch), table.frame, table.centre, **angles)
 
@@ -107,5 +107,7 @@ def orbit(table: OrbitTable | None, spec: ProblemSpec) -> OrbitOptions | None:
 def _epoch(given: datetime) -> datetime:
     """A date and a time in UTC; one without an offset is in UTC already."""
     if given.year not in YEARS:
-        raise BadInput(f"[orbit] epoch: the year {given.year} is not from {YEARS[0]} to {YEARS[-1]}; correct it")
+        raise BadInput(
+            f"[orbit] epoch: the year {given.year} does not lie between {YEARS[0]} and {YEARS[-1]}; correct the epoch"
+        )
     return given.replace(tzinfo=UTC) if given.tzinfo is None else given.astimezone(UTC)

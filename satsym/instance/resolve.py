@@ -99,14 +99,16 @@ def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, flo
     t0 = time(table.t0, "[time] t0", spec)
     tf = None if table.tf == FREE else time(table.tf, "[time] tf", spec)
     if tf is None and not spec.has_cost:
-        raise BadInput(f"[time] tf: the model {spec.name} has no cost, so nothing chooses the time; write a number")
+        raise BadInput(f"[time] tf: the model {spec.name} has no cost that could determine the time; write a number")
     if tf is not None and table.tf_guess is not None:
         raise BadInput(f'[time] tf_guess: the final time is given; remove tf_guess, or write tf = "{FREE}"')
     tf_guess = None if table.tf_guess is None else time(table.tf_guess, "[time] tf_guess", spec)
     for key, end, given in (("tf", tf, table.tf), ("tf_guess", tf_guess, table.tf_guess)):
         if end is not None and not (end > t0 and math.isfinite(end - t0)):
             why = "is not after" if end <= t0 else "is too far from"
-            raise BadInput(f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; write a later, reachable time")
+            raise BadInput(
+                f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; write a later time that can be reached"
+            )
     return t0, tf, tf_guess
 
 

@@ -33,9 +33,7 @@ Bound = Annotated[
     float | str | tuple[float | str, float | str] | dict[str, float | str],
     Meta(description="the lower and the upper bound, such as [-0.2, 0.2]; or max_norm, one number"),
 ]
-Ends = Annotated[
-    tuple[float | str, float | str], Meta(description="where it begins and where it ends, such as [1.0, 1e-6]")
-]
+Ends = Annotated[tuple[float | str, float | str], Meta(description="the first and the last value, such as [1.0, 1e-6]")]
 Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
@@ -131,8 +129,8 @@ _LAW = ("simulate --feedback classical", "compare", "compare --range")
 
 class ClassicalTable(_Table, frozen=True):
     follows: Annotated[Name, Key("the state that follows the command", _LAW)]
-    command: Annotated[Quantity, Key("commanded value from t0 on", _LAW, "the model's")]
-    damping: Annotated[Quantity | None, Key("damping parameter; both poles are at its negative", _LAW, "1/time")] = None
+    command: Annotated[Quantity, Key("commanded value after t0", _LAW, "the model's")]
+    damping: Annotated[Quantity | None, Key("damping parameter d; both poles are at -d", _LAW, "1/time")] = None
     gains: Annotated[Gains | None, Key("gains of the rate and of the state, in place of damping", _LAW, "1")] = None
     differentiator: Annotated[
         Quantity, Key("time constant of the differentiator that measures the rate", _LAW, "time")
@@ -167,7 +165,11 @@ class OrbitTable(_Table, frozen=True):
     )
     inclination: Annotated[
         Quantity | None,
-        Key("inclination of the plane of a planar model to the first two axes of the frame", EXPORTING, "rad"),
+        Key(
+            "inclination of the plane of a planar model to the plane of the first two axes of the frame",
+            EXPORTING,
+            "rad",
+        ),
     ] = None
     node: Annotated[
         Quantity | None, Key("direction of its ascending node, from the first axis of the frame", EXPORTING, "rad")
@@ -189,11 +191,11 @@ class StudyTable(_Table, frozen=True):
     ] = {}
     sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
     method: Annotated[Samplings | None, Key("how a sample is drawn", STUDYING)] = None
-    seed: Annotated[Seed | None, Key("what a sample is drawn from", STUDYING)] = None
-    command: Annotated[Commands | None, Key("what is done with each row", STUDYING)] = None
+    seed: Annotated[Seed | None, Key("seed of the random numbers of a sample", STUDYING)] = None
+    command: Annotated[Commands | None, Key("the command that is run for each row", STUDYING)] = None
     certificate: Annotated[Certificates | None, Key("how solutions are certified", STUDYING)] = None
-    feedback: Annotated[Name | None, Key("the law of a simulation, as simulate --feedback", STUDYING)] = None
-    trajectories: Annotated[Flag, Key("whether trajectories are kept", STUDYING)] = False
+    feedback: Annotated[Name | None, Key("the control law of a simulation, as in simulate --feedback", STUDYING)] = None
+    trajectories: Annotated[Flag, Key("whether trajectories are saved", STUDYING)] = False
 
 
 class SolverOptions(_Table, frozen=True):
@@ -202,7 +204,7 @@ class SolverOptions(_Table, frozen=True):
     method: Annotated[Method, Key("solver; by default the one that suits the problem", SOLVING)] = methods.AUTO
     tolerance: Annotated[Positive, Key("largest residual that a solution may have", MOVING, "1")] = 1e-9
     steps: Annotated[Steps, Key("number of steps of the time grid", MOVING)] = 1000
-    max_seconds: Annotated[Positive, Key("processor time after which the solver gives up", MOVING, "s")] = 60.0
+    max_seconds: Annotated[Positive, Key("processor time after which the solver stops", MOVING, "s")] = 60.0
     max_iterations: Annotated[Count | None, Key("number of sweeps, for methods that sweep", SOLVING)] = None
     free_angles: Annotated[Names, Key("angles whose final value counts modulo a full turn", SOLVING)] = ()
     relaxation: Annotated[
@@ -214,21 +216,24 @@ class SolverOptions(_Table, frozen=True):
 class InstanceFile(_Table, frozen=True):
     """An instance as it was written."""
 
-    model: Annotated[Name, Key("a shipped model, or the path of one relative to this file, without .py")]
+    model: Annotated[Name, Key("a shipped model, or the path of a model relative to this file, without .py")]
     initial: Annotated[
         dict[str, Quantity],
-        Key('initial value of every state; "free" if it is to be found', unit="the model's", names="STATE"),
+        Key('initial value of every state; "free" if the value is to be found', unit="the model's", names="STATE"),
     ]
     time: Annotated[TimeTable, Key("when it begins and ends")]
     title: Annotated[Text, Key("title, one line")] = ""
     parameters: Annotated[
         dict[str, Quantity],
-        Key('values other than the defaults; "free" if they are to be found', unit="the model's", names="PARAMETER"),
+        Key(
+            'values that replace the defaults; "free" if a value is to be found', unit="the model's", names="PARAMETER"
+        ),
     ] = {}
     final: Annotated[
         dict[str, FinalValue],
         Key(
-            'required final values; a state that is left out or "free" is free, as is an end of a range that is "free"',
+            'required final values; a state that is left out or "free" is free, and so is a limit of a range '
+            'that is "free"',
             (*SOLVING, *RELAYS),
             "the model's",
             "STATE",
@@ -256,7 +261,7 @@ class InstanceFile(_Table, frozen=True):
     continuation: Annotated[
         dict[str, Ends],
         Key(
-            "where a number begins and ends along a continuation",
+            "first and last value of a number along a continuation",
             ("solve",),
             "the model's",
             "PARAMETER, t0, tf, initial.STATE or final.STATE",

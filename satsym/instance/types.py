@@ -246,7 +246,9 @@ class Instance:
             With the first of these.
         """
         if self.free:
-            raise BadInput(f'{self.called}: {self.free[0].key}: "free" is found by solving only; write a number')
+            raise BadInput(
+                f'{self.called}: {self.free[0].key}: the value of "free" is found only by solving; write a number'
+            )
 
     @property
     def boundary_type(self) -> int:

@@ -84,12 +84,16 @@ def begun(file: InstanceFile, spec: ProblemSpec) -> tuple[InstanceFile, tuple[Un
     """
     found = tuple(_stated(file, spec))
     if found and not spec.has_cost:
-        raise BadInput(f"{found[0].key}: the model {spec.name} has no cost, so nothing chooses it; write a number")
+        raise BadInput(
+            f"{found[0].key}: the model {spec.name} has no cost that could determine this value; write a number"
+        )
     if file.time.t0_guess is not None and file.time.t0 != FREE:
         raise BadInput(f'[time] t0_guess: the initial time is given; remove t0_guess, or write t0 = "{FREE}"')
     for name in file.guess.parameter:
         if file.parameters.get(name) != FREE and name in spec.parameter_names:
-            raise BadInput(f'[guess.parameter] {name}: the parameter is given; remove this, or write {name} = "{FREE}"')
+            raise BadInput(
+                f'[guess.parameter] {name}: the parameter is given; remove this guess, or write {name} = "{FREE}"'
+            )
     tables: dict[str, Any] = {"initial": dict(file.initial), "parameters": dict(file.parameters)}
     for unknown in found:
         if unknown.place is Place.TIME:

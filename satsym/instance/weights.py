@@ -55,8 +55,8 @@ def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) ->
     found = tuple(tuple(row) if isinstance(row, Sequence) else () for row in rows)
     if len(found) != states or any(len(row) != inputs for row in found):
         raise BadInput(
-            f"[lqr] N: its shape does not fit; write a row for each state ({states}) with a number for each active "
-            f"input ({inputs})"
+            f"[lqr] N: the matrix has the wrong shape; write a row for each state ({states}) with a number for "
+            f"each active input ({inputs})"
         )
     return found
 
@@ -124,7 +124,9 @@ def from_allowed(
         if variable.symbol not in allowed:
             raise BadInput(f"[lqr.allowed] {variable.symbol}: missing; every active input needs an allowed deviation")
     if not any(variable.symbol in allowed for variable in states):
-        raise BadInput("[lqr.allowed] no state has an allowed deviation, so there is nothing to do; add one")
+        raise BadInput(
+            "[lqr.allowed] no state has an allowed deviation, so the cost does not depend on the states; add one"
+        )
     return tuple(_weight(allowed, v) for v in states), tuple(_weight(allowed, v) for v in inputs)
 
 
@@ -134,7 +136,7 @@ def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
     key, given = f"[lqr.allowed] {variable.symbol}", allowed[variable.symbol]
     deviation = quantity(given, variable.unit, key)
     if not 1e-100 < deviation < 1e100:
-        raise BadInput(f"{key}: {shown(given)} is not an allowed deviation; write a positive one")
+        raise BadInput(f"{key}: an allowed deviation must be positive, not {shown(given)}; write a positive number")
     return 1.0 / deviation**2
 
 
@@ -144,7 +146,7 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
     diagonal = [row for row in rows if not isinstance(row, Sequence)]
     if len(rows) != size or len(diagonal) not in (0, size):
         raise BadInput(
-            f"[lqr] {name}: it has {len(rows)} entries, which are too many, too few or of mixed kinds; {wanted}"
+            f"[lqr] {name}: the number {len(rows)} of entries is wrong, or numbers and rows are mixed; {wanted}"
         )
     if diagonal:
         return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))

@@ -38,7 +38,7 @@ def block_step(kernels: Kernels, symplectic: bool = False) -> Any:
         If the kernels were not compiled.
     """
     if kernels.backend != "numba":
-        raise BadInput(f"{kernels.spec.name}: no block step without compiling: take compiled() first")
+        raise BadInput(f"{kernels.spec.name}: a block step requires compiled kernels: call compiled() first")
     return kicks_and_drifts(kernels) if symplectic else rk4(kernels)
 
 

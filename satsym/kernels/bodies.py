@@ -92,7 +92,7 @@ class Body:
         """Check the statements after the docstring."""
         last = statements[-1] if statements else None
         if self.returns and not isinstance(last, ast.Return):
-            raise Unexpected(getattr(last, "lineno", 1), "ends without a result")
+            raise Unexpected(getattr(last, "lineno", 1), "ends without a return statement")
         for statement in statements:
             if statement is last and self.returns:
                 self._result(statement)

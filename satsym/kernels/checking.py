@@ -41,7 +41,7 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
         At the first line that the generator does not write.
     """
     if sum(1 for _ in islice(_WORD.finditer(text), _MOST_WORDS + 1)) > _MOST_WORDS:
-        raise Unexpected(1, "begins a statement that a generated module does not contain")
+        raise Unexpected(1, "begins a statement that no generated module contains")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they would print lines of the file
@@ -49,7 +49,7 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
     except SyntaxError as error:
         raise Unexpected(error.lineno or 1, f"is not Python ({error.msg})") from None
     except ValueError:  # NUL characters, up to Python 3.11
-        raise Unexpected(1, "or a later one is not text") from None
+        raise Unexpected(1, "or a later line is not text") from None
     opening = len(_IMPORTS) + 2
     docstring, *imports = body[: opening - 1] or [ast.Pass()]
     _docstring(docstring)

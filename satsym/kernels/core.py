@@ -53,7 +53,7 @@ def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str,
     result = dict(functions)
     if not functions:
         return result
-    activity.tell("compiling; the first time this may take half a minute ...")
+    activity.tell("compiling; the first time this can take half a minute ...")
     # The copies share fresh globals, in which a function finds the compiled form of another.
     scope = dict(next(iter(functions.values())).__globals__)
     for name, function in functions.items():

@@ -109,17 +109,17 @@ def check_name(name: str) -> None:
         With what a name is.
     """
     if not is_name(name):
-        raise BadInput(f"{shown(name)}: a model's name is {NAMES}")
+        raise BadInput(f"{shown(name)}: the name of a model must be {NAMES}")
 
 
 def _unknown(model: str) -> str:
-    return f"{shown(model)} is not a shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
+    return f"{shown(model)} is not a shipped model; {suggestion(model, shipped())} (`satsym models` lists all)"
 
 
 def _refuse_ending(model: str) -> NoReturn:
     raise BadInput(
-        f"{shown(model)}: leave out the ending .py; a model is a module that `satsym derive` wrote, "
-        "not a derivation file"
+        f"{shown(model)}: leave out the ending .py; a model is a module written by `satsym derive`, not a "
+        "derivation file"
     )
 
 
@@ -172,19 +172,25 @@ def _load_shipped(name: str) -> Kernels:
 def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     """The file that a relative path names, and the folder that it cannot leave, symbolic links followed."""
     if Path(model).is_absolute():
-        raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
+        raise BadInput(
+            f"{shown(model)}: absolute paths are not allowed; write a path relative to the folder of the instance file"
+        )
     if not is_name(model.rpartition("/")[2]):
-        raise BadInput(f"{shown(model)}: a file's name is {NAMES}")
+        raise BadInput(f"{shown(model)}: a file name must be {NAMES}")
     try:
         root = folder.resolve(strict=True)
         path = (root / f"{model}.py").resolve(strict=True)
         regular = path.is_file()
     except (OSError, RuntimeError, ValueError):  # missing, no access, a loop of links, a NUL character
-        raise BadInput(f"{shown(model)}: no such file; check the path, or write it with `satsym derive`") from None
+        raise BadInput(
+            f"{shown(model)}: no such file; check the path, or write the module with `satsym derive`"
+        ) from None
     if not path.is_relative_to(root):
-        raise BadInput(f"{shown(model)}: leads out of the instance file's folder; put the file there")
+        raise BadInput(
+            f"{shown(model)}: lies outside the folder of the instance file; move the module into that folder"
+        )
     if not regular:
-        raise BadInput(f"{shown(model)}: not a file; name a module that `satsym derive` wrote")
+        raise BadInput(f"{shown(model)}: not a file; name a module written by `satsym derive`")
     return path, root
 
 
@@ -194,12 +200,12 @@ def _read(model: str, path: Path) -> str:
         with path.open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
-            raise BadInput(f"{shown(model)}: larger than {MOST_BYTES} bytes; name a module that `satsym derive` wrote")
+            raise BadInput(f"{shown(model)}: larger than {MOST_BYTES} bytes; name a module written by `satsym derive`")
         return data.decode("utf-8")
     except OSError as error:
         raise BadInput(f"{shown(model)}: cannot be read ({error.strerror}); check its permissions") from None
     except UnicodeDecodeError:
-        raise BadInput(f"{shown(model)}: not UTF-8 text; name a module that `satsym derive` wrote") from None
+        raise BadInput(f"{shown(model)}: not UTF-8 text; name a module written by `satsym derive`") from None
 
 
 @lru_cache(maxsize=32)

@@ -44,7 +44,7 @@ REST = Theorem(
     "the running cost is a sum of squares",
     (
         "The global minimum of the cost is zero.",
-        "Only the uncontrolled motion has it: every other admissible control costs more.",
+        "Only the uncontrolled motion attains this minimum: every other admissible control has a higher cost.",
     ),
 )
 
@@ -53,11 +53,11 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
     """Say what makes no control the best one."""
     return (
         Hypothesis(
-            "the cost is a positive definite quadratic form in the controls alone, and the end is free",
-            "by second derivatives over all controls",
+            "the cost is a positive definite quadratic form in the controls alone, and the final state is free",
+            "by second derivatives for all controls",
             "exactly",
         ),
-        Hypothesis("zero control is admissible", "it lies within all bounds", "exactly"),
+        Hypothesis("zero control is admissible", "zero lies within all bounds", "exactly"),
         Hypothesis("the uncontrolled motion exists until the final time", "by validated integration", f"{steps} steps"),
     )
 
@@ -65,13 +65,14 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
 def of_signs(shown: Shown) -> Hypothesis:
     """Say that laws are the best ones along their arcs."""
     if not shown.conditions:
-        return Hypothesis("no control reaches a bound", "there are no bounds", "nothing to show")
+        return Hypothesis("no control reaches a bound", "there are no bounds", "no proof is needed")
     changes = f"{shown.conditions} signs, {shown.crossings} changes of law"
     if shown.crossings == 1:
         changes = f"{shown.conditions} signs, 1 change of law"
     return Hypothesis(
-        "the law of each arc holds on the whole arc, and each change of law is crossed with a nonzero slope",
-        "signs of Taylor series on every step, by bisection",
+        "the law of each arc holds on the whole arc, and the switching function crosses each change of law "
+        "with a nonzero slope",
+        "signs of Taylor series on every step, determined by bisection",
         changes,
     )
 
@@ -135,7 +136,7 @@ def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
     require_jumps(jumps)
     return Hypothesis(
         "multipliers of path constraints are nonnegative",
-        "on boundary arcs, and where boundaries are entered, left or touched",
+        "on boundary arcs, and at entries, exits and touch points",
         f"{len(jumps)} jumps of the costates",
     )
 
@@ -182,7 +183,7 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
     for (also, where), reason in ((CONVEX, convexity), (WAITING, waits)):
         if reason and not statement.spec.path_constraints:
             name, source = f"{name}; {also}", f"{source}; {where}"
-            claimed = (*claimed, f"It is global: {reason}.")
+            claimed = (*claimed, f"The optimum is global: {reason}.")
     return Theorem(name, source, claimed)
 
 
@@ -197,7 +198,8 @@ def _best(statement: Statement) -> str:
     near = ["whose states stay near it", *(said for said, holds in free if holds)]
     listed = " and ".join([", ".join(near[:-1]), near[-1]]) if len(near) > 1 else near[0]
     return (
-        f"It is strictly better than all other admissible motions {listed}, however different their controls are "
+        f"This extremal is strictly better than all other admissible motions {listed}, however different their "
+        "controls are "
         "(a strict strong local optimum)."
     )
 
@@ -206,12 +208,15 @@ def scope(statement: Statement) -> str:
     """Say which problem is proved, and what is not claimed."""
     path = statement.source.path
     numbers = (
-        f"decimals of {path} and of the generated module are taken as exact rational numbers, and degrees are "
-        "fractions of pi."
+        f"decimals in {path} and in the generated module are taken as exact rational numbers, and degrees as "
+        "rational multiples of pi."
         if path
-        else "numbers given in Python are taken as exact binary fractions, and defaults of the model as exact decimals."
+        else "numbers given in Python are taken as exact binary fractions, and the defaults of the model as exact "
+        "decimals."
     )
-    compared = "Derivatives and laws of the generated kernel were compared with its motion and costs at random points."
-    near = "The theorem does not say how near is near enough."
-    model = f"The problem is that of the model {statement.spec.name} with the numbers listed here:"
+    compared = (
+        "The derivatives and laws of the generated kernel were compared with its motion and costs at random points."
+    )
+    near = "The theorem gives no size of this neighbourhood."
+    model = f"The theorem concerns the problem of the model {statement.spec.name} with the numbers listed here:"
     return f"{model} {numbers} {compared} {near}"

@@ -38,7 +38,7 @@ def convex(statement: Statement) -> str:
         return ""
     if not (_semidefinite(cost[0], n + m) and _semidefinite(end[0], n + m)):
         return ""
-    return "the motion is linear, the costs are convex, so is the control set, and the final time is given"
+    return "the motion is linear, the costs and the control set are convex, and the final time is given"
 
 
 def waiting(statement: Statement) -> str:

@@ -40,7 +40,7 @@ def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius
     last_state = [constant(v) for v in nodes[-1][:n]]
     objective = cost + value(statement.kernel.terminal_cost(constant(final), last_state, statement.p))
     shown = Hypothesis(
-        "an extremal exists and is the only one nearby",
+        "an extremal exists and is unique in a neighbourhood",
         f"Krawczyk's operator maps a box of {len(here)} unknowns into itself ({fractions} segments, "
         f"{sum(len(s.steps) for arc in last.passed.segments for s in arc)} steps)",
         f"radius {radius:.0e} relative to the sizes of the unknowns",

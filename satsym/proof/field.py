@@ -76,7 +76,7 @@ def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regul
             time += sum((step.h for step in segment.steps), arb(0))
     form = passed.end.second_variation(w)
     if form.nrows() and not positive(form):
-        raise NotProved("the second variation at the end is not shown to be positive (a focal point of the end)")
+        raise NotProved("the second variation at the end could not be shown to be positive (a focal point of the end?)")
     return Regularity(called, pieces, tuple(ratios))
 
 
@@ -89,7 +89,9 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
         start = _ratio(x, lam)
         taken = _regular(step, start, _widths(start, sizes[:n]), 0.0, 1.0, DEEPEST)
         if not taken:
-            raise NotProved(f"X of the field is not shown to be regular near t = {_about(time)} (a conjugate point?)")
+            raise NotProved(
+                f"X of the field could not be shown to be regular near t = {_about(time)} (a conjugate point?)"
+            )
         pieces, time = pieces + taken, time + step.h
         carried = carried.after(step.derivative(), [arb(0)] * m)
         there = carried.frame * (carried.flow * first)
@@ -161,7 +163,7 @@ def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -
     ]  # of the condition by the field's states
     ratio = 1 + sum((a * v for a, v in zip(along, jump[:n], strict=True)), arb(0)) / speed
     if not ratio > 0:
-        raise NotProved(f"det X of the field changes its sign at the switch at t = {_about(time)} (a conjugate point?)")
+        raise NotProved(f"det X of the field changes sign at the switch at t = {_about(time)} (a conjugate point?)")
     x = arb_mat(n, n, [jump[i] * along[j] / speed + int(i == j) for i in range(n) for j in range(n)])
     lam = arb_mat(n, n, [jump[n + i] * along[j] / speed + w[i, j] for i in range(n) for j in range(n)])
     return _ratio(x, lam), ratio

@@ -49,7 +49,7 @@ def located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], di
         if not size < 1e6 or (before < SETTLED_CORRECTION and not fine and size > 0.5 * before):
             break
         fine = fine or size < SETTLED_CORRECTION
-    raise NotProved("Newton's method finds no extremal near the answer; it may have another structure")
+    raise NotProved("Newton's method finds no extremal near the answer; the extremal might have another structure")
 
 
 def _equations(

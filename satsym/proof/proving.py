@@ -129,7 +129,7 @@ class Located:
 
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     if not found.status.answered:
-        raise NotProved(f"there is no answer to begin with: {found.message}")
+        raise NotProved(f"there is no answer to start the proof from: {found.message}")
     statement = stated(case, found.instance.met, found.x[:, -1].tolist())
     record = replace(record, numbers=dict(statement.source.stated))
     if isinstance(statement.kernel, Lifted):
@@ -185,7 +185,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR_ANSWER:
-        raise NotProved("the answer is not an extremal: the nearest one has other costates")
+        raise NotProved("the answer is not an extremal: the nearest extremal has other costates")
     return shooting, place
 
 

@@ -21,9 +21,9 @@ DEEPEST = 16
 PARTS = 14
 """How often a step is halved to find the part of it on which a condition falls to zero."""
 
-_LINEAR = "H is linear in the controls, with coefficients that do not all vanish"
+_LINEAR = "H is linear in the controls, and its coefficients do not all vanish"
 _DIRECTED = {
-    "angle": "H is a cosine of the direction, with an amplitude that does not vanish",
+    "angle": "H is a cosine of the direction, and its amplitude does not vanish",
     **dict.fromkeys(("ball", "annulus"), _LINEAR),
 }
 """Why a direction is the only best one, by the kind of its set."""
@@ -197,4 +197,4 @@ def _of_hamiltonian(law: Law, step: Step) -> str:
         raise BeyondProof("a Hamiltonian that is not quadratic in the controls") from None
     if not positive(arb_mat(m, m, entries)):
         raise NotProved("H_uu is not shown to be positive definite")
-    return "H is quadratic in the controls, with H_uu positive definite"
+    return "H is quadratic in the controls, and H_uu is positive definite"

@@ -310,7 +310,7 @@ def _refuse_cases(kernel: BallKernel) -> None:
         known = {f"{control}{after}" for control in spec.control_names for after in ("", "_value")}
         allowed = known if name == "running_cost" and spec.switching else set()
         if set(kernel.cases(name)) - allowed:
-            raise BeyondProof("a motion, a cost or a constraint that is stated by cases, or with absolute values")
+            raise BeyondProof("a motion, a cost or a constraint that is defined piecewise or contains absolute values")
     timed = kernel.timed & _ALONG
     if any(name.startswith(("path_", "boundary_")) for name in timed):
         raise BeyondProof("path constraints that depend on time")
@@ -339,7 +339,7 @@ def refuse(case: Instance) -> None:
         (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "points on the way"),
-        (spec.chattering, "controls that chatter"),
+        (spec.chattering, "chattering controls"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
         (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),
         (

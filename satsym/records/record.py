@@ -106,9 +106,11 @@ def _decoded(path: Path, _: int, __: int) -> Record:
         found = msgspec.json.decode(path.read_bytes(), type=Record)
     except (OSError, ValueError, msgspec.MsgspecError, RecursionError) as error:
         why = printable(" ".join(str(error).split()))
-        raise BadInput(f"{printable(str(path), 200)}: no record of a derivation ({why}); derive it again") from None
+        raise BadInput(
+            f"{printable(str(path), 200)}: this is not the record of a derivation ({why}); derive the model again"
+        ) from None
     if found.format != FORMAT:
-        raise BadInput(f"{printable(str(path), 200)}: comes from another version of satsym; derive it again")
+        raise BadInput(f"{printable(str(path), 200)}: was written by another version of satsym; derive the model again")
     return found
 
 
@@ -125,11 +127,14 @@ def load(path: Path) -> Record:
     except (OSError, ValueError):
         raise BadInput(f"{printable(str(path), 200)}: no such file; satsym derive writes it") from None
     if status.st_size > _MOST_BYTES:
-        raise BadInput(f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; no record of a derivation is")
+        raise BadInput(
+            f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; the record of a derivation is never "
+            "so large"
+        )
     found = _decoded(path, status.st_mtime_ns, status.st_size)
     for place, digest in found.sources.items():
         if digest_of(path.parent / place) not in ("", digest):
-            older = f"is older than {printable(place, 200)}; run satsym derive on it again"
+            older = f"is older than {printable(place, 200)}; run satsym derive on this file again"
             raise BadInput(f"{printable(str(path), 200)}: {older}")
     return found
 
@@ -195,7 +200,7 @@ def look_up(found: Record, address: str) -> Found:
     step = next((step for step in found.steps if step.name == step_name), None)
     if step is None:
         known = [DECLARED, *(step.name for step in found.steps)]
-        raise BadInput(f"{shown(address)}: no step {shown(step_name)}; {suggestion(step_name, known)}")
+        raise BadInput(f"{shown(address)}: there is no step {shown(step_name)}; {suggestion(step_name, known)}")
     for equation in step.equations:
         if equation.name == name:
             return _equated(equation, address)
@@ -249,7 +254,7 @@ def _trees(value: Text | list[list[Text]], address: str) -> Node | Matrix[Node]:
 
 def _declared(found: Record, name: str, address: str) -> Found:
     if name not in found.declared:
-        raise BadInput(f"{shown(address)}: nothing declared is called so; {suggestion(name, found.declared)}")
+        raise BadInput(f"{shown(address)}: no declared variable has this name; {suggestion(name, found.declared)}")
     value = _trees(found.declared[name], address)
     if isinstance(value, Matrix):
         rows, columns = value.shape

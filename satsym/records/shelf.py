@@ -28,7 +28,7 @@ def place_of(model: str, beside: Path) -> tuple[Path | None, str]:
     folder, slash, name = model.removesuffix(record.SUFFIX).rpartition("/")
     if not is_name(name):
         raise BadInput(
-            f'{shown(model)} is not a model; write the name of one, or "DIR/NAME" after satsym derive --out DIR'
+            f'{shown(model)} is not a model; write the name of a model, or "DIR/NAME" after satsym derive --out DIR'
         )
     try:
         return (beside / folder if slash else None), name
@@ -80,5 +80,5 @@ def find(name: str) -> Record:
     folder = _FOLDER.get()
     if folder is not None and (folder / f"{name}.py").is_file():
         where = printable(str(folder), 200)
-        raise BadInput(f"{where}: {name}.py is there, but no {name}{record.SUFFIX}; run satsym derive again")
-    raise BadInput(f"no derivation {shown(name)}; {suggestion(name, source_files.models())}")
+        raise BadInput(f"{where}: {name}.py exists, but {name}{record.SUFFIX} is missing; run satsym derive again")
+    raise BadInput(f"there is no derivation {shown(name)}; {suggestion(name, source_files.models())}")

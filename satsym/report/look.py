@@ -37,10 +37,10 @@ class Look:
 
     def __post_init__(self) -> None:
         if self.size not in SIZES:
-            raise BadInput(f"no pictures of the size {shown(self.size)}; {suggestion(str(self.size), SIZES)}")
+            raise BadInput(f"there is no picture size {shown(self.size)}; {suggestion(str(self.size), SIZES)}")
         for each in self.formats:
             if each not in FORMATS:
-                raise BadInput(f"no pictures as {shown(each)}; {suggestion(str(each), FORMATS)}")
+                raise BadInput(f"there is no picture format {shown(each)}; {suggestion(str(each), FORMATS)}")
 
     @classmethod
     def of(cls, formats: str | Sequence[str], titled: bool = True, size: str = "screen") -> Look:

@@ -87,7 +87,8 @@ def carry_out(
     except OSError as error:
         reason = error.strerror or "the path leads nowhere"
         raise BadInput(
-            f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat with --resume"
+            f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat the command "
+            "with --resume"
         ) from None
     return done
 
@@ -140,12 +141,14 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
         for name in (study.table.file, TRAJECTORIES.format(0), LIST):
             if (folder / name).exists() and name not in known:  # it would be lost
                 raise BadInput(
-                    f"{printable(str(folder))}: holds {name}, which belongs to no study; "
-                    "give another folder, or remove it"
+                    f"{printable(str(folder))}: contains {name}, which does not belong to a study; give "
+                    "another folder, or remove it"
                 )
         return
     if not resume:
-        raise BadInput(f"{printable(str(folder))}: holds a study; add --resume to go on, or give another folder")
+        raise BadInput(
+            f"{printable(str(folder))}: contains a study; add --resume to continue the study, or give another folder"
+        )
     if changed := differences(before, study.identity):
         more = f", and {len(changed) - 3} more" if len(changed) > 3 else ""
         raise BadInput(
@@ -179,8 +182,8 @@ def _refuse_too_large(study: Study, folder: Path) -> None:
     free = shutil.disk_usage(place).free
     if wanted > free:
         raise BadInput(
-            f"{printable(str(folder))}: trajectories of {rows} rows take {wanted / 1e9:.3g} GB, and there are "
-            f"{free / 1e9:.3g} GB left; ask for fewer rows or steps, or for no trajectories"
+            f"{printable(str(folder))}: the trajectories of {rows} rows need {wanted / 1e9:.3g} GB, but only "
+            f"{free / 1e9:.3g} GB are free; ask for fewer rows or steps, or for no trajectories"
         )
 
 
@@ -204,12 +207,10 @@ def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[di
     from satsym.report.plots import studies as plots
 
     if sets.written_at(folder) is None:
-        raise BadInput(
-            f"{printable(str(folder))}: that study is not finished; go on with it: `satsym study X --resume`"
-        )
+        raise BadInput(f"{printable(str(folder))}: that study is not finished; continue it: `satsym study X --resume`")
     found = sets.read(folder)
     if found.command != STUDY or path_of(folder).name not in found.listed:
-        raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, not a study")
+        raise BadInput(f"{printable(str(folder))}: contains the result of {printable(found.command)}, not a study")
     said: dict[str, Any] = json.loads(found.result)
     pictures = plots.pictures(studies.numbers(path_of(folder), said), look)
     if out is None or out.resolve() == folder.resolve():

@@ -193,7 +193,7 @@ def _by_method(instance: Instance, progress: Progress | None, examined: bool) ->
     if left and method.name == "collocation" and _nearly(solution) and not methods.refusal("shooting", instance):
         shot = _solved(methods.METHODS["shooting"], left, progress, examined)
         if shot.status.answered and not _refuted(shot):
-            return replace(_in_full(shot, instance), message=f"{shot.message}; by collocation {solution.message}")
+            return replace(_in_full(shot, instance), message=f"{shot.message}; by collocation: {solution.message}")
         left = hurried(instance, deadline)
     if left and not methods.refusal(methods.SWEEP.name, instance):
         return _in_full(_confirmed(_solved(methods.SWEEP, left, progress), method, progress, deadline), instance)

@@ -27,8 +27,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         return found
     if none_conceivable(found):
         message = (
-            "the optimal control is zero: the final state is free and costs nothing, so the costates vanish and any "
-            "control only adds to the cost; the motion is the uncontrolled one"
+            "the optimal control is zero: the final state is free and has no cost, so the costates vanish and "
+            "any other control increases the cost; the motion is the uncontrolled one"
         )
         return replace(found, message=message)
     return bottomless(found) or replace(

@@ -69,8 +69,8 @@ def contradiction(instance: Instance) -> str:
         before, after = one.terms(start), one.terms(end)
         if abs(after.sum() - before.sum()) > EQUAL_QUANTITY * max(np.abs(before).sum(), np.abs(after).sum()):
             return (
-                f"{one.formula} is conserved whatever the controls do: it is {before.sum():.8g} at the start, "
-                f"and the final states ask for {after.sum():.8g}; {LEAVE_FREE}"
+                f"no control changes {one.formula}: its initial value is {before.sum():.8g}, but the final "
+                f"states require {after.sum():.8g}; {LEAVE_FREE}"
             )
     return ""
 

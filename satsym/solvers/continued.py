@@ -79,7 +79,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
         reached = _past_folds(instance, reached, progress, quick)
     count = len(reached.answers)
     if reached.share < 1.0:
-        where = f"continuation ends at {_values(instance, reached.share)} after {counted(count, 'answer')}"
+        where = f"continuation stops at {_values(instance, reached.share)} after {counted(count, 'answer')}"
         failed = reached.failed
         lost = replace(reached.last, status=Status.NOT_CONVERGED, objective=float("nan"), certificate=None)
         if failed is not None and not failed.status.answered:

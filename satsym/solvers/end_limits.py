@@ -121,7 +121,7 @@ class Trials:
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
-            return replace(nothing, message="time ran out before all ends were tried")
+            return replace(nothing, message="time was up before all combinations of active limits were tried")
         try:
             found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
@@ -147,7 +147,7 @@ class Trials:
         if first is not None and first.status is Status.INFEASIBLE:  # no less so with more conditions
             return replace(nothing, status=first.status, message=first.message)
         count = counted(len(self.known), "choice")
-        message = f"none of {count} of limits that the end meets has a solution that satisfies the others"
+        message = f"none of {count} of active limits has a solution that satisfies the other limits"
         reasons = [one.message for one in self.known.values() if not one.status.answered]
         return replace(
             nothing,

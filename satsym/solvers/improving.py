@@ -47,7 +47,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
     solution = solver(instance, progress)
     certificate, better = examined(solution, deadline)
     if better is not None and instance.guess:
-        less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to have it"
+        less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to obtain that extremal"
         message = f"{solution.message}; {less}"
         solution, better = replace(solution, message=message), None
     for seed in range(1, ROUNDS + 1):
@@ -81,10 +81,10 @@ def bottomless(solution: Solution) -> Solution | None:
     endless = None if constrained or solution.method == SWITCHED else fall(solution)
     if endless is None:
         return None
-    advice = "give the control or the time a larger weight, shorten the time, or bound the control"
+    advice = "increase the weight of the control or of time, shorten the time, or bound the control"
     spec, within = solution.instance.model.spec, solution.instance.control_set
     if spec.control_set not in (None, "free") and not within.bounded:
-        advice += "; the model has bounds for it, and [control] gives none"
+        advice += "; the model provides for bounds of the control, but [control] gives none"
     return without_minimiser(solution, f"{endless.message}; {advice}")
 
 

@@ -125,10 +125,13 @@ def _extremal(instance: Instance, limits: Limits) -> Extremal:
     except np.linalg.LinAlgError:
         error = float("nan")
     if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
-        message = "the conditions contradict each other or leave costates undetermined: the end may not be reachable"
+        message = (
+            "the conditions contradict each other or leave costates undetermined: it might be impossible to reach "
+            "the final state"
+        )
         return unfinished(problem, arcs, message, 1, limits)
     if not kept(problem, arcs):
-        raise _refusal(instance, "bounds on its control are active")
+        raise _refusal(instance, "the bounds of its control are active")
     cost = arcs.cost() * problem.scale.cost
     limits.tell(cost, error)
     kind = "matrix exponentials" if isinstance(arcs, Exponential) else "variational equations"
@@ -148,7 +151,7 @@ def is_linear(problem: TwoPoint) -> bool:
     if differs.any():
         row, column = np.argwhere(differs)[0]
         symbols = [*names, *(f"the costate of {name}" for name in names)]
-        raise _refusal(problem.instance, f"how the rate of {symbols[row]} follows {symbols[column]} depends on both")
+        raise _refusal(problem.instance, f"the rate of {symbols[row]} is not linear in {symbols[column]}")
     extra = rng.standard_normal((2, problem.unknowns))
     ends = [problem.boundary_slopes(place[:, -1], theta) for place, theta in zip(places, extra, strict=True)]
     if not all(np.allclose(a, b, EQUAL_DERIVATIVES, EQUAL_DERIVATIVES) for a, b in zip(*ends, strict=True)):

@@ -98,8 +98,8 @@ class Redundant:
     def note(self) -> str:
         """What was done, in words."""
         return (
-            f"the final {self.state} already follows from the other final states, because no control changes a "
-            "certain function of them: it was left out"
+            f"the other final states already determine the final {self.state}, because no control changes a "
+            "certain function of them: this condition was left out"
         )
 
 

@@ -68,7 +68,10 @@ def with_cheapest_turns(
     status, message = known[at].status, f"{known[at].message}; {_message(angles, at, others)}"
     if instance.tf is None and (lost or len(path) > MOST_MOVES):
         values = ", ".join(f"{value:.4g}" for value in path[-3:])
-        message = f"more turns are always cheaper: the last three numbers cost {values}; fix the final time"
+        message = (
+            f"the cost decreases with every further turn: the last three numbers of turns cost {values}; fix the "
+            "final time"
+        )
         status = Status.NO_MINIMISER
     found = _turned(known[at], instance, dict(zip(angles, at, strict=True)))
     return replace(found, status=status, message=message, wall_s=time.perf_counter() - began)

@@ -78,7 +78,10 @@ def asked(
     )
     for key in study.design.keys:
         if key.text in settings:
-            raise BadInput(f"--set {key.text}: varies from row to row; remove it, or leave it out of what varies")
+            raise BadInput(
+                f"--set {key.text}: is varied in this study, so it cannot be set as well; remove it, or leave it "
+                "out of the varied keys"
+            )
     return replace(study, compiled=True) if case.solver.backend == "auto" and _worth_compiling(study) else study
 
 
@@ -138,4 +141,4 @@ def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
     if feedback is not None and feedback not in FEEDBACKS:
         raise BadInput(f"feedback: {shown(feedback)}: {suggestion(feedback, FEEDBACKS)}")
     if (command is Command.LQR or feedback == "lqr") and case.lqr is None:
-        raise BadInput(f"{case.called}: has no table [lqr]; add one with Q and R")
+        raise BadInput(f"{case.called}: has no table [lqr]; add a table [lqr] with Q and R")

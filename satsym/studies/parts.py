@@ -92,7 +92,8 @@ class Parts:
                 break
             if found.get("study") != self._study:
                 raise BadInput(
-                    f"{printable(self._lines.name)}: holds rows of another study; give another folder, or remove them"
+                    f"{printable(self._lines.name)}: contains rows of another study; give another folder, or "
+                    "remove them"
                 )
             if all(status not in PASSING for _, status, *_ in found["rows"]):
                 self.done[found["chunk"]] = Place(end, found["arrays"][1])
@@ -132,7 +133,9 @@ class Parts:
         self._lines.seek(self.done[number].line)
         found = _decoded(self._lines.readline())
         if found is None:
-            raise BadInput(f"{printable(self._lines.name)}: has changed while it was read; repeat with --resume")
+            raise BadInput(
+                f"{printable(self._lines.name)}: changed while it was being read; repeat the command with --resume"
+            )
         rows = tuple(Row(key, status, message, numbers) for key, status, message, numbers in found["rows"])
         return Part(found["chunk"], found["start"], rows)
 
@@ -196,7 +199,7 @@ def _lock(stream: IO[bytes], folder: Path) -> None:
         fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise BadInput(
-            f"{printable(str(folder))}: in use by another process; wait for it, or give another folder"
+            f"{printable(str(folder))}: is in use by another process; wait until it is free, or give another folder"
         ) from None
     except OSError:
         return  # a file system without locks

@@ -37,23 +37,25 @@ def design(asked: StudyTable, instance: Instance) -> Design:
     vary = texts(asked.vary)
     drawn = [(kind, key, text) for kind in PAIR for key, text in texts(getattr(asked, kind))]
     if vary and (drawn or asked.sample is not None):
-        raise BadInput("a study is a grid (vary) or a sample (sample, normal, uniform), not both; remove one of them")
+        raise BadInput(
+            "a study must be either a grid (vary) or a sample (sample, normal, uniform), not both; remove one of them"
+        )
     if not vary and not drawn:
         known = ", ".join(key.text for key in keys.known(instance.model.spec))
-        raise BadInput(f"nothing varies; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
+        raise BadInput(f"the study varies no key; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
     seen: set[str] = set()
     for name in (*(name for name, _ in vary), *(name for _, name, _ in drawn)):
         if (key := keys.find(name, instance).text) in seen:
-            raise BadInput(f"{key}: varies twice; remove one of the two")
+            raise BadInput(f"{key}: is varied twice; remove one of the two")
         seen.add(key)
     if vary:
         if unused := [name for name in ("method", "seed") if getattr(asked, name) is not None]:
-            raise BadInput(f"{unused[0]}: is for a sample, and this is a grid; remove it")
+            raise BadInput(f"{unused[0]}: applies to samples only, but this study is a grid; remove it")
         found: Design = Grid(tuple(_axis(key, text, instance) for key, text in vary))
     else:
         found = _sample(asked, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
     if found.count > MOST_ROWS:
-        raise BadInput(f"{found.count} rows are more than {MOST_ROWS}; write fewer values")
+        raise BadInput(f"the study has {found.count} rows, but at most {MOST_ROWS} are allowed; write fewer values")
     return found
 
 
@@ -66,9 +68,14 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     low, high = (_value(key, part, instance) for part in parts[:2])
     count = _count(parts[2], f"{key.text}: {shown(text)}")
     if logarithmic and not min(low, high) > 0.0:
-        raise BadInput(f"{key.text}: {shown(text)} has no logarithm; write positive ends, or leave out log:")
+        raise BadInput(
+            f"{key.text}: the logarithm of {shown(text)} does not exist; write positive limits, or leave out log:"
+        )
     if (low == high) != (count == 1):
-        raise BadInput(f"{key.text}: {shown(text)} has {count} values; LOW and HIGH must differ, or N must be 1")
+        raise BadInput(
+            f"{key.text}: {shown(text)} has {count} values, but must have a single one; LOW and HIGH must differ, "
+            "or N must be 1"
+        )
     return Axis(key, low, high, count, logarithmic)
 
 
@@ -82,7 +89,7 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
         return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
     second = _value(key, parts[1], instance)
     if not first < second:
-        raise BadInput(f"{key.text}: {shown(text)} LOW is not below HIGH; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)}, but LOW must be less than HIGH; write {PAIR[kind]}")
     return Distribution(key, first, second, normal=False)
 
 
@@ -98,7 +105,7 @@ def _value(key: Key, text: str, instance: Instance) -> float:
     try:
         keys.at(instance, (key,), (value,))
     except BadInput as error:
-        raise BadInput(f"{key.text}: {shown(text.strip())} is not possible ({error})") from None
+        raise BadInput(f"{key.text}: the value {shown(text.strip())} is not possible ({error})") from None
     return value
 
 
@@ -120,7 +127,8 @@ def _count(text: str, place: str) -> int:
         count = 0
     if not 1 <= count <= MOST_ROWS:
         raise BadInput(
-            f"{place}: {shown(text)} is not a possible number of values; write a whole number from 1 to {MOST_ROWS}"
+            f"{place}: the number of values must be a positive integer, not {shown(text)}; write a whole "
+            f"number between 1 and {MOST_ROWS}"
         )
     return count
 
@@ -134,7 +142,7 @@ def read_pairs(entries: Sequence[str], option: str) -> dict[str, str]:
         if not (equals and key and value):
             raise BadInput(f"--{option} {printable(entry)}: write --{option} KEY={wanted}")
         if key in found:
-            raise BadInput(f"--{option} {printable(key)}: is there twice; remove one of the two")
+            raise BadInput(f"--{option} {printable(key)}: is given twice; remove one of the two")
         found[key] = value
     return found
 
@@ -151,7 +159,7 @@ def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
     for name, text in read_pairs(entries, "set").items():
         key = keys.find(name, instance)
         if key.text in found:
-            raise BadInput(f"--set {key.text}: is there twice; remove one of the two")
+            raise BadInput(f"--set {key.text}: is given twice; remove one of the two")
         found[key.text] = key.value(_number(text, key), instance.model.spec)
     return found
 

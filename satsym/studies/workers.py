@@ -107,7 +107,10 @@ def processes(wanted: int | None, chunks: int) -> int:
         If less than one is wanted.
     """
     if wanted is not None and (not isinstance(wanted, int) or wanted < 1):
-        raise BadInput(f"workers: {shown(wanted)} can compute nothing; write a whole number from 1, or leave it out")
+        raise BadInput(
+            f"workers: the number of workers must be positive, not {shown(wanted)}; write a whole number of at "
+            "least 1, or leave it out"
+        )
     able = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(wanted or able, chunks)
 
@@ -196,7 +199,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
     with client:
         threads = sum(client.nthreads().values())
         if not threads:
-            raise BadInput(f"{printable(address)}: that scheduler has no workers; start some")
+            raise BadInput(f"{printable(address)}: the scheduler has no workers; start at least one worker")
         yield client.get_executor(pure=False), AHEAD * threads
 
 

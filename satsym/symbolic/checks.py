@@ -181,8 +181,8 @@ def never_below(
         errors = [disagreement(with_digits(below, point)) for point in points(symbols, claim)]
     except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
-            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive, "
-            "or give the range of the variables: Variable(..., typical=(low, high))"
+            f"the check {claim!r} met values that cannot be ordered, such as complex numbers; declare positive "
+            "variables as positive, or give the ranges of the variables: Variable(..., typical=(low, high))"
         ) from error
     return Check(claim, _largest(errors), LIMIT)
 

@@ -40,7 +40,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     """
     for subject in (problem, model) if problem else (model,):
         if not is_name(subject.name):
-            raise DerivationError(f"name: got {shown(subject.name)}; a model's name is {NAMES}", ("name",))
+            raise DerivationError(f"name: got {shown(subject.name)}; the name of a model must be {NAMES}", ("name",))
     for complaint in model.misfits():
         raise DerivationError(f"{model.name}: {complaint}")
     states = symbols_of(model.states)
@@ -56,7 +56,8 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.control_sets and problem.control_set != "free":
         raise DerivationError(
-            f"{problem.name}: control_set: the control sets are stated one by one; leave it out", ("control_set",)
+            f"{problem.name}: control_set: it is given although control_sets states each control set; leave it out",
+            ("control_set",),
         )
     if problem and not isinstance(problem.maximise, bool):
         raise DerivationError(
@@ -64,7 +65,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
         raise DerivationError(
-            f"{problem.name}: no objective; state a running_cost, 1 for the minimum time, or a terminal_cost"
+            f"{problem.name}: no objective; state a running_cost (1 for minimum time) or a terminal_cost"
         )
     if problem:
         _refuse_inequalities(problem)
@@ -79,10 +80,10 @@ def _refuse_inequalities(problem: Problem) -> None:
     for field in ("path_constraints", "terminal_inequalities"):
         stated, what = getattr(problem, field), f"{problem.name}: {field}"
         if not isinstance(stated, Mapping):
-            raise DerivationError(f'{what}: write a name for each, {{"ceiling": h - h_max}}', (field,))
+            raise DerivationError(f'{what}: write a name for each of them, {{"ceiling": h - h_max}}', (field,))
         for name in stated:
             if not is_name(name) or "__" in name:
-                raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", (field,))
+                raise DerivationError(f"{what}: got {shown(name)}; the name of a constraint must be {NAMES}", (field,))
     states = {v.symbol for v in problem.model.states}
     for name in problem.terminal_inequalities:
         if name in states:
@@ -114,7 +115,7 @@ def _refuse_interior(problem: Problem) -> None:
         )
     for name, conditions in stated.items():
         if not is_name(name) or "__" in name:
-            raise DerivationError(f"{what}: got {shown(name)}; a point's name is {NAMES}", ("interior",))
+            raise DerivationError(f"{what}: got {shown(name)}; the name of a point must be {NAMES}", ("interior",))
         if len(conditions) > len(problem.model.states):
             message = f"{name} has more conditions than there are states; state fewer"
             raise DerivationError(f"{what}: {message}", ("interior",))
@@ -175,8 +176,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
             refuse(f"the interior point {name}", conditions, motion, "interior")
             if idle := [e for e in conditions if sp.sympify(e).free_symbols <= fixed]:
                 message = (
-                    f"{name} requires {idle[0]} = 0, which does not depend on the motion; "
-                    "state it in terms of states or time"
+                    f"{name} requires {idle[0]} = 0, but this condition does not depend on the motion; state a "
+                    "condition on the states or on time"
                 )
                 raise DerivationError(f"{derivation.name}: interior: {message}", ("interior",))
 
@@ -189,7 +190,10 @@ def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
     if twins := {s.name for s in foreign - everything}:
         meant = sorted((s for s in everything if s.name in twins), key=lambda s: s.name)
         written = (f'symbols("{s.name}", {"positive" if s.is_positive else "real"}=True)' for s in meant)
-        return f"uses other symbols than the declared ones; take those from symbols_of, or write {', '.join(written)}"
+        return (
+            "uses symbols with the declared names but other assumptions; take the symbols from symbols_of, or "
+            f"write {', '.join(written)}"
+        )
     return f"cannot depend on {', '.join(sorted(s.name for s in foreign))}"
 
 
@@ -273,7 +277,7 @@ def _bare(latex: str) -> str:
 def _refuse_letters(variables: Iterable[Variable], derived: Collection[str]) -> None:
     for v in variables:
         if _bare(v.latex) in derived:
-            message = f"the LaTeX of {v.symbol!r}, {v.latex}, is that of something that is derived; choose another"
+            message = f"the LaTeX of {v.symbol!r}, {v.latex}, is reserved for a derived quantity; choose another"
             raise DerivationError(message, (v.symbol,))
 
 
@@ -281,9 +285,9 @@ def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> 
     seen: set[str] = set()
     for name in (v.symbol for v in variables):
         if name in seen:
-            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two", (name,))
+            raise DerivationError(f"the name {name!r} is used twice; choose another name for one of the two", (name,))
         if name in derived:
-            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another", (name,))
+            raise DerivationError(f"the name {name!r} is reserved for a derived quantity; choose another", (name,))
         seen.add(name)
 
 

@@ -147,7 +147,7 @@ class Derivation:
         for step in self.steps:
             if step.name == name:
                 return step
-        raise KeyError(f"{self.name}: no step {name!r}; it has {', '.join(s.name for s in self.steps)}")
+        raise KeyError(f"{self.name}: there is no step {name!r}; available are {', '.join(s.name for s in self.steps)}")
 
     def equation(self, address: str) -> Equation:
         """The equation at ``step.equation`` or ``model:step.equation``.
@@ -180,15 +180,16 @@ class Derivation:
             If the step carries no check, or one that failed.
         """
         if not step.checks:
-            raise DerivationError(f"{self.name}:{step.name} carries no machine check")
+            raise DerivationError(f"{self.name}:{step.name} has no machine check")
         step = replace(step, checks=(*step.checks, *besides))
         for check in step.checks:
             if not check.passed:
                 failed = f"{self.name}:{step.name} failed its check {check.claim!r}: "
                 if check.error != check.error:
                     raise DerivationError(
-                        f"{failed}at random points of size one there are no numbers to compare; "
-                        "give the range of the variables: Variable(..., typical=(low, high))"
+                        f"{failed}the expressions have no finite values at random points of order one, so they "
+                        "could not be compared; give the ranges of the variables: Variable(..., typical=(low, "
+                        "high))"
                     )
                 raise DerivationError(f"{failed}deviation {check.error:.2g}, allowed {check.limit:.0g}")
         return replace(self, steps=(*self.steps, step))

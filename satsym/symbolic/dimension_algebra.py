@@ -19,9 +19,9 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 PLAIN: Dimension = {}
 _TOLD = {
     "unknown": "uses {0}, whose dimension is not known",
-    "unequal": "puts {0} of dimension {1} beside {2} of dimension {3}",
-    "plain": "has {0} of dimension {1}, but {2} of it needs a plain number",
-    "exponent": "has {0} of dimension {1}, but an exponent needs a plain number",
+    "unequal": "adds or compares {0}, of dimension {1}, and {2}, of dimension {3}",
+    "plain": "applies {2} to {0}, of dimension {1}, but the argument must be dimensionless",
+    "exponent": "has {0}, of dimension {1}, as an exponent, but exponents must be dimensionless",
 }
 
 

@@ -197,7 +197,9 @@ def _moving(
     steps: tuple[MaybeStep, ...] = getattr(model, which)()
     if not steps:
         kinds = " or ".join(sorted(kind.__name__ for kind in _kinds(Model) if which in vars(kind)))
-        raise DerivationError(f"a {type(model).__name__} has no steps of its own; state the model as {kinds}")
+        raise DerivationError(
+            f"a model of the kind {type(model).__name__} has no derivation steps of its own; state the model as {kinds}"
+        )
     refuse_misfits(model, problem)
     derivation = begin(model, problem)
     refuse_foreign_symbols(derivation)
@@ -217,8 +219,8 @@ def _refuse_unsolved(name: str, motion: Derivation) -> None:
     unsolved = [e.name for e in rates if any(map(n.is_solved, e.rhs.free_symbols))]
     if unsolved:
         raise DerivationError(
-            f"{name}: the rates of {', '.join(unsolved)} have no closed form short enough to be differentiated; "
-            "linearise the bodies first, with AboutRest(of=...), or state fewer of them"
+            f"{name}: the rates of {', '.join(unsolved)} have no closed form that is short enough to "
+            "differentiate; linearise the bodies first, with AboutRest(of=...), or state fewer bodies"
         )
 
 

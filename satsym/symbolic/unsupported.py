@@ -34,29 +34,35 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
         Those of controls, which have their own place in a law.
     """
     if isinstance(e, Boolean) and not e.is_Symbol:
-        return f"is {e}, a condition, not a number; one of time alone may stand in a Piecewise((1, ...), (0, True))"
+        return (
+            f"is the condition {e}, but must be a number; a condition on time alone can be written as "
+            "Piecewise((1, ...), (0, True))"
+        )
     names = {s.name for s in moving}
     if found := _first(e, sp.Derivative, sp.Subs):
         return (
-            f"has {found} in it, an unevaluated derivative; introduce a state for each rate, and differentiate known "
+            f"contains {found}, an unevaluated derivative; introduce a state for each rate, and differentiate known "
             "functions with diff"
         )
     if found := _first(e, sp.Integral, sp.Sum, sp.Product):
-        return f"has {found} in it, which is not evaluated; state a further state whose rate is what is integrated"
+        return f"contains {found}, which is not evaluated; add a state whose rate is the integrand"
     if found := _first(e, AppliedUndef):
         return _unknown(found, names)
     if other := unknown_functions(e):
-        return f"has the function {other[0]} in it, which is not supported; there are {', '.join(FUNCTIONS)} and sqrt"
+        return (
+            f"contains the function {other[0]}, which is not supported; the supported functions are "
+            f"{', '.join(FUNCTIONS)} and sqrt"
+        )
     corners = [c for c in sorted(e.atoms(*CORNERS), key=str) if c not in magnitudes]
     if jumping := [c for c in corners if c.free_symbols & set(moving)]:
         return (
-            f"has {jumping[0]} in it, whose derivatives jump; use a smooth expression, such as sqrt(v**2 + h**2) with "
+            f"contains {jumping[0]}, whose derivatives jump; use a smooth expression, such as sqrt(v**2 + h**2) with "
             "a small h in place of Abs(v)"
         )
     if open_ended := [c for c in corners if t in c.free_symbols or isinstance(c, sp.Piecewise)]:
         return (
-            f"has {open_ended[0]} in it, whose conditions do not cover every time; use < and >, and "
-            "end it with (value, True)"
+            f"contains {open_ended[0]}, whose conditions do not cover all times; use < and >, and end the "
+            "Piecewise with (value, True)"
         )
     return ""
 
@@ -70,9 +76,9 @@ def _unknown(found: sp.Basic, moving: Collection[str]) -> str:
     name = found.func.__name__
     if name not in moving:
         return (
-            f"has {found} in it, an unknown function; state what it is, by functions such as sin and exp, or of time "
-            "alone by a table, interpolating_spline(3, t, times, values)"
+            f"contains {found}, an unknown function; define it with functions such as sin and exp, or, if it "
+            "depends on time alone, by a table: interpolating_spline(3, t, times, values)"
         )
     if found.args == (t,):
-        return f"has {found} in it; write {name}, the symbol of the state or control, without its time"
-    return f"has {found} in it, a value at another time; delays are not supported: state the motion without them"
+        return f"contains {found}; write {name}, the symbol of the state or control, without the argument time"
+    return f"contains {found}, a value at another time; delays are not supported: state the motion without delays"

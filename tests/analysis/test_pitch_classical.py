@@ -138,7 +138,7 @@ def test_the_feedback_of_an_instance_with_a_law_is_that_law_unless_another_is_as
 
 def test_a_wheel_that_is_driven_past_its_limit_is_reported_with_the_limit() -> None:
     simulation = simulate(classical(command=0.1))
-    assert "wheel_speed reaches 15.0667 rad/s, past its limit of 10.472" in simulation.message
+    assert "wheel_speed reaches 15.0667 rad/s, which exceeds its limit of 10.472" in simulation.message
     assert "limit" not in simulate(classical()).message
 
 

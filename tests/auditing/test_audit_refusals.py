@@ -25,11 +25,11 @@ def ledger(folder: Path, printed: str) -> Path:
     [
         ("foo == 1", '"foo" means nothing here'),
         ("valued(theta*I_y, 'lapan-classical') == 1", 'no number for "theta"'),
-        ("valued(I_y, 'double-integrator-time') == 1", "has no damping in a table [classical]"),
+        ("valued(I_y, 'double-integrator-time') == 1", "gives no damping in a table [classical]"),
         ("valued(I_y, 'nope') == 1", "nope"),
         ("switched('lapan-classical').heat > 0", "give the torque, or the duration"),
         ("switched('lapan-classical', duration=100).weight > 0", 'has no "weight"'),
-        ("diff(I_y, theta + 1) == 0", "is not a letter"),
+        ("diff(I_y, theta + 1) == 0", "is not a symbol"),
         ("len(text['99']) > 0", 'no row "99"'),
         ("orbit('double-integrator-time').energy < 0", "is not a motion about a centre"),
         ("rates_at('nope', [1]) == 0", "nope"),
@@ -60,10 +60,10 @@ ROW = 'item = "{}"\nkind = "claim"\nwhere = "here"\nfrom = []\noriginal = "so"\n
     ("chapter", "complaint"),
     [
         ("[[row]]\n" + ROW.format("2", "nothing()"), "ledger_2.toml:7: row 2: printed: "),
-        ("[[row]]\n" + ROW.format("1", "1 == 1"), "ledger_2.toml:2: row 1: item: there is another row"),
-        ("\n[symbols]\nx = 'm'\n", "ledger_2.toml:2: symbols: not in a chapter; put it in ledger.toml"),
-        ("", "ledger_2.toml:1: row: no rows"),
-        ("row = 1", "ledger_2.toml:1: row: no rows"),
+        ("[[row]]\n" + ROW.format("1", "1 == 1"), "ledger_2.toml:2: row 1: item: another row has the same name"),
+        ("\n[symbols]\nx = 'm'\n", "ledger_2.toml:2: symbols: this table is not allowed in a chapter; put it in "),
+        ("", "ledger_2.toml:1: row: the ledger has no rows"),
+        ("row = 1", "ledger_2.toml:1: row: the ledger has no rows"),
         ("[[row", "ledger_2.toml: "),
     ],
 )
@@ -81,4 +81,4 @@ def test_what_is_wrong_with_a_chapter_is_told_with_its_line(
 
 def test_a_folder_without_a_head_is_no_ledger(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["audit", str(tmp_path)]) == 3
-    assert "no ledger.toml in this folder" in capsys.readouterr().err
+    assert "this folder has no ledger.toml" in capsys.readouterr().err

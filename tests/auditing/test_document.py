@@ -131,10 +131,10 @@ def test_markdown_is_read_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "reason"),
     [
-        ("paper.pdf", b"%PDF-1.7", "a PDF is not read"),
-        ("paper.tex", b"%PDF-1.7", "a PDF is not read"),
+        ("paper.pdf", b"%PDF-1.7", "PDF files cannot be read"),
+        ("paper.tex", b"%PDF-1.7", "PDF files cannot be read"),
         ("paper.tex", b"line\n\xff\xfe$$x=1$$", "paper.tex:2: not UTF-8 text"),
-        ("paper.tex", b"$" * 6_000_000, "more than 5,000,000 bytes"),
+        ("paper.tex", b"$" * 6_000_000, "the document has more than 5,000,000 bytes"),
     ],
 )
 def test_what_is_no_document_is_told_in_one_line(
@@ -157,9 +157,9 @@ HOSTILE = [
     ("$$" + "{" * 5000 + "x" + "}" * 5000 + "$$", ""),
     ("$$" + "(" * 200 + "x" + ")" * 200 + "$$", "nested more than"),
     (r"$$x^{x^{x^x}} = 1$$", "an exponent that is not a number"),
-    (r"$$\begin{pmatrix}1&2\\3\end{pmatrix} = A$$", "the rows of a matrix differ in length"),
+    (r"$$\begin{pmatrix}1&2\\3\end{pmatrix} = A$$", "all rows of a matrix must have the same length"),
     (r"\input{../../etc/passwd}", "is not in the folder"),
-    (r"\input{paper}", "goes round in a circle"),
+    (r"\input{paper}", "includes itself"),
     (r"$$\csname x\endcsname = 1$$", "is not read here"),
     ("$$x = " + "1" * 15000 + "$$", "more than 30 digits"),
 ]

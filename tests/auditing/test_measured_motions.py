@@ -142,7 +142,7 @@ def test_an_impulse_at_the_start_swings_panels_too():
 def test_forces_that_jump_are_quickest():
     assert wheel.crossing_time([0.0, 0.5, 0.5, 1.0], [1.0, 1.0, -1.0, -1.0]) == pytest.approx(2.0)
     assert wheel.crossing_time([0.0, 1.0], [1.0, -1.0]) == pytest.approx(math.sqrt(6.0), rel=1e-6)
-    with pytest.raises(BadInput, match="not at rest"):
+    with pytest.raises(BadInput, match="must end at rest"):
         wheel.crossing_time([0.0, 1.0], [1.0, 1.0])
 
 

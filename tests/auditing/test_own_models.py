@@ -84,7 +84,7 @@ def test_a_page_and_a_remark_on_drafts_for_a_model_of_ones_own(own: Path, capsys
     path, page = own / "ledger.toml", own / "page.html"
     path.write_text(text([*ROWS[:2], {**ROWS[2], "draft": True}], HEAD))
     assert main(["audit", str(path), "--html", str(page)]) == 0
-    assert "1 row is a draft that nobody has confirmed" in capsys.readouterr().out
+    assert "1 this row is a draft and has not been confirmed" in capsys.readouterr().out
     assert 'id="sled:first_order.v"' in page.read_text()
 
 
@@ -118,7 +118,7 @@ def test_a_file_that_is_no_record_is_told_in_one_line(own: Path, content: str) -
     (own / "made" / "sled.derivation.json").write_text(content)
     path = own / "ledger.toml"
     path.write_text(text(ROWS[:1], HEAD))
-    with pytest.raises(BadInput, match="no record of a derivation") as caught:
+    with pytest.raises(BadInput, match="not the record of a derivation") as caught:
         auditing.read(path)
     assert "\n" not in str(caught.value)
 

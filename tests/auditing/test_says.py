@@ -134,11 +134,15 @@ def test_a_changed_translation_is_seen_by_the_cache_and_json_stays_english(
 @pytest.mark.parametrize(
     ("text", "line", "reason"),
     [
-        ('"rate of x4" = "laju x4"\n"rate of x5; so" = "laju x5"', 2, 'no row says "rate of x5"; write it as a row'),
-        ('\n"rate of x4" = 4', 2, 'got 4 for "rate of x4"; write the same in Indonesian, in quotes'),
-        ('"rate of x4" = " "', 1, 'got " " for "rate of x4"; write the same'),
-        ('"" = "kosong"', 1, 'no row says ""; write it as'),
-        ("# rows\n[rows]\n", 1, 'got a table for "rows"; write the same'),
+        (
+            '"rate of x4" = "laju x4"\n"rate of x5; so" = "laju x5"',
+            2,
+            'no row has the text "rate of x5"; copy the text',
+        ),
+        ('\n"rate of x4" = 4', 2, 'got 4 for "rate of x4"; write the Indonesian translation in quotes'),
+        ('"rate of x4" = " "', 1, 'got " " for "rate of x4"; write the Indonesian'),
+        ('"" = "kosong"', 1, 'no row has the text ""; copy the text'),
+        ("# rows\n[rows]\n", 1, 'got a table for "rows"; write the Indonesian'),
         ("rate of x4 = 4", 0, "not valid TOML"),
     ],
 )

@@ -628,4 +628,4 @@ def test_ranges_are_refused_on_the_command_line_with_the_place_where_they_stand(
         code, _, err = run("solve", "soft-return", "--set", f"initial.r={given}")
         assert code == 3
         assert err.count("\n") == 1
-        assert "ranges and bounds are set in the instance file alone" in err
+        assert "is not a number; ranges and bounds can be set only in the instance file" in err

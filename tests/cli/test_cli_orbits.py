@@ -133,8 +133,8 @@ def test_the_kind_is_coloured_by_whether_it_closes() -> None:
         ({"mu": "-1.0"}, "[parameters] mu: -1 is outside the domain of mu"),
         ({"x": "nan"}, "[initial] x: the number is nan"),
         ({"v_y": "inf"}, "[initial] v_y: the number is inf"),
-        ({"x": "1e300"}, "beyond the range of floats; check the units"),
-        ({"x": "1e-300"}, "beyond the range of floats; check the units"),
+        ({"x": "1e300"}, "a result exceeds the range of floating-point numbers; check the units"),
+        ({"x": "1e-300"}, "a result exceeds the range of floating-point numbers; check the units"),
     ],
 )
 def test_bad_input_ends_with_exit_3_and_one_line(
@@ -182,7 +182,7 @@ def test_pictures_go_where_they_are_asked_for(v_y: str, tmp_path: Path, capsys: 
 def test_a_model_as_such_starts_on_no_orbit(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = analysed("two_body", capsys)
     assert (code, out) == (3, "")
-    assert "write an instance with its initial state" in err
+    assert "write an instance with an initial state" in err
     assert err.count("\n") == 1
 
 

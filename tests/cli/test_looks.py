@@ -50,7 +50,7 @@ def test_how_pictures_look_is_refused_where_none_are_drawn(run: Run, tmp_path: P
     for look in (("--format", "pdf"), ("--no-title",)):
         code, out, err = run("solve", "soft-return", *look)
         assert (code, out) == (2, "")
-        assert "need --plot" in err
+        assert "require --plot" in err
     assert run("solve", "soft-return", "--plot", "--format", "jpg")[0] == 2
     assert list(tmp_path.iterdir()) == []
 

@@ -51,7 +51,7 @@ def test_who_does_not_listen_changes_no_exit_code(tmp_path: Path, command: str, 
 def test_a_full_stdout_is_told_in_a_line(tmp_path: Path, command: str) -> None:
     code, err = shell(f"{command} >/dev/full", tmp_path)
     assert code == 3
-    assert err == "satsym: stdout cannot be written (No space left on device); send it elsewhere\n"
+    assert err == "satsym: the standard output cannot be written (No space left on device); redirect it\n"
 
 
 FINE = INSTANCE.replace("tf = 1.0", "tf = 1.0\n[solver]\nsteps = 200000\nmethod = 'sweep'\ntolerance = 1e-300")

@@ -107,7 +107,7 @@ def test_at_nodes_it_is_what_it_is_there_and_it_indexes_like_an_array() -> None:
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        (lambda s: s.x(6.3), "x: 6.3 is not in the time from 0 to 6.283185307"),
+        (lambda s: s.x(6.3), "x: the time 6.3 does not lie between 0 and 6.283185307"),
         (lambda s: s.u["u1"]([1.0, -0.5]), 'u["u1"]: -0.5 is not in the time'),
         (lambda s: s.lam(float("nan")), "lam: nan is not in the time"),
         (lambda s: s.x("soon"), 'x: "soon" is not a time'),
@@ -171,7 +171,7 @@ def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pyte
     assert satsym.Solution.load(tmp_path / "a").objective == solved("soft-return").objective
     assert main(["simulate", "soft-return", "--out", str(tmp_path / "b")]) == 0
     assert Trajectory.load(tmp_path / "b").x(0.0)[0] == 1.1
-    with pytest.raises(BadInput, match="holds the result of simulate, not of solve"):
+    with pytest.raises(BadInput, match="contains the result of simulate, not of solve"):
         satsym.Solution.load(tmp_path / "b")
     with pytest.raises(BadInput, match="to soft-return"):
         satsym.Solution.load(tmp_path / "a", "its-thesis")
@@ -201,7 +201,7 @@ def test_a_result_is_not_loaded_for_an_instance_that_has_changed(
     solution = solved("soft-return")
     solution.save(tmp_path)
     assert satsym.Solution.load(tmp_path, solution.instance.with_(title="anew", solver={"steps": 7}))
-    with pytest.raises(BadInput, match=f"was made from another soft-return: {what} differ"):
+    with pytest.raises(BadInput, match=f"was computed from a different soft-return: {what} differ"):
         satsym.Solution.load(tmp_path, solution.instance.with_(**changes))
 
 
@@ -209,7 +209,7 @@ def test_a_changed_instance_does_not_come_back_as_the_shipped_one(tmp_path: Path
     found = satsym.solve(satsym.load("soft-return").with_(initial={"r": 1.05}), steps=20)
     found.save(tmp_path)
     assert satsym.Solution.load(tmp_path).instance.case.initial[0] == 1.05
-    with pytest.raises(BadInput, match="starts from another state"):
+    with pytest.raises(BadInput, match="does not start from the initial state of"):
         satsym.Solution.load(tmp_path, "soft-return")
 
 

@@ -78,7 +78,7 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("model", '"' + "m" * 5000 + '"', ["model"]),
         ("title", "1", ["title: got 1"]),
         ("title", '"two\\nlines"', ["title", "two\\nlines"]),
-        ("title", '"' + "t" * 201 + '"', ["title", "one short line"]),
+        ("title", '"' + "t" * 201 + '"', ["title", "single short line"]),
         ("initial.r", "true", ["[initial] r: got true", "a number"]),
         ("initial.r", "[1.0]", ["[initial] r: got a list of 1"]),
         ("initial.r", "{a = 1}", ["[initial] r: got a table"]),
@@ -153,7 +153,7 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("lqr", "{Q = [1, 1, 1, 1], R = [1, 1], horizon = 0}", ["[lqr] horizon", "positive"]),
         ("guess.state.r", "[]", ["[guess.state] r", "empty"]),
         ("guess.state.r", "[1, -1]", ["[guess.state] r", "domain"]),
-        ("guess.costate.r", '["1 km"]', ["[guess.costate] r", "plain number"]),
+        ("guess.costate.r", '["1 km"]', ["[guess.costate] r", "a number without a unit"]),
         ("guess.control.u1", '["1 km"]', ["[guess.control] u1", "1 km"]),
     ],
 )
@@ -249,7 +249,7 @@ def test_a_file_that_is_no_instance_is_refused_quickly(tmp_path: Path, content: 
 def test_a_model_in_place_of_an_instance_is_told_what_to_do(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("PROBLEMS = ()\n")
-    assert "mine.py: is a Python file, and what is solved is a TOML file; derive a model with" in refusal(file)
+    assert "mine.py: is a Python file, but a TOML file is needed; derive a model with" in refusal(file)
 
 
 @pytest.mark.parametrize(

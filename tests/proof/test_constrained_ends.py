@@ -124,7 +124,7 @@ def test_a_half_plane_is_entered_at_the_least_cost_of_all() -> None:
     assert proof.status is Outcome.PROVED
     assert held(proof, mpmath.mpf(9) / 4)
     assert proof.theorem is not None
-    assert "It is global" in proof.theorem.claims[-1]
+    assert "The optimum is global" in proof.theorem.claims[-1]
 
 
 def test_an_inequality_that_is_not_met_is_kept() -> None:

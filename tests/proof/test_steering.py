@@ -42,4 +42,6 @@ def test_a_direction_is_proved_as_a_vector_and_as_an_angle() -> None:
     assert angle.objective is not None
     # the start of the one is a binary fraction, that of the other a decimal
     assert float(vector.objective.centre) == pytest.approx(float(angle.objective.centre), rel=1e-14)
-    assert any("coefficients that do not all vanish" in one.shown for one in vector.hypotheses)
+    assert any(
+        "H is linear in the controls, and its coefficients do not all vanish" in one.shown for one in vector.hypotheses
+    )

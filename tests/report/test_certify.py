@@ -121,7 +121,7 @@ def test_a_module_that_was_tampered_with_is_not_executed(tmp_path: Path):
     module = (folder / "drift.py").read_text() + f"\nopen({str(mark)!r}, 'w')\n"
     result = json.loads((folder / "result.json").read_text())
     (folder / "drift.py").write_text(module)
-    with pytest.raises(BadInput, match="not the file"):
+    with pytest.raises(BadInput, match="missing or has changed"):
         problem.read(folder)
     from satsym.report.results.set_list import listed_as
 

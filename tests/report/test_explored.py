@@ -215,10 +215,10 @@ def test_the_answers_of_a_study_are_chosen_by_what_it_varies(run: Run, returned:
     with pytest.raises(BadInput, match="belongs to return-to-orbit, not to soft-return"):
         explored(solve(instance.load("soft-return")), tmp_path / "kept")
     assert run("study", "return-to-orbit", *vary, "--out", str(tmp_path / "bare"))[0] == 0
-    with pytest.raises(BadInput, match="kept no trajectories; make it again with --trajectories"):
+    with pytest.raises(BadInput, match="contains no trajectories; run the study again with --trajectories"):
         explored(returned, tmp_path / "bare")
     assert run("solve", "return-to-orbit", "--out", str(tmp_path / "one"))[0] == 0
-    with pytest.raises(BadInput, match="holds no study of solutions"):
+    with pytest.raises(BadInput, match="contains no study of solutions"):
         explored(returned, tmp_path / "one")
 
 

@@ -386,11 +386,11 @@ def test_a_rule_claim_or_step_without_a_text_is_named() -> None:
     derivation = derived("double_integrator")
     first, *rest = derivation.steps
     strange = {
-        'no text for "magic" in [rules]': replace(first, rule="magic"),
-        'no text for "so I am told" in [claims]': replace(
+        'there is no text for "magic" in [rules]': replace(first, rule="magic"),
+        'there is no text for "so I am told" in [claims]': replace(
             first, checks=(replace(first.checks[0], claim="so I am told"),)
         ),
-        'no text for "leap" in [titles]': replace(first, name="leap"),
+        'there is no text for "leap" in [titles]': replace(first, name="leap"),
     }
     for message, step in strange.items():
         with pytest.raises(MissingText, match=re.escape(f"en.toml: {message}")):
@@ -398,7 +398,7 @@ def test_a_rule_claim_or_step_without_a_text_is_named() -> None:
 
 
 def test_a_language_without_texts_is_bad_input() -> None:
-    with pytest.raises(BadInput, match='no texts in the language "xx"; there are en, id'):
+    with pytest.raises(BadInput, match='there are no texts in the language "xx"; there are en, id'):
         render(derived("double_integrator"), language="xx")
 
 

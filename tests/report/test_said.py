@@ -92,26 +92,30 @@ MET_AT_NONE = ("after the start", "<when> that is given")
 WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
 TOO_EARLY = ("not after", "too far from")
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
-MISSHAPEN = ("it has <n> entries, which are too many, too few or of mixed kinds", "row <i> has <n> numbers")
+MISSHAPEN = ("the number <n> of entries is wrong, or numbers and rows are mixed", "row <i> has <n> numbers")
 UNSUPPORTED = (
     *("", ", an unevaluated derivative", ", which is not evaluated", ", an unknown function"),
-    *(", a value at another time", ", whose conditions do not cover every time", ", whose derivatives jump"),
+    *(", a value at another time", ", whose conditions do not cover all times", ", whose derivatives jump"),
 )
 UNDECIDED = ("the value of <a>", "the norm of a vector")
 BETTER_THAN = ("whose states stay near it", "whose states stay near it and whose final time is near")
 COMPOSED = (
-    "<a> cannot control the mode s = <b>",
+    "the inputs <a> cannot control the mode s = <b>",
     *(f"give {which} tf_guess" for which in ("a", "another")),
     *(
-        f"It is strictly better than all other admissible motions {those}, however different their controls are "
+        f"This extremal is strictly better than all other admissible motions {those}, however different their "
+        "controls are "
         "(a strict strong local optimum)."
         for those in BETTER_THAN
     ),
-    *(f"<a> has <b> in it{what}" for what in UNSUPPORTED),
-    "<a> has the function <b> in it, which is not supported",
-    "<a> is <b>, a condition, not a number",
-    *(f"over an interval nothing determines {what}, and no law is known there" for what in UNDECIDED),
-    "the entries are not known well enough to decide. Either <verdict>: <reason>; or <other>: <why>",
+    *(f"<a> contains <b>{what}" for what in UNSUPPORTED),
+    "<a> contains the function <b>, which is not supported",
+    "<a> is the condition <b>, but must be a number",
+    *(
+        f"no law is known for {what} on an interval where the minimum principle does not determine it"
+        for what in UNDECIDED
+    ),
+    "the entries are not known accurately enough to decide. Either <verdict>: <reason>; or <other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
@@ -120,21 +124,22 @@ COMPOSED = (
     "estimated error <error> on <n> intervals, found by the direct search",
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),
     *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
-    "<name>: no results in <folder>; `satsym <command> <again> --plot` writes them, or say with --from where they are",
+    "<name>: there are no results in <folder>; write them with `satsym <command> <again> --plot`, or give "
+    "their folder with --from",
     "[control] <key>: the model bounds its controls one by one; write <name> = [lower, upper], and so on",
     "bounds are <lower> and <upper>",
-    "[control] <name>: the square of this control is not in the cost, "
-    "so it needs both bounds; write <again> = [lower, upper]",
-    *(f"<place>: terminal inequality <name>: it is met at no final time {when}" for when in MET_AT_NONE),
+    "[control] <name>: the cost has no term in the square of this control, so it needs both bounds; write "
+    "<again> = [lower, upper]",
+    *(f"<place>: terminal inequality <name>: no final time {when} satisfies it" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
-    *(f"[time] <key>: <value> is {why} t0 = <start>; write a later, reachable time" for why in TOO_EARLY),
+    *(f"[time] <key>: <value> is {why} t0 = <start>; write a later time that can be reached" for why in TOO_EARLY),
     *(
         f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
         for what in MISSHAPEN
     ),
-    "[lqr] <key>: no input is left to control with; name at least one control",
+    "[lqr] <key>: no control input remains; name at least one control",
     "[lqr] <key>: the model has no control <name>; controls here: <names>",
-    "[classical] <key>: <value> are not both positive; the loop would not settle",
+    "[classical] <key>: <value> are not both positive, so the loop would not be stable",
     *"Usage Options Commands [OPTIONS]".split(),
     *(f"<value> is not a valid {kind}." for kind in ("integer", "integer range", "float", "float range")),
     *("Missing argument <name>.", "Missing option <name>.", "Try '<command>' for help.", "one of <names>"),
@@ -164,8 +169,8 @@ def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None
 
 
 MADE_OF_PARTS = {
-    "<>: no results <>in <>; `satsym <> <> --plot` writes them, or say with --from where they are",
-    "[time] <>: <> <> t0 = <>; write a later, reachable time",
+    "<>: there are no results <>in <>; write them with `satsym <> <> --plot`, or give their folder with --from",
+    "[time] <>: <> <> t0 = <>; write a later time that can be reached",
 }
 """Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
 
@@ -216,7 +221,7 @@ def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch
         monkeypatch.setenv(said.VARIABLE, variable)
         code, out, err = run(*arguments)
         assert (code, out) == (3, "")
-        assert re.fullmatch(r'satsym: \S+: no texts in the language "..", ?.*\n'.replace('", ?', '"; '), err)
+        assert re.fullmatch(r'satsym: \S+: there are no texts in the language "..", ?.*\n'.replace('", ?', '"; '), err)
 
 
 @pytest.mark.parametrize(
@@ -260,7 +265,7 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
         ("k.py:3: 'Newton' is not defined; write `from m import Newton`", "tulislah `from m import Newton`"),
         ("k.py:3: Newton has no field 'rate'; did you mean \"rates\"?", "tidak mempunyai isian 'rate'"),
         (
-            "k.py:3: powers are written **, as in x**3; ^ is not the power operator in Python",
+            "k.py:3: write powers with **, as in x**3; ^ is not the power operator in Python",
             "^ bukan pangkat dalam Python",
         ),
         ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),

@@ -82,7 +82,7 @@ def test_a_motion_that_begins_with_an_impulse_comes_back(tmp_path: Path) -> None
     again, _ = trajectory.read(found.instance, tmp_path)
     assert np.array_equal(again.x, found.x)
     other = changed(found.instance, {"initial.theta_dot": 1e-3})
-    with pytest.raises(BadInput, match="starts from another state"):
+    with pytest.raises(BadInput, match="does not start from the initial state of"):
         trajectory.read(other, tmp_path)
 
 
@@ -134,7 +134,7 @@ def test_what_is_of_something_else_is_not_drawn(tmp_path: Path, monkeypatch: pyt
     refused("uny-lqr", "belongs to own .*, not to uny-lqr .*; `satsym lqr X")
     refused("clohessy_wiltshire", "belongs to own .*, not to clohessy_wiltshire .*; `satsym lqr X")
     case.write_text(case.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
-    refused(str(case), "was made from own before its file was changed; `satsym lqr X")
+    refused(str(case), "was computed from own before its file was changed; `satsym lqr X")
     listing = run / "result.json"
     listing.write_text(
         listing.read_text(encoding="utf-8").replace('"instance": "own"', '"instance": 7'), encoding="utf-8"

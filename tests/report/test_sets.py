@@ -152,7 +152,7 @@ def test_a_list_reaches_nothing_outside_its_folder(tmp_path: Path, name: str) ->
     listed = json.loads((folder / "result.json").read_text())
     listed["files"] = {name: {"bytes": 6, "sha256": set_list.listed_as(tmp_path / "outside").sha256}}
     (folder / "result.json").write_text(json.dumps(listed))
-    with pytest.raises(BadInput, match="lists files that do not belong to a result"):
+    with pytest.raises(BadInput, match="lists files that are not part of a result"):
         sets.read(folder)
     write(folder, NEW)
     assert (tmp_path / "outside").read_text() == "theirs"
@@ -179,7 +179,7 @@ def made_pipe(path: Path) -> None:
 def test_a_set_that_does_not_match_its_list_is_refused(tmp_path: Path, damage: Callable[[Path], object]) -> None:
     write(tmp_path, OLD)
     damage(tmp_path / "a")
-    with pytest.raises(BadInput, match=r"a: is not the file that result\.json lists, but is missing or has changed"):
+    with pytest.raises(BadInput, match=r"a: is listed in result\.json, but is missing or has changed"):
         sets.read(tmp_path)
 
 
@@ -225,7 +225,7 @@ def test_nothing_is_added_to_a_set_that_was_replaced_meanwhile(tmp_path: Path) -
     write(tmp_path, OLD)
     found = sets.read(tmp_path)
     write(tmp_path, NEW)
-    with pytest.raises(BadInput, match="written anew meanwhile"):
+    with pytest.raises(BadInput, match="was rewritten in the meantime"):
         sets.extend(found, {"fresh": files.text("late")})
     assert seen(tmp_path) == NEW
 
@@ -234,9 +234,9 @@ def test_who_finds_a_folder_in_use_waits_and_then_says_so(tmp_path: Path, monkey
     write(tmp_path, OLD)
     monkeypatch.setattr(sets, "PATIENCE", 0.1)
     with sets.locked(tmp_path):
-        with pytest.raises(BadInput, match="in use by another process"):
+        with pytest.raises(BadInput, match="is in use by another process"):
             write(tmp_path, NEW)
-        with pytest.raises(BadInput, match="in use by another process"):
+        with pytest.raises(BadInput, match="is in use by another process"):
             seen(tmp_path)
     with sets.locked(tmp_path, shared=True):
         assert seen(tmp_path) == OLD

@@ -81,7 +81,7 @@ def test_bounds_that_are_met_at_no_settled_times_come_with_a_way_out(language: s
     with spoken(language):
         said = in_words(Reason.UNSETTLED.value)
     assert "--continue" in said
-    assert ("do not settle" in said) == (language == "en")
+    assert ("do not converge" in said) == (language == "en")
 
 
 def test_a_control_that_saturates_without_a_jump_does_not_switch() -> None:
@@ -127,8 +127,8 @@ def test_every_condition_that_can_hold_is_stated_as_what_holds() -> None:
         if isinstance(node.args[0], ast.Constant) and not isinstance(node.args[1], ast.Constant)
     }
     assert len(names) > 30
-    assert names - _HOLDS.keys() - {"second variation unknown: jumps between minimisers"} == {
-        "another minimiser of H stays as good",  # made only where it fails
+    assert names - _HOLDS.keys() - {"second variation unknown: the control jumps between minimisers"} == {
+        "another minimiser of H remains equally good",  # made only where it fails
         "points on the way that are not passed",
     }
 

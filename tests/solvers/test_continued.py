@@ -111,11 +111,11 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     ("way", "message"),
     [
         ({"b": [1, 2]}, r"\[continuation\] b: .*has no such number"),
-        ({"a": [1, 2], "parameters.a": [1, 3]}, r"\[continuation\] parameters.a: is there twice, as a and as param"),
+        ({"a": [1, 2], "parameters.a": [1, 3]}, r"\[continuation\] parameters.a: is given twice, as a and as param"),
         ({"a": [1, 1]}, r"\[continuation\] a: both values are 1"),
-        ({"a": 1}, r"\[continuation\] a: got 1; write where it begins and where it ends"),
+        ({"a": 1}, r"\[continuation\] a: got 1; write the first and the last value"),
         ({"tf": [1, -1]}, r"\[continuation\]: tf = -1 is not after t0 = 0"),
-        ({"final.x": [1, 2]}, r"\[continuation\] final.x: the instance gives no number for it"),
+        ({"final.x": [1, 2]}, r"\[continuation\] final.x: the instance gives no number for this key"),
     ],
 )
 def test_a_way_that_makes_no_sense_is_refused(way: dict[str, Any], message: str) -> None:

@@ -186,7 +186,7 @@ def test_a_latest_time_presses_by_the_cost_it_causes_where_a_constraint_holds_th
 def test_a_latest_time_that_is_none_is_said():
     given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}}
     before = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": -1.0, "c": 0.5}, tf="free", **given))
-    assert "late: it is met at no final time after the start" in before.to_dict()["message"]
+    assert "late: no final time after the start satisfies it" in before.to_dict()["message"]
     past = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": 1.0}, tf=2.0, **given))
     assert "late: it is met at no final time 2 that is given" in past.to_dict()["message"]
     in_time = certified(BACK_BY, parameters={"k": 3.0}, tf=2.0, **given)
@@ -252,7 +252,10 @@ def test_an_end_that_pulls_and_a_range_that_is_left_fail():
     found = certified(PUSHED, final={"x": [1.0, 2.0]}, **AT_REST).found
     turned = replace(found.instance, met={"x": Side.UPPER}, ranges={"x": (-5.0, 1.0)})
     moved = replace(found.instance, ranges={"x": (1.0, 2.0), "v": (2.0, 3.0)})
-    for case, name in ((turned, "negative multiplier of a limit of the end"), (moved, "limit of the end violated")):
+    for case, name in (
+        (turned, "negative multiplier of a limit at the end"),
+        (moved, "a limit at the end is violated"),
+    ):
         certificate = certify(replace(found, instance=case))
         assert certificate is not None
         assert certificate.verdict is Verdict.FAILED
@@ -338,9 +341,9 @@ def test_what_is_saved_comes_back_with_its_ends(tmp_path: Path):
 @pytest.mark.parametrize(
     ("final", "more", "message"),
     [
-        ({"x": [2.0, 1.0]}, {}, r"\[final\] x: the range is empty, 2 is above 1; swap them"),
-        ({"x": ["free", "free"]}, {}, r"\[final\] x: both ends are free; leave the state out"),
-        ({"x": ["reference", 1.0]}, {}, r'\[final\] x: a range cannot end at "reference"'),
+        ({"x": [2.0, 1.0]}, {}, r"\[final\] x: the range is empty, because 2 exceeds 1; swap the two"),
+        ({"x": ["free", "free"]}, {}, r"\[final\] x: both limits of the range are free; leave the state out"),
+        ({"x": ["reference", 1.0]}, {}, r'\[final\] x: "reference" cannot be a limit of a range'),
         ({"x": [0.0, 1.0, 2.0]}, {}, r"\[final\] x: got"),
         ({"x": [0.0, 1.0]}, {"initial": {"x": "free", "v": 0.0}}, "cannot be combined with"),
         ({"x": [0.0, 1.0]}, {"solver": {"free_angles": ["x"]}}, "angle|turn"),
@@ -362,7 +365,7 @@ def test_a_range_behind_a_wall_has_no_answer():
     given = {"parameters": {"l": 0.1}, "final": {"x": [0.2, 0.3], "v": 0.0}}
     found = satsym.solve(satsym.Instance.of(WALLED, **AT_REST, **given))
     assert not found.status.answered
-    assert "limits that the end meets" in found.message
+    assert "of active limits has a solution that satisfies the other limits" in found.message
 
 
 def test_a_range_of_no_width_is_a_given_end():

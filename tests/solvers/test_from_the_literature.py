@@ -75,7 +75,7 @@ def test_the_control_that_makes_h_a_polynomial_is_asked_for():
         first, second = 4000 * exp(-2500 / warm) * c * a**2 / h, 620000 * exp(-5000 / warm) * b / h
         return [-first, first - second]
 
-    with pytest.raises(DerivationError, match=re.escape("what H is a polynomial of, such as a rate of reaction")):
+    with pytest.raises(DerivationError, match=re.escape("a quantity in which H is a polynomial")):
         derive(reactor("1", heated, (298.0, 398.0)))
 
 

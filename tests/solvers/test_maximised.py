@@ -50,7 +50,7 @@ def test_the_largest_objective_is_reported_and_the_costates_are_those_of_its_neg
     assert (said["units"]["objective"], said["units"]["lambda_x"]) == ("m", "1")
     assert found.objective == said["objective"]
     text = repr(found)
-    assert re.search(r"objective J, maximised +1\.166666667 m \(costs and costates are those of -J\)", text)
+    assert re.search(r"objective J, maximised +1\.166666667 m \(costs and costates belong to -J\)", text)
     assert "cost J" not in text
 
 
@@ -94,7 +94,7 @@ def test_the_same_problem_as_a_cost_has_the_opposite_objective(found: Solution) 
         ({"unit": "furlongs!"}, r"^largest_gain: unit: unit .* is not readable"),
         (
             {"running_cost": Integer(0), "terminal_cost": Integer(0)},
-            r"^largest_gain: no objective; state a running_cost, 1 for the minimum time, or a terminal_cost$",
+            r"^largest_gain: no objective; state a running_cost \(1 for minimum time\) or a terminal_cost$",
         ),
     ],
 )

@@ -185,7 +185,7 @@ def test_a_motion_that_ends_on_a_boundary_at_a_free_time_is_extremal_only():
     said = found.to_dict()["certificate"]
     assert said["verdict"] == "extremal only"
     failed = {c["name"] for c in said["checks"] if not c["passed"]}
-    assert "second variation not resolved: ends on a boundary at a free time" in failed
+    assert "second variation not resolved: the motion ends on a boundary at a free time" in failed
 
 
 def test_a_beam_under_a_ceiling_has_twice_the_effort():

@@ -107,7 +107,11 @@ NAN = float("nan")
 PLACE = np.array([1.0, NAN, 1.0, NAN])
 
 
-ON_BOUNDARIES = {"off the boundary on a boundary arc", "negative multiplier", "multiplier vanishes on a boundary"}
+ON_BOUNDARIES = {
+    "distance from the boundary on a boundary arc",
+    "negative multiplier",
+    "a multiplier vanishes on a boundary arc",
+}
 """What only a motion that meets a boundary is checked for."""
 
 

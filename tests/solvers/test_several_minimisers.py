@@ -95,7 +95,7 @@ def test_where_both_wells_stay_as_good_neither_is_certified(tmp_path: Path) -> N
     assert found.status is Status.CONVERGED
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
-    assert [c.name for c in found.certificate.checks if not c.passed] == ["another minimiser of H stays as good"]
+    assert [c.name for c in found.certificate.checks if not c.passed] == ["another minimiser of H remains equally good"]
 
 
 @pytest.mark.slow

@@ -98,7 +98,10 @@ def test_a_fall_through_the_centre_leaves_the_domain():
 def test_numbers_that_overflow_are_not_finite(start):
     simulated = simulate(from_start(*start, steps=20))
     assert simulated.status is Status.NON_FINITE
-    assert "divide by zero or overflow" in simulated.message
+    assert (
+        "check the initial state and the parameters for values that cause a division by zero or an overflow"
+        in simulated.message
+    )
     assert simulated.invariants == {}
 
 

@@ -338,7 +338,8 @@ def test_a_magnitude_that_multiplies_a_direction_has_bounds_and_any_direction(se
     motion = made("push", PLACE, ("size", "b"), {x: size * cos(b), y: moved})
     stated = Problem(name="pushed", title="A push that is turned", model=motion, running_cost=1, control_sets=sets)
     with pytest.raises(
-        DerivationError, match=r'linear in size, the magnitude of a vector that b turns; this needs "size": Box'
+        DerivationError,
+        match=r'linear in size, the magnitude of a vector whose direction is the angle b; this requires "size": Box',
     ):
         derive(stated)
 
@@ -347,7 +348,7 @@ GROWTH = (("p", "mm**3"), ("q", "mm**3"), ("y", "mg"))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("units", [True, False], ids=["with units", "plain numbers"])
+@pytest.mark.parametrize("units", [True, False], ids=["with units", "numbers without a unit"])
 def test_fractional_powers_of_states_do_not_stop_the_search_of_singular_arcs(units: bool):
     """Growth of a tumour after Hahnfeldt: sympy makes no polynomial of what singular arcs ask for."""
 

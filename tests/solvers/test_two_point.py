@@ -257,7 +257,7 @@ def test_without_a_weight_on_time_there_is_no_minimiser(free):
     found = solve(case)
     assert found.status is Status.NO_MINIMISER
     assert time.thread_time() - began < 10.0
-    assert "longer is always cheaper: cost" in found.message
+    assert "a longer duration is always cheaper: cost" in found.message
     costs, durations = (
         [float(v) for v in part.split(",")]
         for part in found.message.split("cheaper: cost ")[1].split(";")[0].split(" at durations ")

@@ -133,7 +133,7 @@ def test_rows_of_another_study_are_never_taken(tmp_path: Path, monkeypatch: pyte
         return opened(folder, study)
 
     monkeypatch.setattr(parts, "opened", later)
-    with pytest.raises(BadInput, match="holds a study"):
+    with pytest.raises(BadInput, match="contains a study"):
         reports.carry_out(asked(6), tmp_path / "b", Here, 1)
     assert "7.0" in (tmp_path / "b/table.csv").read_text(encoding="utf-8")
 
@@ -142,16 +142,16 @@ def test_a_study_and_another_result_leave_each_other_alone(tmp_path: Path, capsy
     solved, studied = tmp_path / "solved", tmp_path / "studied"
     sets.write(solved, {"command": "solve"}, {"trajectory.npz": text("t"), "case.toml": text("c")})
     never = Here()
-    with pytest.raises(BadInput, match="holds the result of solve"):
+    with pytest.raises(BadInput, match="contains the result of solve"):
         reports.carry_out(asked(), solved, lambda: never, 1, resume=True)
     assert not never.given
     assert {path.name for path in solved.iterdir()} == {"trajectory.npz", "case.toml", "result.json"}
     reports.carry_out(asked(), studied, Here, 1)
     for command in (["simulate", NAME], ["lqr", "geo-lqr"], ["solve", NAME]):
         assert main([*command, "--out", str(studied)]) == 3
-        assert "holds the result of study" in capsys.readouterr().err
+        assert "contains the result of study" in capsys.readouterr().err
     assert sets.read(studied).command == "study"
-    with pytest.raises(BadInput, match="holds the result of study"):
+    with pytest.raises(BadInput, match="contains the result of study"):
         simulate(NAME).save(studied)
 
 
@@ -160,7 +160,9 @@ def test_a_file_of_somebody_else_is_not_written_over(name: str, tmp_path: Path) 
     (tmp_path / "main.py").write_text("mine", encoding="utf-8")
     (tmp_path / name).write_text("mine", encoding="utf-8")
     never = Here()
-    with pytest.raises(BadInput, match=f"holds {name}, which belongs to no study; give another folder, or remove it"):
+    with pytest.raises(
+        BadInput, match=f"contains {name}, which does not belong to a study; give another folder, or remove it"
+    ):
         reports.carry_out(asked(), tmp_path, lambda: never, 1, resume=True)
     assert not never.given
     assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == dict.fromkeys(
@@ -280,7 +282,7 @@ def _rows(path: Path) -> set[int]:
 
 
 def test_two_processes_cannot_be_at_one_study(tmp_path: Path) -> None:
-    with kept_in(tmp_path), pytest.raises(BadInput, match="in use by another process"), kept_in(tmp_path):
+    with kept_in(tmp_path), pytest.raises(BadInput, match="is in use by another process"), kept_in(tmp_path):
         pass
 
 

@@ -157,7 +157,7 @@ def test_bounds_of_single_controls_vary_and_each_row_is_judged_by_its_own() -> N
     for row, (r, upper) in zip(found, values, strict=True):
         own = replace(case, initial=(r, *case.initial[1:]), upper=(case.upper[0], upper))
         assert row.numbers["objective"] == pytest.approx(solvers.solve(own, examined=False).objective, rel=1e-8)
-    with pytest.raises(BadInput, match="is above the upper one"):
+    with pytest.raises(BadInput, match="exceeds the upper bound"):
         asking(written, written.instance(), {"vary": {"control.u2.lower": "0:9:2"}}, bounded)
 
 
@@ -184,7 +184,7 @@ def test_ends_that_no_control_reaches_are_known_from_the_planes_of_others(monkey
     found = unreachable.unreachable(problems, cases, np.arange(len(cases)))
     assert sorted(found) == [k for k, time in enumerate(least) if time > case.tf]
     assert len(looked) < len(cases)
-    assert all("separate it from the reachable set" in message for message in found.values())
+    assert all("separate this end from the reachable set" in message for message in found.values())
 
 
 def test_rows_beyond_reach_are_not_solved_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -196,7 +196,7 @@ def test_rows_beyond_reach_are_not_solved_alone(monkeypatch: pytest.MonkeyPatch)
     study = asking(written, written.instance(), {"vary": {"initial.q": "2.5:6.0:4", "control.u1.upper": "0.5:2.0:4"}})
     found = computed(study)
     assert {row.status for row in found} == {"infeasible"}
-    assert all(row.message.endswith("wider bounds on the control") for row in found)
+    assert all(row.message.endswith("allow more time, or widen the bounds of the control") for row in found)
 
 
 def test_what_wider_bounds_do_not_reach_narrower_ones_do_not() -> None:
@@ -226,6 +226,6 @@ def test_what_wider_bounds_do_not_reach_narrower_ones_do_not() -> None:
     assert [found[f"1.3 {upper}"].status for upper in bounds] == ["infeasible"] * 3 + ["converged"]
     assert found["1.3 0.3"].message == "none arrives"
     for upper in (0.1, 0.2):
-        assert found[f"1.3 {upper}"].message.startswith("even with wider bounds: none arrives")
+        assert found[f"1.3 {upper}"].message.startswith("the end is not reached even with wider bounds: none arrives")
     assert {upper for r, upper in tried if r == 1.3} == {0.3, 0.4}
     assert {upper for r, upper in tried if r == 1.4} == {0.2, 0.3, 0.4}

@@ -97,7 +97,11 @@ def test_the_least_cost_is_within_the_interval_in_all_sizes(
 ) -> None:
     found = solve.solve(case(tmp_path, FULLER, start, end, tf))
     holds(found, least(*start).cost, 1e-7)
-    estimate = ["lower end of the cost interval is an estimate: not convex"] if tf == FREE else []
+    estimate = (
+        ["the lower end of the cost interval is only an estimate, because the problem is not convex"]
+        if tf == FREE
+        else []
+    )
     assert failed(found) == [CHATTERS, *estimate]
 
 

@@ -161,8 +161,8 @@ def test_the_law_is_typeset_as_a_comparison_of_three_values(side: str, value: st
 @pytest.mark.parametrize(
     ("cost", "more", "message"),
     [
-        (u**2, {}, "supported only where cost and motion are sums of controls and their magnitudes"),
-        (Integer(1), {"control_set": "free"}, 'this needs control_set = "box"'),
+        (u**2, {}, "supported only if the cost and the motion are linear in the controls"),
+        (Integer(1), {"control_set": "free"}, 'this requires control_set = "box"'),
         (Integer(1), {"path_constraints": {"slow": v - 1}}, "beside .u. they are not derived"),
     ],
 )

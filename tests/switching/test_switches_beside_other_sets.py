@@ -166,7 +166,7 @@ def test_a_magnitude_is_not_negative():
 
 
 def test_what_switches_needs_bounds():
-    needs = r"\[control\] k: the square of this control is not in the cost, so it needs both bounds"
+    needs = r"\[control\] k: the cost has no term in the square of this control, so it needs both bounds"
     with pytest.raises(BadInput, match=needs):
         satsym.Instance.of(cart(), initial={"x": 0, "v": 0, "y": 0}, tf=4)
 
@@ -174,8 +174,11 @@ def test_what_switches_needs_bounds():
 @pytest.mark.parametrize(
     ("sets", "said"),
     [
-        ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which nothing limits; state a Box or a Ball"),
-        ({"push": Box("k"), "rate": Ball("w")}, "H is linear in w alone, whose direction is fixed; state a Box"),
+        ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which has no bounds; state a Box or a Ball"),
+        (
+            {"push": Box("k"), "rate": Ball("w")},
+            "H is linear in the single control w, so there is no direction to choose; state a Box",
+        ),
     ],
 )
 def test_what_is_linear_has_a_set_of_its_own(sets: dict[str, Box | Free | Ball], said: str):

@@ -135,7 +135,7 @@ def test_where_any_brake_costs_the_same_the_cost_is_found_and_no_strict_minimum_
     assert found.certificate is not None
     assert found.certificate.verdict == "extremal only"
     failed = [c.name for c in found.certificate.checks if not c.passed]
-    assert "not strict: other controls cost the same" in failed
+    assert "not strict: other controls have the same cost" in failed
 
 
 @pytest.mark.study

@@ -147,7 +147,7 @@ def test_durations_that_lead_to_an_end_need_not_be_an_interval(weak: Instance) -
         if expected is not None:
             assert found.objective == pytest.approx(expected, rel=1e-3)
         elif tf > first:
-            assert "separate it from the reachable set" in found.message
+            assert "separate this end from the reachable set" in found.message
 
 
 def test_costates_separate_only_what_is_not_reached() -> None:
@@ -181,7 +181,7 @@ def test_where_any_brake_does_the_cost_is_given_and_no_strict_minimum_claimed(
 def assert_not_strict(found: Solution) -> None:
     assert found.certificate is not None
     failed = [c.name for c in found.certificate.checks if not c.passed]
-    assert failed == ["not strict: other controls cost the same"], found.certificate.checks
+    assert failed == ["not strict: other controls have the same cost"], found.certificate.checks
     assert found.certificate.verdict == "extremal only"
 
 
@@ -265,7 +265,9 @@ def test_a_later_start_and_a_control_without_room_change_nothing_but_times(axes:
     assert found.objective == pytest.approx(2.0 * math.sqrt(2.0), rel=1e-12)
     assert found.switching_times[0] == pytest.approx((5.0 + math.sqrt(2.0),), rel=1e-12)
     assert found.certificate is not None
-    assert "not strict: other controls cost the same" not in {c.name for c in found.certificate.checks if not c.passed}
+    assert "not strict: other controls have the same cost" not in {
+        c.name for c in found.certificate.checks if not c.passed
+    }
 
 
 @pytest.mark.slow

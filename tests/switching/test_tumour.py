@@ -127,5 +127,5 @@ def test_a_singular_dose_ends_in_rest(
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
     assert [check.name for check in found.certificate.checks if not check.passed] == [
-        "no proof of a minimum along singular arcs: not convex"
+        "no proof of a minimum along singular arcs: the problem is not convex"
     ]

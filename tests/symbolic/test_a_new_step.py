@@ -69,7 +69,7 @@ def test_its_check_can_fail(divergence: StepFunction) -> None:
 
 def test_without_a_check_of_its_own_it_is_refused(divergence: StepFunction) -> None:
     divergence.__globals__["Step"] = lambda *given: Step(*given[:-1], ())
-    with pytest.raises(DerivationError, match="damped:divergence carries no machine check"):
+    with pytest.raises(DerivationError, match="damped:divergence has no machine check"):
         derive(DAMPED)
 
 

@@ -120,4 +120,7 @@ def test_a_set_that_has_the_name_of_another_control_takes_no_bound():
     sets = {"u": Box("w"), "v": Box("v"), "w": Box("u")}
     with pytest.raises(BadInput) as caught:
         satsym.Instance.of(stated(sets), initial={"x": 1, "y": 1}, tf=3, control={"u": [-1, 1], "v": [0, 1]})
-    assert str(caught.value) == "mixed: [control] u: u is a control and the set of w; give the set another name"
+    assert (
+        str(caught.value)
+        == "mixed: [control] u: the name u denotes both a control and the set of w; give the set another name"
+    )

@@ -189,15 +189,15 @@ sigma, omega, c1, c2, k1, *_ = symbols_of(POLAR.model.parameters)
             (
                 "the terminal cost",
                 "of dimension [length]^2/[time]^3",
-                "k1*(r - sigma)**2/2 of dimension [length]^2",
+                "k1*(r - sigma)**2/2, of dimension [length]^2",
             ),
         ),
         (
             unit("c1", "km"),
             (
-                "the running cost puts",
-                "c2*u2**2/2 of dimension [length]^2/[time]^4",
-                "c1*u1**2/2 of dimension [length]^3/[time]^4",
+                "the running cost adds or compares",
+                "c2*u2**2/2, of dimension [length]^2/[time]^4",
+                "c1*u1**2/2, of dimension [length]^3/[time]^4",
             ),
         ),
         (
@@ -205,13 +205,13 @@ sigma, omega, c1, c2, k1, *_ = symbols_of(POLAR.model.parameters)
             ("the force 'radial thrust', per unit mass, has the dimension [length], but needs [length]/[time]^2",),
         ),
         (unit("theta", "km"), ("the reference of theta has the dimension 1, but needs [length]",)),
-        (force(lambda r: sp.sin(r) * u1), ("sin of it needs a plain number",)),
-        (force(lambda r: 2**r * u1), ("an exponent needs a plain number",)),
+        (force(lambda r: sp.sin(r) * u1), ("applies sin to r, of dimension",)),
+        (force(lambda r: 2**r * u1), ("exponents must be dimensionless",)),
         (
             force(lambda r: (r + r_dot) * u1),
             (
-                "r_dot of dimension [length]/[time]",
-                "r of dimension [length]",
+                "r_dot, of dimension [length]/[time]",
+                "r, of dimension [length]",
             ),
         ),
         (
@@ -225,17 +225,17 @@ sigma, omega, c1, c2, k1, *_ = symbols_of(POLAR.model.parameters)
                 "but needs [length]^2/[time]^3",
             ),
         ),
-        (replace(POLAR, running_cost=1 + u1**2 + u2**2), ("the running cost puts 1 of dimension 1 beside",)),
+        (replace(POLAR, running_cost=1 + u1**2 + u2**2), ("the running cost adds or compares 1, of dimension 1, and",)),
         (
             replace(POLAR, model=replace(POLAR.model, reference={**POLAR.model.reference, r: sigma * t})),
             ("the reference of r has the dimension [length]*[time], but needs [length]",),
         ),
         (
             replace(POLAR, model=replace(POLAR.model, position=POLAR.model.position + sp.Matrix([1, 0]))),
-            ("the position puts",),
+            ("the position adds or compares",),
         ),
         (unit("r", "parsnip"), ('unit "parsnip" is unknown',)),
-        (unit("r", "km**"), ("not readable",)),
+        (unit("r", "km**"), ("cannot be read",)),
     ],
     ids=[
         "rate",
@@ -297,14 +297,14 @@ def test_a_model_of_plain_numbers_counts_time_in_plain_numbers() -> None:
 
 def test_a_model_with_units_may_not_take_the_sine_of_time() -> None:
     units = ("m", "m/s", "m/s^2")
-    with pytest.raises(DerivationError, match="the rate of v1 has t of dimension"):
+    with pytest.raises(DerivationError, match="the rate of v1 applies sin to t, of dimension"):
         derive(oscillator(units, "1/s", -(w**2) * q1 + sp.sin(t) * u1, u1**2))
     assert derive(oscillator(units, "1/s", -(w**2) * q1 + sp.sin(w * t) * u1, u1**2)).steps
 
 
 def test_cost_of_time_needs_the_unit_of_the_other_cost() -> None:
     units = ("m", "m/s", "m/s^2")
-    with pytest.raises(DerivationError, match="the running cost puts"):
+    with pytest.raises(DerivationError, match="the running cost adds or compares"):
         derive(oscillator(units, "1", u1, 1 + u1**2))
     assert derive(oscillator(units, "m^2/s^4", u1, w + u1**2)).steps
 

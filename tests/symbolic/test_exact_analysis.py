@@ -513,7 +513,7 @@ def test_results_have_addresses():
 def test_models_with_a_cost_or_with_varying_coefficients_are_not_analysed():
     assert "stability" not in small("time_varying")
     assert "stability" not in small("explicit_time")
-    with pytest.raises(DerivationError, match="not linear with constant coefficients"):
+    with pytest.raises(DerivationError, match="the system is not linear with constant coefficients"):
         system_of(small("time_varying"))
 
 

@@ -53,11 +53,11 @@ def test_points_are_typeset(language: str):
         (through(x - 1, control_sets={"all": Ball("u")}), "beside control_sets"),
         (through(x - 1, control_sets={"all": Angle("u")}), "beside control_sets"),
         (through(x - 1, running_cost=sp.Abs(u), control_set="box"), "where H is quadratic"),
-        (through(x - 1, sp.Integer(2)), "mark requires 2 = 0, which does not depend on the motion"),
+        (through(x - 1, sp.Integer(2)), "mark requires 2 = 0, but this condition does not depend on the motion"),
         (through(x - u), "the interior point mark cannot depend on u"),
         (through(x - 1, v, x + v), "more conditions than there are states"),
         (through(), "give each point a name"),
-        (through(x - 1, interior={"Mark": (x,)}), "a point's name is"),
+        (through(x - 1, interior={"Mark": (x,)}), "the name of a point must be"),
         (through(x - 1, interior={"mark": x}), "give each point a name"),
     ],
 )

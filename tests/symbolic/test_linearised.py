@@ -79,7 +79,7 @@ def test_another_gravity_parameter_is_refused_with_the_right_one():
     (definition,) = model.definitions
     wrong = (Definition(definition.variable, 2 * definition.value),)
     motion = replace(model.of, definitions=wrong)
-    with pytest.raises(DerivationError, match=r"exactly when mu = omega\*\*2\*sigma\*\*3, but mu is defined as"):
+    with pytest.raises(DerivationError, match=r"if and only if mu = omega\*\*2\*sigma\*\*3, but mu is defined as"):
         derive(replace(model, of=motion, definitions=wrong))
 
 
@@ -183,15 +183,18 @@ hanging = Linearised(
     [
         ({"about": {q1: 1, q2: 0}}, "is not a motion of pendulum"),
         ({"about": {q1: 0}}, "no value for q2"),
-        ({"about": {q1: 0, q2: 0, f1: 1}}, "f1 is not zero along the motion; give its deviation another name"),
+        (
+            {"about": {q1: 0, q2: 0, f1: 1}},
+            "f1 is not zero along the reference motion; give the deviation a name of its own",
+        ),
         ({"about": {q1: d1, q2: 0}}, "cannot depend on d1|undeclared symbols: d1"),
-        ({"deviations": {d1: q1 - 1, d2: q2}}, "do not all vanish on the reference"),
+        ({"deviations": {d1: q1 - 1, d2: q2}}, "some deviations do not vanish"),
         ({"deviations": {d1: q1, d2: q1}}, "cannot be solved for the variables of pendulum"),
         ({"deviations": {d1: q1}}, "one deviation for each state"),
-        ({"states": NEW[:1], "deviations": {d1: q1}}, "as many states and controls as pendulum has"),
+        ({"states": NEW[:1], "deviations": {d1: q1}}, "give a replacement for each state and each control of pendulum"),
         ({"states": PLANE, "deviations": {q1: q1, q2: q2}}, "'q1' is used twice"),
         ({"outputs": (Output(Variable("y1", "y_1"), d1),)}, "an output"),
-        ({"parameters": (Variable("routh_array", "K"),)}, "'routh_array' is given to something that is derived"),
+        ({"parameters": (Variable("routh_array", "K"),)}, "'routh_array' is reserved for a derived quantity"),
     ],
 )
 def test_a_linearisation_that_does_not_fit_its_motion_is_refused_in_one_line(change: dict[str, Any], message: str):

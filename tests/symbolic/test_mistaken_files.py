@@ -40,13 +40,13 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "c * speed**2",
             "c * speed^2",
-            "mine.py:12: powers are written **, as in x**3; ^ is not the power operator in Python",
+            "mine.py:12: write powers with **, as in x**3; ^ is not the power operator in Python",
         ),
         (", model=walk", "", "mine.py:12: Problem needs 'model'; its fields are name, title, model, "),
         (
             '"speed"),)',
             '"speed", 1, "real", 1, (1, 2), 3),)',
-            "Variable got more values than fields; without a name it",
+            "Variable has fewer fields than the values it was given; its positional",
         ),
         ("import FirstOrder,", "import FirstOder,", "satsym.symbolic has no 'FirstOder'; did you mean \"FirstOrder\"?"),
         ("import FirstOrder,", "import", "mine.py:8: 'FirstOrder' is not defined; write `from satsym.symbolic import"),
@@ -61,17 +61,17 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "c * speed**2",
             "c * speed**2 + abs(place)",
-            "mine.py:12: stroll: the running cost has Abs(place) in it, whose derivatives jump; use a smooth",
+            "mine.py:12: stroll: the running cost contains Abs(place), whose derivatives jump; use a smooth",
         ),
         (
             "rates={place: speed}",
             "rates={place: abs(speed)}",
-            "Abs(speed) in the equations of motion is supported only where cost and motion are sums of controls",
+            "Abs(speed) in the equations of motion is supported only if the cost and the motion are linear",
         ),
         (
             "terminal_cost=place**2",
             "terminal_cost=place**2 + abs(place)",
-            "the terminal cost has Abs(place) in it",
+            "the terminal cost contains Abs(place)",
         ),
         ('"speed", "v"', '"speed up", "v"', "mine.py:5: variable 'speed up': use a letter, then letters"),
         (
@@ -87,10 +87,10 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             '"place", "s"',
             '"place", "S"',
-            "mine.py:12: stroll: the LaTeX of 'place', S, is that of something that is derived; choose another",
+            "mine.py:12: stroll: the LaTeX of 'place', S, is reserved for a derived quantity; choose another",
         ),
-        ('"c", "c"', '"c", "{H}"', "stroll: the LaTeX of 'c', {H}, is that of"),
-        ('"speed", "v"', '"speed", r"\\lambda_s"', "the LaTeX of 'speed', \\lambda_s, is that of"),
+        ('"c", "c"', '"c", "{H}"', "stroll: the LaTeX of 'c', {H}, is reserved for"),
+        ('"speed", "v"', '"speed", r"\\lambda_s"', "the LaTeX of 'speed', \\lambda_s, is reserved for"),
         ("rates={place: speed}", 'rates={place: int("speed")}', "mine.py:9: ValueError: invalid literal for int()"),
         ("(speed,), (c,) =", "(speed,) (c,) =", "mine.py:7: SyntaxError: cannot assign to function call"),
     ],

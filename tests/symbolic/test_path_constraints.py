@@ -173,7 +173,7 @@ TURNED = replace(CHAIN, rates={a: b, b: d, d: u, e: sp.cos(symbols_of((WAY,))[0]
         (kept(b - 1, control_set="ball"), "beside bounds of the controls other than those of a box"),
         (replace(kept(b - 1, control_set="box"), path_constraints={"u_max": b - 1}), "is the name of a bound"),
         (kept(b - 1, control_sets={"p": Box("u")}, path_constraints={"u_max": b - 1}), "is the name of a bound"),
-        (replace(kept(b - 1), path_constraints={"no name": b - 1}), "a constraint's name is"),
+        (replace(kept(b - 1), path_constraints={"no name": b - 1}), "the name of a constraint must be"),
         (replace(kept(b - 1), path_constraints=(b - 1,)), "write a name for each"),  # type: ignore[arg-type]
     ],
 )

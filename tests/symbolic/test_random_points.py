@@ -38,7 +38,7 @@ def test_steep_atmospheres_are_derived_and_generated(steepness: int) -> None:
 
 def test_a_root_far_away_needs_a_typical_range() -> None:
     with pytest.raises(
-        DerivationError, match=r"give the range of the variables: Variable\(\.\.\., typical=\(low, high\)\)"
+        DerivationError, match=r"give the ranges of the variables: Variable\(\.\.\., typical=\(low, high\)\)"
     ):
         derive(climb(sp.sqrt(h - 100)))
     near = derive(climb(sp.sqrt(h - 100), (replace(STATES[0], typical=(101.0, 120.0)), STATES[1])))
@@ -79,7 +79,7 @@ def test_what_is_not_finite_is_refused_where_it_is_stated(value: sp.Expr) -> Non
 
 @pytest.mark.parametrize("name", ["", "Climb", "a b", "9", "class "])
 def test_names_that_no_file_can_have_are_refused(name: str) -> None:
-    with pytest.raises(DerivationError, match="a model's name is a small letter"):
+    with pytest.raises(DerivationError, match="the name of a model must be a small letter"):
         derive(replace(climb(v), name=name))
 
 

@@ -131,16 +131,16 @@ def plant(instance: Instance, feedback: str) -> Plant:
     if not spec.switching_curve:
         raise BadInput(f"{name}: --feedback {feedback}: model {spec.name} has no switching curve in closed form")
     if instance.deadband is None:
-        raise BadInput(f"{name}: no [switching] table; state the deadband there, or choose another feedback")
+        raise BadInput(f"{name}: no [switching] table; add the table with the deadband, or choose another feedback")
     position, rate = (spec.state_names.index(state) for state in spec.switching_curve)
     for state in spec.switching_curve:
         if not isinstance(instance.final.get(state), float | int):
-            raise BadInput(f"{name}: [final] {state}: missing; a switching feedback needs a number")
+            raise BadInput(f"{name}: [final] {state}: missing; a switching feedback requires a number")
     (low,), (high,) = instance.lower, instance.upper
     if not -np.inf < low < 0.0 < high < np.inf:
         raise BadInput(
-            f"{name}: [control] {spec.control_names[0]}: the bounds {low:g} and {high:g} are not finite numbers with 0 "
-            "between them; a switching feedback must be able to push in both directions"
+            f"{name}: [control] {spec.control_names[0]}: the bounds {low:g} and {high:g} must be finite, with "
+            "0 between them; a switching feedback must be able to push in both directions"
         )
     final = final_argument(instance)
     target = final[2 * len(spec.states) + position], final[2 * len(spec.states) + rate]

@@ -98,7 +98,9 @@ def loop(instance: Instance) -> Loop:
     """
     options, spec, model = instance.classical, instance.model.spec, instance.model
     if options is None:
-        raise BadInput(f"{instance.called}: no [classical] table; state the law there, or choose another feedback")
+        raise BadInput(
+            f"{instance.called}: no [classical] table; add the table with the control law, or choose another feedback"
+        )
     rest, none = [0.0] * len(spec.states), [0.0]
     a = np.array(model.jacobian_x(instance.t0, rest, none, instance.parameters)).reshape(len(rest), -1)
     b = np.array(model.jacobian_u(instance.t0, rest, none, instance.parameters)).ravel()
@@ -145,12 +147,13 @@ def simulate(instance: Instance) -> Simulation:
         If there is no such law, no final time, or one that is very long for so fast a loop.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a simulation needs a final time; write a number")
+        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; write a number")
     found = loop(instance)
     if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
         raise BadInput(
-            f"{instance.called}: [classical]: the loop's shortest time constant, {1.0 / found.fastest:.3g}, is too "
-            f"short to be followed until {instance.tf:.6g}; give an earlier time.tf, or a slower law or differentiator"
+            f"{instance.called}: [classical]: the shortest time constant of the loop, "
+            f"{1.0 / found.fastest:.3g}, is too short for a simulation until {instance.tf:.6g}; give an "
+            "earlier time.tf, a slower law or a slower differentiator"
         )
     limits, _ = watched(instance, None)
     try:
@@ -261,4 +264,4 @@ def _message(instance: Instance, status: Status, metrics: dict[str, float]) -> s
     assert law is not None
     unsettled = math.isnan(metrics.get("settling_time", 0.0))
     said = [excesses(instance, metrics), f"{law.follows} has not settled by the final time" if unsettled else ""]
-    return "; ".join(filter(None, said)) or "simulated with small steps of a method of order eight"
+    return "; ".join(filter(None, said)) or "simulated by a method of order eight with small steps"

@@ -80,10 +80,13 @@ def _approach(found: Plant) -> tuple[list[Arc], bool]:
 
 def _said_of_relay(found: Plant, arrived: bool) -> str:
     if arrived:
-        return "within the deadband at the final rate"
+        return "within the deadband, with the required final rate"
     if found.instance.tf is not None:
-        return f"not within the deadband of {found.deadband:g} by the final time"
-    return f"does not come within the deadband of {found.deadband:g}, which is lost in rounding: widen it"
+        return f"the motion has not reached the deadband of {found.deadband:g} at the final time"
+    return (
+        f"the motion does not reach the deadband of {found.deadband:g}, which is below the rounding error: widen "
+        "the deadband"
+    )
 
 
 def by_pulses(instance: Instance) -> Simulation:
@@ -103,7 +106,10 @@ def by_pulses(instance: Instance) -> Simulation:
     found = plant(instance, "pulses")
     if found.target[1]:
         name = instance.model.spec.switching_curve[1]
-        raise BadInput(f"{instance.called}: [final] {name}: pairs of pulses end at rest; write 0, or choose another")
+        raise BadInput(
+            f"{instance.called}: [final] {name}: pairs of pulses always end at rest, so the final rate must be 0; "
+            "write 0, or choose another feedback"
+        )
     if instance.tf is None and abs(found.error(np.array(instance.initial))) <= found.deadband:
         raise within_already(found)
     arcs, pairs = _flown(found)
@@ -147,11 +153,14 @@ def _pair(found: Plant, x: Array) -> list[tuple[float, float]]:
 
 def _said_of_pulses(found: Plant, arcs: list[Arc]) -> str:
     if len(arcs) >= MOST_ARCS:
-        return f"not over after {MOST_ARCS} pulses and pauses: widen the deadband, or shorten the time"
+        return f"the motion has not ended after {MOST_ARCS} pulses and pauses: widen the deadband, or shorten the time"
     last, name = arcs[-1].last, found.instance.model.spec.switching_curve[1]
     rate = float(last[found.rate])
     start = float(found.instance.initial[found.rate])
     if start:
-        return f"{name} is still {rate:.6g}: it was not at rest, and the position alone does not show it"
+        return (
+            f"the final value of {name} is {rate:.6g}, not zero: the motion did not start at rest, and a "
+            "feedback of the position alone does not detect this"
+        )
     within = abs(found.error(last)) <= found.deadband
     return "within the deadband, at rest" if within else "outside the deadband at the final time"

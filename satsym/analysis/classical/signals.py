@@ -79,7 +79,7 @@ def excesses(instance: Instance, metrics: dict[str, float]) -> str:
     """A sentence on each limit that a motion goes beyond; empty where it keeps all."""
     variables = {v.symbol: v for v in (*instance.model.spec.states, *instance.model.spec.quantities)}
     found = [
-        f"{name} reaches {peak:.6g} {variables[name].unit}, past its limit of {limit:.6g}"
+        f"{name} reaches {peak:.6g} {variables[name].unit}, which exceeds its limit of {limit:.6g}"
         for name, limit in instance.limits.items()
         if (peak := metrics.get(f"{name}_peak", 0.0)) > limit
     ]

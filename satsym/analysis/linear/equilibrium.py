@@ -123,8 +123,9 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
     times = [t0 + ahead / (unit.rate * unit.size) for ahead in LOOKED_AT]
     if not (on_reference or spec.linear or all(_rests(model, p, unit, t, point) for t in times)):
         raise BadInput(
-            f"{where}: the model rests at ({', '.join(f'{v:.6g}' for v in point)}) only at t = {t0:.6g}, "
-            "which is not an equilibrium; state a reference in the model: an uncontrolled motion"
+            f"{where}: the rates of the model vanish at ({', '.join(f'{v:.6g}' for v in point)}) only at t = "
+            f"{t0:.6g}, so this point is not an equilibrium; state a reference in the model, that is, an "
+            "uncontrolled motion"
         )
     aside = [point + shift * (unit.states + np.abs(point)) for shift in SHIFTS]
     return replace(
@@ -204,8 +205,9 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
         left, size = np.full(n, np.inf), np.zeros(n)
     if not ((left <= AT_REST * size).all() and model.in_domain(point)):
         raise BadInput(
-            f"{where}: no equilibrium of {model.spec.name} is found from ({', '.join(f'{v:.6g}' for v in start)}); "
-            "start near one, or state a reference in the model"
+            f"{where}: no equilibrium of {model.spec.name} was found from the start "
+            f"({', '.join(f'{v:.6g}' for v in start)}); start near an equilibrium, or state a reference in the "
+            "model"
         )
     return point
 
@@ -214,7 +216,10 @@ def _defaults(model: Kernels) -> tuple[float, ...]:
     """Default parameters of a model."""
     missing = [v.symbol for v in model.spec.parameters if v.default is None]
     if missing:
-        raise BadInput(f"{model.spec.name}: {', '.join(missing)} has no default; write an instance and name that")
+        raise BadInput(
+            f"{model.spec.name}: {', '.join(missing)} has no default; write an instance with a value, and name the "
+            "instance"
+        )
     return tuple(float(v.default) for v in model.spec.parameters if v.default is not None)
 
 

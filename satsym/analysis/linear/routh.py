@@ -77,7 +77,7 @@ def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -
         If the leading coefficient is zero or there is none.
     """
     if not len(coefficients) or not coefficients[0]:
-        raise BadInput("a polynomial must have a leading coefficient other than 0; leave out higher powers")
+        raise BadInput("the leading coefficient of a polynomial must not be 0; leave out the leading zeros")
     if all(isinstance(value, Rational) for value in coefficients):
         return _array([Fraction(value) for value in coefficients], 0.0)
     given = [float(value) for value in coefficients]

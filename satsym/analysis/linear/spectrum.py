@@ -246,7 +246,7 @@ def stability(eigenvalues: Sequence[Eigenvalue], *others: Sequence[Eigenvalue]) 
     if len({each.verdict for each in found}) == 1:
         return found[0]
     listed = "; or ".join(f"{each.verdict}: {each.reason}" for each in found)
-    return Stability(UNDECIDED, f"the entries are not known well enough to decide. Either {listed}", False)
+    return Stability(UNDECIDED, f"the entries are not known accurately enough to decide. Either {listed}", False)
 
 
 def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
@@ -268,8 +268,8 @@ def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
         return Stability(UNSTABLE, reason, False)
     listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)
     reason = (
-        f"on the imaginary axis lie {listed}, in Jordan blocks of size 1 only, and no eigenvalue lies in the right "
-        "half-plane"
+        f"{listed} lie on the imaginary axis, in Jordan blocks of size 1 only, and no eigenvalue lies in the "
+        "right half-plane"
     )
     return Stability(MARGINAL, reason, False)
 

@@ -54,7 +54,7 @@ class LinearSystem:
         for name in names:
             if name not in self.inputs:
                 raise BadInput(
-                    f"input {shown(name)}: the system has none of this name; {suggestion(name, self.inputs)}"
+                    f"input {shown(name)}: the system has no input of this name; {suggestion(name, self.inputs)}"
                 )
         columns = [self.inputs.index(name) for name in names]
         exact = self.exact and self.exact.with_inputs(columns)
@@ -139,7 +139,10 @@ def system(
     shapes = {"A": (n, n), "B": (n, m), "C": (k, n), "D": (k, m)}
     for (letter, shape), matrix in zip(shapes.items(), (a, b, c, d), strict=True):
         if matrix.shape != shape or n == 0:
-            raise BadInput(f"{letter}: its shape is {matrix.shape}; give (n, n), (n, m), (k, n) and (k, m) for A to D")
+            raise BadInput(
+                f"{letter}: the shape {matrix.shape} does not fit; give A, B, C and D with the shapes (n, n), (n, "
+                "m), (k, n) and (k, m)"
+            )
         if not np.isfinite(matrix).all():
             raise BadInput(f"{letter}: has an entry that is not finite; check the parameters")
     return LinearSystem(

@@ -156,13 +156,15 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
     """
     given = checked(position, velocity, mu, 0.0)
     if given.shape:
-        raise BadInput(f"position, velocity, mu: {given.mu.size} orbits; give one")
+        raise BadInput(
+            f"position, velocity, mu: these arrays describe {given.mu.size} orbits, but only one is allowed; give one"
+        )
     states, (length,), (speed,) = given.scaled()
     scalars = _scalars(states)
     with np.errstate(over="ignore", divide="ignore"):
         sizes = np.log10([length, speed, length / speed])
     if not (np.isfinite(list(scalars.values())).all() and (np.abs(sizes) < REACH).all()):
-        raise BadInput("position, velocity, mu: beyond the range of floats; check the units")
+        raise BadInput("position, velocity, mu: a result exceeds the range of floating-point numbers; check the units")
     binding, momentum, radius, gravity = (scalars[name] for name in ("binding", "momentum", "radius", "mu"))
     along = momentum * scalars["rate"] / (gravity * radius)  # e sin(true anomaly)
     fraction = scalars["parameter"] / radius - 1.0  # e cos(true anomaly)

@@ -27,12 +27,12 @@ FASTER = 1e-6
 LOST = 1e-3
 """Errors of a monodromy matrix above this, relative to its growth, leave nothing to be told from it."""
 _LEAVING = (
-    "Neighbouring orbits leave in other directions and at other speeds, so that the distances between them "
-    "grow in proportion to time."
+    "Neighbouring orbits depart in other directions and at other speeds, so the distances between them grow in "
+    "proportion to time."
 )
 _ON_THE_BORDER = (
-    "Neighbouring orbits are ellipses, which come back, or hyperbolas, which leave faster: the "
-    "distances between them grow without bound."
+    "Neighbouring orbits are either ellipses, which return, or hyperbolas, which depart faster: the distances "
+    "between them grow without bound."
 )
 
 
@@ -80,8 +80,8 @@ class Floquet:
         """What the verdict means, and what the numbers cannot show; or why there are none."""
         if self.status == COLLISION:
             return (
-                "The motion is along a line and meets the centre, where its equations end: it has no period, hence no "
-                "monodromy matrix and no multipliers."
+                "The motion is along a line and reaches the centre, where its equations are singular: the "
+                "motion has no period, hence no monodromy matrix and no multipliers."
             )
         if self.status == NO_PERIOD:
             return (
@@ -89,9 +89,9 @@ class Floquet:
                 f"are no multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
             )
         closed = (
-            "All six multipliers of a closed orbit are exactly 1, for its neighbours are closed too: M - I = "
-            "-(dT/dE) f (grad E)' has rank one and its square is zero, which makes one Jordan block of size 2 beside "
-            "four of size 1."
+            "All six multipliers of a closed orbit are exactly 1, because the neighbouring orbits are closed "
+            "as well: M - I = -(dT/dE) f (grad E)' has rank one and its square is zero, so M has one Jordan "
+            "block of size 2 and four of size 1."
         )
         return f"{closed} {self._resolved} {self._meaning}"
 
@@ -99,14 +99,14 @@ class Floquet:
     def _resolved(self) -> str:
         if self.scatter is None or self.expected_scatter is None or self.monodromy is None:
             return (
-                f"The orbit passes the centre so closely (at {self._fraction:.3g} of its semi-major axis) that an "
-                "integrated M is lost in rounding: none is shown."
+                f"The orbit passes the centre so closely (at {self._fraction:.3g} of its semi-major axis) that "
+                "rounding errors dominate an integrated M, which is therefore not shown."
             )
         return (
-            "Computed, multipliers in such a block scatter by the square root of the error of M: here by "
-            f"{self.scatter:.2g}, where an error of {self.monodromy.error:.2g} allows {self.expected_scatter:.2g}. So "
-            "they do not show on which side of the unit circle they lie; that they are on it follows from the "
-            "structure of M."
+            "The computed multipliers of such a block scatter by the square root of the error of M: here by "
+            f"{self.scatter:.2g}, where an error of {self.monodromy.error:.2g} allows "
+            f"{self.expected_scatter:.2g}. The computation therefore does not show on which side of the unit "
+            "circle the multipliers lie; that they lie on the circle follows from the structure of M."
         )
 
     @property
@@ -117,10 +117,11 @@ class Floquet:
     @property
     def _meaning(self) -> str:
         return (
-            "The block means: a neighbour with another energy has another period and falls behind or gets ahead by "
-            "the same amount in each revolution. In Lyapunov's sense the orbit is therefore unstable, though distances "
-            "grow along the track alone and in proportion to time, not exponentially as a positive eigenvalue would "
-            "imply. As a curve the neighbour's orbit stays as near as it began: the orbit is orbitally stable."
+            "The block of size 2 means that a neighbouring motion with another energy has another period and "
+            "falls behind or gets ahead by the same amount in each revolution. In Lyapunov's sense the orbit "
+            "is therefore unstable, although distances grow only along the track and in proportion to time, "
+            "not exponentially as a positive eigenvalue would imply. As a curve, the neighbouring orbit "
+            "remains as near as it was at the beginning: the orbit is orbitally stable."
         )
 
 

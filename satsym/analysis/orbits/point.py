@@ -64,18 +64,20 @@ class Point:
     def note(self) -> str:
         """What can be told from the eigenvalues, and what cannot."""
         found = (
-            "They are \N{PLUS-MINUS SIGN}sqrt(2 mu/r^3) and, twice, \N{PLUS-MINUS SIGN}i sqrt(mu/r^3): they depend on "
-            "the distance r alone, not on the velocity. One of them is positive at every distance, so that the rule "
-            "calls every orbit unstable, whether circle, ellipse, parabola or hyperbola: it distinguishes nothing. "
-            "Their sum is zero, so that they are never all negative, as asymptotic stability would require. No "
-            "point of an orbit is an equilibrium: what eigenvalues say of equilibria does not apply."
+            "The eigenvalues are ±sqrt(2 mu/r^3) and, twice, ±i sqrt(mu/r^3): they depend on the distance r "
+            "alone, not on the velocity. One of them is positive at every distance, so the rule calls every "
+            "orbit unstable, whether circle, ellipse, parabola or hyperbola: it distinguishes nothing. The sum "
+            "of the eigenvalues is zero, so they are never all negative, as asymptotic stability would "
+            "require. No point of an orbit is an equilibrium, so the theorems about eigenvalues at equilibria "
+            "do not apply."
         )
         if self.own is None:
             return found
-        same = "calls the same orbit stable" if self.own_verdict == STABLE else "happens to say the same"
+        same = "calls the same orbit stable" if self.own_verdict == STABLE else "happens to give the same result"
         return (
-            f"{found} In the model's own coordinates the eigenvalues at this point are different, and the rule {same}: "
-            "away from equilibria they depend on the choice of coordinates, and stability does not."
+            f"{found} In the model's own coordinates, the eigenvalues at this point are different, and the "
+            f"rule {same}: away from equilibria, eigenvalues depend on the choice of coordinates, but "
+            "stability does not."
         )
 
 

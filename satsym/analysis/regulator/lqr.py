@@ -129,8 +129,8 @@ def lqr(
             run = flow(A, G, weight, horizon)
         except NoLowerBound:
             raise BadInput(
-                "[lqr] horizon: the cost has no lower bound over so long a time, for what the weights reward "
-                "outgrows what the inputs cost; shorten it, or write larger weights"
+                "[lqr] horizon: over so long a horizon the cost has no lower bound, because the negative "
+                "weights outweigh the cost of the inputs; shorten the horizon, or write larger weights"
             ) from None
         P, rate = run.T, run.E.T @ weight @ run.E
         eigenvalues = np.linalg.eigvals(A - G @ P).astype(complex)
@@ -169,8 +169,8 @@ def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regula
         raise BadInput(f"model {given.name} has no control, so there is nothing to regulate it with")
     if not about.constant:
         raise BadInput(
-            f"the linearisation of {given.name} depends on time, and no constant gain is optimal for such a system; "
-            "linearise about another motion"
+            f"the linearisation of {given.name} depends on time, so no constant gain is optimal; linearise "
+            "about another motion"
         )
     if options is None:
         return lqr(given, np.ones(len(given.states)), np.ones(len(given.inputs)))
@@ -208,7 +208,7 @@ def _obstacle(given: LinearSystem, A: Array, Q: Array, R: Array) -> str:
     stuck = [each for each in controllability(given).lost if each.value.real >= 0.0]
     if stuck:
         return (
-            f"[lqr] inputs: not stabilisable, {' and '.join(given.inputs)} cannot control the mode "
+            f"[lqr] inputs: not stabilisable, the inputs {' and '.join(given.inputs)} cannot control the mode "
             f"s = {_listed(stuck)}, which does not decay; add an input"
         )
     if not weights.semidefinite(Q.tolist()):
@@ -248,12 +248,12 @@ def _at_a_frequency(A: Array, B: Array, Q: Array, R: Array) -> str:
         return ""
     if least < -NOTHING:
         return (
-            f"[lqr] Q: the cost has no lower bound, for at the frequency {worst:.6g} the weights reward a motion by "
-            "more than its inputs cost; write larger weights"
+            f"[lqr] Q: the cost has no lower bound, because at the frequency {worst:.6g} the negative weights "
+            "outweigh the cost of the inputs; write larger weights"
         )
     return (
-        f"[lqr] Q: the cost has no minimum, for at the frequency {worst:.6g} the weights reward a motion by all that "
-        "its inputs cost; write larger weights"
+        f"[lqr] Q: the cost has no minimum, because at the frequency {worst:.6g} the negative weights balance "
+        "the cost of the inputs; write larger weights"
     )
 
 

@@ -148,7 +148,7 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
         If the horizon is finite: nothing steers after its end; or if the cost to go is not positive.
     """
     if found.horizon is not None:
-        raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
+        raise BadInput("a region of attraction requires an infinite horizon; leave out [lqr] horizon")
     if not found.positive:
         raise BadInput(
             "a region of attraction is measured by the cost to go x'Px, which is not positive with these weights; "

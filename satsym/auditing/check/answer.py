@@ -93,7 +93,9 @@ class Subject:
         """Judge one statement."""
         try:
             if isinstance(statement, Call) and statement.function in RELATIONS.values():
-                return self.answered(statement, "undecided", "it is no equation, and is held against none")
+                return self.answered(
+                    statement, "undecided", "it is not an equation, so there is nothing to compare it with"
+                )
             if (there := at_one_time(statement)) is not None:
                 return self._at_one_time(statement, there)
             if any(isinstance(part, Grid) for side in cells(statement) for _, part in walk(side)):
@@ -148,7 +150,7 @@ class Subject:
         meant = found.verdict == "right" or (target is not None and there.is_condition(target))
         if found.verdict != "undecided" and meant and there.holds_at_this_end(target, self.derived.states):
             return replace(found, formula=self.writer(self.latex)(statement))
-        return self.answered(statement, "undecided", "no condition of the model is one at this time", fit=found.fit)
+        return self.answered(statement, "undecided", "the model has no condition at this time", fit=found.fit)
 
     def _of_matrix(self, statement: Node | Equality) -> Answer:
         inside = self._inside(statement)
@@ -188,7 +190,7 @@ class Subject:
                 seen.add((key, fit.free))
                 near.append(fit)
         if not near:
-            why = f"no equation of {self.derived.record.name} comes near it"
+            why = f"no equation of {self.derived.record.name} resembles it"
             return self.answered(statement, "undecided", why, fit=fits[0] if fits else None)
         best: tuple[float, Fit, remedies.Found] | None = None
         for fit in near:
@@ -203,7 +205,7 @@ class Subject:
             if best is None or cost < best[0]:
                 best = cost, fit, found
         if best is None:
-            why = f"no equation of {self.derived.record.name} comes near it"
+            why = f"no equation of {self.derived.record.name} resembles it"
             return self.answered(statement, "undecided", why, fit=near[0])
         _, fit, found = best
         besides = self.derivatives(True, derivatives), self.derivatives(False, derivatives)
@@ -218,7 +220,7 @@ class Subject:
         letters = [self.reading.letters[name] for name in inside if name in self.reading.letters]
         odd = self.meanings.unknown(letters, self.given)
         written = ", ".join(letter.latex if self.latex else letter.name for letter in odd)
-        why = f"{written} may mean nothing in {self.derived.record.name}; say what with --let LETTER=NAME"
+        why = f"{written} might have no meaning in {self.derived.record.name}; state the meaning with --let LETTER=NAME"
         return self.answered(statement, "undecided", why)
 
     def _inside(self, statement: Node | Equality) -> list[str]:
@@ -276,7 +278,9 @@ class Subject:
         """How an equation is right, understood in one way; ``None`` where it is not."""
         residual = next(self.residuals(named, derivatives, guess))
         if not is_plain(residual):
-            raise BadInput("vectors, sums and integrals are not compared; check components, or what stands in them")
+            raise BadInput(
+                "vectors, sums and integrals are not compared; check the components, or the expressions in them"
+            )
         if not isinstance(named, Equality):
             return self._right_expression(residual, guess)
         if says_nothing(residual, self.derived):

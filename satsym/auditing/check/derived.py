@@ -202,7 +202,7 @@ class Derived:
                 return self.along(inner)
             by = part.arguments[1]
             if not isinstance(by, Sym):
-                raise BadInput("a derivative is taken with respect to something that is not a letter of the model")
+                raise BadInput("a derivative is taken with respect to a quantity that is not a symbol of the model")
             return derivative(inner, by.name)
 
         return mapped(tree, worked_out)

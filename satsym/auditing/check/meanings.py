@@ -206,7 +206,9 @@ def given_letters(texts: Sequence[str], derived: Derived) -> dict[Letter, str]:
     for text in (part for listed in texts for part in listed.split(",")):
         printed, equals, name = (part.strip() for part in text.partition("="))
         if not equals or not printed or not name:
-            raise BadInput(f"--let {shown(text)}: write a printed letter and a name of the model, such as n=omega")
+            raise BadInput(
+                f"--let {shown(text)}: write a printed symbol, an equals sign and a name of the model, such as n=omega"
+            )
         names = {*derived.record.names, *derived.definitions}
         if name not in names:
             message = f"{shown(name)} is not a name of {derived.record.name}; {suggestion(name, names)}"

@@ -123,7 +123,7 @@ def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
         known.setdefault(name, tree)
     lacking = sorted(names_in(named) - {*known, "I", "pi"})
     if lacking:
-        raise BadInput(f"{', '.join(lacking)} may mean nothing in {derived.record.name}")
+        raise BadInput(f"{', '.join(lacking)} might have no meaning in {derived.record.name}")
     besides = dict.fromkeys(derived.controls, ZERO) if fit.free else {}
     equation = fit.target.equation
     held = equation if isinstance(named, Equality) else equation.rhs

@@ -117,7 +117,7 @@ class Bench:
         if row.key not in self._targets:
             found = self._both(row, formula)
             if not found.has_a_value:
-                raise BadInput("its holds divides by zero")
+                raise BadInput("the expression in `holds` divides by zero")
             self._targets[row.key] = found
         return self._targets[row.key]
 
@@ -267,7 +267,8 @@ class Bench:
         meaning = self.scope(row).meanings.get(name, Sym(name))
         if not isinstance(meaning, Sym):
             raise BadInput(
-                f"{shown(name)} means {written(meaning)}: only a single symbol can be differentiated by or replaced"
+                f"{shown(name)} means {written(meaning)}, but only a single symbol can be replaced or be the "
+                "variable of differentiation"
             )
         return meaning.name
 

@@ -24,7 +24,7 @@ def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
     if isinstance(trees, Matrix):
         side = printed.rhs if isinstance(printed, Equality) and isinstance(printed.lhs, Sym) else printed
         if isinstance(side, Equality):
-            raise BadInput("an equation between matrices: print the matrix of one side")
+            raise BadInput("equations between matrices are not supported: print the matrix of one side")
         return [EqualMatrix(bench, row, (side,), ("",), target)]
     if isinstance(trees, Relation):
         return _of_relation(bench, row, printed, target)
@@ -49,7 +49,7 @@ def _of_relation(bench: Bench, row: Row, printed: Node | Equality, target: Both)
         return [Equal(bench, row, (printed,), ("",), (rhs,))]
     meanings = bench.meanings(row)
     if names_in(printed) - {*meanings, *CONSTANTS}:
-        raise BadInput("a symbol for a matrix stands in an equation between numbers")
+        raise BadInput("a symbol that denotes a matrix occurs in an equation between numbers")
     if ZERO not in (relation.lhs, relation.rhs):
         for mine, other in ((printed.lhs, printed.rhs), (printed.rhs, printed.lhs)):
             if Equal(bench, row, (mine,), ("",), (lhs,)).may_hold((mine,)):
@@ -81,7 +81,7 @@ def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], ta
         long = trees.of.shape[1]
         return columns if m == long else Never(columns, say("columns", str(m), str(long), table="sizes"))
     if not isinstance(trees, Matrix):
-        raise BadInput("a matrix is held against an expression; hold it against a matrix")
+        raise BadInput("a matrix cannot be compared with an expression; compare it with a matrix")
     targets = list(map(Both, trees.entries, target.exact.entries))
     entries = Equal(bench, row, cells, labels, targets)
     if trees.shape != (m, n):

@@ -71,7 +71,7 @@ class Equal(Plan):
         """Whether one cell would be right."""
         found, target = self.both(cell), self.target[index]
         if isinstance(found.exact, Matrix):
-            raise BadInput("a symbol for a matrix is compared with an expression that is a number")
+            raise BadInput("a symbol that denotes a matrix cannot be compared with a number")
         return self.vanish(difference(found.trees, target.trees), found.exact - target.exact)
 
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:

@@ -116,7 +116,10 @@ def displays(source: Source) -> Iterator[Display]:
     markdown = source.path.suffix.lower() in _MARKDOWN
     for found, (match, body) in enumerate(_blocks(text, markdown)):
         if found >= MOST_DISPLAYS:
-            raise BadInput(f"{source.place(match.start())}: more than {MOST_DISPLAYS} displays; split the document")
+            raise BadInput(
+                f"{source.place(match.start())}: the document has more than {MOST_DISPLAYS} displayed formulas; "
+                "split the document"
+            )
         environment, start = match["name"] or "", match.end()
         k = bisect_right(sections, match.start(), key=lambda entry: entry[0]) - 1
         number, title = sections[k][1:] if k >= 0 else ("", "")
@@ -187,7 +190,10 @@ def _columns(environment: str) -> str:
 def _include(source: Source, path: Path, home: Path, asking: tuple[Path, ...]) -> None:
     content = _content(path)
     if len(source.text) + len(content) > MAX_BYTES or len(source._starts) > 2 * _MOST_FILES:
-        raise BadInput(f"{printable(str(path), 200)}: more than {MAX_BYTES:,} bytes, or {_MOST_FILES} files; split it")
+        raise BadInput(
+            f"{printable(str(path), 200)}: the document has more than {MAX_BYTES:,} bytes or {_MOST_FILES} files; "
+            "split it"
+        )
     clean = _COMMENT.sub(lambda m: " " * len(m[0]), content) if path.suffix.lower() not in _MARKDOWN else content
     position, line = 0, 1
     for match in _INPUT.finditer(clean):
@@ -202,7 +208,7 @@ def _include(source: Source, path: Path, home: Path, asking: tuple[Path, ...]) -
         except (OSError, ValueError, RuntimeError):
             inside = False
         if not inside or other in asking or other == path:
-            why = f"\\input{{{printable(wanted)}}} is not in the folder of the document, or goes round in a circle"
+            why = f"\\input{{{printable(wanted)}}} is not in the folder of the document, or includes itself"
             source.unread.append((source.place(len(source.text) - 1), why))
         else:
             _include(source, other, home, (*asking, path))
@@ -213,13 +219,13 @@ def _include(source: Source, path: Path, home: Path, asking: tuple[Path, ...]) -
 def _content(path: Path) -> str:
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise BadInput(f"{printable(str(path), 200)}: more than {MAX_BYTES:,} bytes; split it")
+            raise BadInput(f"{printable(str(path), 200)}: the document has more than {MAX_BYTES:,} bytes; split it")
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         raise BadInput(f"{printable(str(path), 200)}: cannot be read ({printable(str(error))})") from None
     if raw.startswith(b"%PDF") or path.suffix.lower() == ".pdf":
         raise BadInput(
-            f"{printable(str(path), 200)}: a PDF is not read; give the LaTeX or Markdown that it was made of"
+            f"{printable(str(path), 200)}: PDF files cannot be read; give the LaTeX or Markdown source of the document"
         )
     try:
         return raw.decode("utf-8-sig")

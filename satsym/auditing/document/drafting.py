@@ -85,7 +85,7 @@ def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> 
     old = _parsed(before)
     model = model or str(old.get("document", {}).get("model", ""))
     if not model:
-        raise BadInput(f"{path}: which model is it about? give --model NAME, or DIR/NAME")
+        raise BadInput(f"{path}: the model of the document is not known; give --model NAME or --model DIR/NAME")
     source = displays.read(path)
     place, name = shelf.place_of(model, path.parent)
     with shelf.opened(place):
@@ -171,7 +171,7 @@ def _fill(entry: _Entry) -> None:
     names = {name: _called(tree, k) for k, (name, tree) in enumerate(derivatives.items(), start=1)}
     meant = subject.meant(named, derivatives, fit.guess)
     if isinstance(named, Equality) and named.rhs == Sym(CONSTANT):
-        raise BadInput("what is said to be constant is a claim; state it as one")
+        raise BadInput("the statement that a quantity is constant is a claim; state it as a claim")
     rate_of = subject.derived.kinematic.get(entry.answer.address)
     for name, tree in meant.items():
         letter = subject.reading.letters.get(name)
@@ -228,7 +228,7 @@ def _of_output(letter: Letter | None, guess: Guess, subject: Subject) -> str:
     elif name not in record.variables(derived.record, "output"):
         return ""
     if times > 1:
-        raise BadInput("a second derivative of an output; state by hand what it is held against")
+        raise BadInput("the second derivative of an output is not supported; state by hand what to compare it with")
     return f"{'d(' * times}at('{address}'){')' * times}"
 
 
@@ -293,7 +293,7 @@ def _parsed(before: str) -> dict[str, Any]:
     try:
         return tomllib.loads(before)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise BadInput(f"the ledger that is there cannot be read ({error}); mend it, or give another --out") from None
+        raise BadInput(f"the existing ledger cannot be read ({error}); correct it, or give another --out") from None
 
 
 def _scope_letters(old: Mapping[str, Any], derived: Derived) -> dict[Letter, str]:

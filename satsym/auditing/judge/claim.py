@@ -84,7 +84,7 @@ class Pages:
         refuse_unknown("there is no row", key, self._bench.rows)
         other = self._bench.rows[key]
         if other.printed is None:
-            raise BadInput(f"row {key} prints no formula; text['{key}'] is what stands there")
+            raise BadInput(f"row {key} contains no formula; write text['{key}'] for the text of this row")
         return _exact(self._bench.of_row(other))
 
     def text(self, key: str) -> Any:
@@ -104,7 +104,7 @@ class Pages:
         scopes = self._bench.ledger.scopes
         found = {scope.meanings[letter] for scope in scopes.values() if letter in scope.meanings}
         if not found:
-            raise BadInput(f"no notation of the ledger has the letter {shown(letter)}")
+            raise BadInput(f"no notation of the ledger has the symbol {shown(letter)}")
         return sorted(map(written, found))
 
 

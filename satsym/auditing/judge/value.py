@@ -85,12 +85,12 @@ def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inpu
 def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome:
     target = bench.target(row)
     if isinstance(target.exact, Matrix | Relation | Roots | Kernel):
-        raise BadInput("a number is held against a matrix or an equation; hold it against an expression")
+        raise BadInput("a number cannot be compared with a matrix or an equation; compare it with an expression")
     by_sympy, by_trees = (
         formulas.as_number(value) for value in (target.exact, formulas.from_tree(target.trees, bench.names.expression))
     )
     if by_sympy is None or by_sympy != by_trees:
-        raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is not a number")
+        raise BadInput(f"a number cannot be compared with {formulas.text(target.exact)}, which is not a number")
     how, derived = fit_of_range(float(by_sympy), float(by_sympy), printed), str(by_sympy)
     right = how is Fit.INSIDE if by_sympy.denominator != 1 else by_sympy == printed.value
     remark = "" if right else say("wrong_number", derived)

@@ -257,7 +257,7 @@ class OperatorCursor(QuotientCursor):
                 cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
             entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
         if not entries or len({len(entry.entries) for entry in entries}) > 1:
-            raise Unread("the rows of a matrix differ in length", token.at)
+            raise Unread("all rows of a matrix must have the same length", token.at)
         if token.text == "vmatrix":
             return Call("det", (Grid(tuple(entries)),))
         return Grid(tuple(entries))

@@ -139,7 +139,7 @@ def text_of(path: Path) -> str:
         reason = getattr(error, "strerror", None) or "not a path"
         raise BadInput(f"--text: {printable(str(path), 200)}: cannot be read ({reason}); give a text file") from None
     if not found.strip():
-        raise BadInput(f"--text: {printable(str(path), 200)}: holds no text; give the document's text")
+        raise BadInput(f"--text: {printable(str(path), 200)}: contains no text; give the document's text")
     return found
 
 

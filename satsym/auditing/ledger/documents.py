@@ -55,11 +55,13 @@ def locate(name_or_path: str) -> Path:
         if path.is_file() or (path / HEAD).is_file():
             return path
         if path.is_dir():
-            raise BadInput(f"{printable(name_or_path, 200)}: no {HEAD} in this folder; put the ledger's head there")
+            raise BadInput(
+                f"{printable(name_or_path, 200)}: this folder has no {HEAD}; put the main part of the ledger there"
+            )
     except (OSError, ValueError):
         pass
     known = suggestion(name_or_path, [path.name for path in shipped()])
-    raise BadInput(f"{printable(name_or_path, 200)}: no ledger of this name, and no such file; {known}")
+    raise BadInput(f"{printable(name_or_path, 200)}: there is no ledger of this name and no such file; {known}")
 
 
 def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> None:

@@ -35,7 +35,9 @@ def added(rows: Iterable[Row], path: Path) -> list[Row]:
     for english, text in part.tree.items():
         place, begins = part.place("", 0, english), shown(_CLAUSE.split(english)[0])
         if not isinstance(text, str) or not text.strip():
-            raise BadInput(f"{place}: got {shown(text)} for {begins}; write the same in Indonesian, in quotes")
+            raise BadInput(f"{place}: got {shown(text)} for {begins}; write the Indonesian translation in quotes")
         if english not in said:
-            raise BadInput(f"{place}: no row says {begins}; write it as a row has it, or take it out")
+            raise BadInput(
+                f"{place}: no row has the text {begins}; copy the text of a row exactly, or remove this entry"
+            )
     return [replace(row, says_id=part.tree.get(row.table.says, "")) for row in rows]

@@ -63,10 +63,11 @@ def _parts(path: Path) -> list[Part]:
         for key in tree if found else ():
             if key != "row":
                 raise BadInput(
-                    f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {documents.HEAD}"
+                    f"{part.place(key, 0, key)}: {printable(key)}: this table is not allowed in a chapter; put "
+                    f"it in {documents.HEAD}"
                 )
         if found and not isinstance(tree.get("row"), list):
-            raise BadInput(f"{part.place('')}: row: no rows; write one [[row]] for each thing that is printed")
+            raise BadInput(f"{part.place('')}: row: the ledger has no rows; write one [[row]] for each printed item")
         found.append(part)
         if not isinstance(tree.get("row", []), list):
             break
@@ -110,7 +111,7 @@ class _Reader:
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:
-            raise self._bad("row: no rows; write one [[row]] for each thing that is printed")
+            raise self._bad("row: the ledger has no rows; write one [[row]] for each printed item")
         found = [self._row(i, entry) for i, entry in enumerate(tables)]
         self._check_references(found)
         self._check_units(found)
@@ -184,7 +185,7 @@ class _Reader:
             if not table.holds:
                 raise BadInput("missing; write an address, an expression over addresses, or a proposition")
             if table.kind == "claim":
-                raise BadInput("a claim is judged by the proposition that it prints; leave `holds` out")
+                raise BadInput("a claim is judged by the proposition that it prints; leave out `holds`")
             if table.kind == "table":
                 raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
         found: dict[str, Any] = {}
@@ -206,7 +207,7 @@ class _Reader:
         with self._telling("row", "printed", index, row.key):
             if not table.printed or (not own and not isinstance(table.printed, str)):
                 raise BadInput(
-                    "missing; write the proposition in quotes" if not own else "missing; write what is printed"
+                    "missing; write the proposition in quotes" if not own else "missing; write the printed text"
                 )
             row = replace(row, printed=rows.readable(table, scope) if own else None)
         found: dict[str, Any] = {}
@@ -218,7 +219,7 @@ class _Reader:
                 found[key] = proposition(str(text), words, own=own) if text else None
         with self._telling("row", "from", index, row.key):
             if isinstance(table.follows, str) and table.follows:
-                raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')
+                raise BadInput('write a list of the rows from which the conclusion is drawn, such as ["2.19", "2.20"]')
         return replace(row, **found, **self._explanations(index, row, scope, own=own))
 
     def _explanations(self, index: int, row: Row, scope: Scope, *, own: bool) -> dict[str, Any]:
@@ -235,7 +236,7 @@ class _Reader:
         for index, row in enumerate(found):
             with self._telling("row", "item", index, row.key):
                 if row.key in by_key:
-                    raise BadInput("there is another row of this name; give them a different part")
+                    raise BadInput("another row has the same name; give the two rows different parts")
             by_key[row.key] = row
         for index, row in enumerate(found):
             for key, formula in (("holds", row.holds), ("from", row.follows)):
@@ -249,7 +250,7 @@ class _Reader:
             with self._telling("row", "from", index, row.key):
                 for name in row.uses:
                     if name not in by_key or name == row.key:
-                        raise BadInput(f"no other row {shown(name)}; {suggestion(name, by_key)}")
+                        raise BadInput(f"there is no other row {shown(name)}; {suggestion(name, by_key)}")
 
     def _check_units(self, found: Sequence[Row]) -> None:
         for name, text in self._inputs.items():
@@ -300,7 +301,7 @@ def _check_rows_named(row: Row, formula: Any, by_key: Mapping[str, Row]) -> None
             if name == row.key:
                 raise BadInput("a row cannot follow from itself")
             if name not in by_key or by_key[name].printed is None:
-                raise BadInput(f"no formula in a row {shown(name)}; {suggestion(name, by_key)}")
+                raise BadInput(f"there is no row {shown(name)} with a formula; {suggestion(name, by_key)}")
 
 
 def _symbol(entry: object) -> SymbolTable:

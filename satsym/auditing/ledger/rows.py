@@ -25,7 +25,7 @@ def printed(table: RowTable, scope: Scope) -> Formula | None:
         quantities.printed_number(_one_text(table))
     if table.kind not in (*FORMULAS, "matrix"):
         if not table.printed:
-            raise BadInput("missing; write what is printed")
+            raise BadInput("missing; write the printed text")
         return None
     if table.kind in FORMULAS:
         formula = reading.statement(_one_text(table))
@@ -35,7 +35,7 @@ def printed(table: RowTable, scope: Scope) -> Formula | None:
         raise BadInput('write a list of rows, such as [["0", "1"], ["3*omega**2", "0"]]')
     lines = [(line,) if isinstance(line, str) else line for line in table.printed]
     if len({len(line) for line in lines}) > 1 or not lines[0]:
-        raise BadInput("the rows differ in length")
+        raise BadInput("all rows must have the same length")
     entries = tuple(tuple(map(reading.expression, line)) for line in lines)
     _refuse_unknown(entries, scope)
     return entries
@@ -73,7 +73,7 @@ def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], 
 
 def _one_text(table: RowTable) -> str:
     if not isinstance(table.printed, str) or not table.printed:
-        raise BadInput("write what is printed as one text in quotes")
+        raise BadInput("write the printed expression as a single quoted string")
     return table.printed
 
 

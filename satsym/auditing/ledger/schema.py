@@ -18,11 +18,15 @@ Role = Literal[
 ]
 
 Text = Annotated[str, Meta(description="text in quotes")]
-Texts = Annotated[tuple[str, ...], Meta(description='a list of texts, such as ["a", "b"]')]
-Formulas = Annotated[dict[str, str], Meta(description='a table of texts, such as x1 = "r"')]
+Texts = Annotated[tuple[str, ...], Meta(description='a list of strings, such as ["a", "b"]')]
+Formulas = Annotated[dict[str, str], Meta(description='a table of strings, such as x1 = "r"')]
 Printed = Annotated[
     str | tuple[str | tuple[str, ...], ...],
-    Meta(description="what is printed, in quotes; for a matrix or a table a list of rows, each a list of texts"),
+    Meta(
+        description=(
+            "the printed expression, in quotes; for a matrix or a table, a list of rows, each of them a list of strings"
+        )
+    ),
 ]
 Whole = Annotated[int, Meta(ge=1, le=3000, description="a whole number")]
 Flag = Annotated[bool, Meta(description="true or false")]

@@ -61,13 +61,17 @@ def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Nod
 
     def resolve(name: str, asking: tuple[str, ...]) -> Scope:
         if name in asking:
-            raise WrongScope(asking[-1], "extends", f"goes round in a circle: {' -> '.join((*asking, name))}")
+            raise WrongScope(
+                asking[-1], "extends", f"the definition refers back to itself: {' -> '.join((*asking, name))}"
+            )
         if name not in found:
             base = tables[name].get("extends")
             below = None
             if base is not None:
                 if not isinstance(base, str) or base not in tables:
-                    raise WrongScope(name, "extends", f"no scope {shown(base)}; {suggestion(str(base), tables)}")
+                    raise WrongScope(
+                        name, "extends", f"there is no scope {shown(base)}; {suggestion(str(base), tables)}"
+                    )
                 below = resolve(base, (*asking, name))
             found[name] = _scope(name, tables[name], below, derived)
         return found[name]
@@ -87,7 +91,9 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
             orders[key] = tuple(value)
             continue
         if not isinstance(value, str):
-            raise WrongScope(name, key, f"got {shown(value)}; write our expression in quotes")
+            raise WrongScope(
+                name, key, f"got {shown(value)}; write the corresponding expression of the model in quotes"
+            )
         try:
             reading.checked_name(key)
             meanings[key] = Scales().checked(substituted(reading.expression(value, judging=True), derived))

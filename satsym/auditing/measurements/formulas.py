@@ -74,7 +74,7 @@ def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float
 
     letters = {s.name: s for rate in rates for s in rate.free_symbols}
     if unknown := sorted(letters.keys() - {*names}):
-        raise BadInput(f"no number for {', '.join(unknown)} in the rates; put one in")
+        raise BadInput(f"the rates contain {', '.join(unknown)}, which has no number; replace it by a number")
     found = formulas.compiled(rates, [letters.get(name, formulas.symbol(name)) for name in names])
     times = np.linspace(0.0, until, _POINTS + 1)
     path = solve_ivp(
@@ -85,7 +85,7 @@ def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float
 
 def _letter(of: Any, by: Any) -> Any:
     if is_exact(by) and not getattr(by, "is_Symbol", False):
-        raise BadInput(f"{shown(str(by))} is not a letter")
+        raise BadInput(f"{shown(str(by))} is not a symbol")
     name = by if isinstance(by, str) else by.name
     from satsym.symbolic.lookup import formulas
 
@@ -97,6 +97,6 @@ def _exact(value: Any) -> Any:
 
     if isinstance(value, Quantity):
         if value.dimension:
-            raise BadInput(f"{value} is not a plain number; divide it by its unit")
+            raise BadInput(f"{value} is not dimensionless; divide it by a unit")
         value = value.value
     return formulas.exact(value)

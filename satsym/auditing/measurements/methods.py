@@ -70,7 +70,7 @@ def with_line(lines: Sequence[str], line: str) -> list[str]:
     """A method in which one line stands in the place of that which gives the same name its value."""
     name = line.partition("=")[0].strip()
     if name not in (other.partition("=")[0].strip() for other in lines):
-        raise BadInput(f"no line of the method gives {name} a value")
+        raise BadInput(f"no line of the method assigns a value to {name}")
     return [line if other.partition("=")[0].strip() == name else other for other in lines]
 
 
@@ -92,7 +92,10 @@ def moving(
     system, rng = kernels.load(model), np.random.default_rng(_SEED)
     n, m = len(states), len(system.spec.controls)
     if n != len(system.spec.states) or len(controls) not in (0, m) or len(costates) not in (0, n):
-        raise BadInput(f"{model} has {len(system.spec.states)} states and {m} controls; name all of a kind, or none")
+        raise BadInput(
+            f"{model} has {len(system.spec.states)} states and {m} controls; name either all states and all "
+            "controls, or none of them"
+        )
     letters = {v.symbol: 1.0 for v in system.spec.parameters if v.default}
     p = tuple(letters.get(v.symbol, 0.0) for v in system.spec.parameters)
     phases, still = np.arange(m), (0.0,) * m
@@ -167,7 +170,7 @@ def _error(lines: Sequence[str], along: Record, h: float) -> float:
             else:
                 world[name] = exact
     if not errors:
-        raise BadInput("no line gives a value at another node")
+        raise BadInput("no line of the method assigns a value at another node")
     with undecided_if_refused():
         values = run(program, world=world).values
     return float(max(np.abs(values[name] - exact).max() for name, exact in errors))
@@ -187,7 +190,7 @@ def _components(rate: Callable[..., Array], sizes: Sequence[int]) -> Mapping[str
         def f(*arguments: Any) -> Array:
             columns = np.broadcast_arrays(*arguments)
             if len(columns) != sum(sizes):
-                raise BadInput(f"f{k + 1} takes {sum(sizes)} arguments, and is given {len(columns)}")
+                raise BadInput(f"f{k + 1} takes {sum(sizes)} arguments, but {len(columns)} are given")
             points = np.stack(columns, axis=-1)
             flat = [rate(*np.split(point, np.cumsum(sizes)[:-1]))[k] for point in points.reshape(-1, sum(sizes))]
             return np.array(flat).reshape(points.shape[:-1])

@@ -45,7 +45,7 @@ def reference(instance: str, t: float | None = None) -> Record:
     case = loaded(instance)
     time = case.tf if t is None else t
     if time is None:
-        raise BadInput(f"{instance} has a free final time; name one")
+        raise BadInput(f"{instance} has a free final time; give a final time")
     return _state(case, case.model.reference(time, case.parameters), f"the reference of {instance}")
 
 
@@ -134,7 +134,7 @@ def swept(instance: str, guess: float = 0.0) -> Record:
     """
     case = loaded(instance)
     if case.tf is None or case.final:
-        raise BadInput(f"{instance}: sweeps need a given final time and a free final state")
+        raise BadInput(f"{instance}: sweeps require a given final time and a free final state")
     model, p = case.model, case.parameters
     times = np.linspace(case.t0, case.tf, STEPS + 1)
     u = np.full((len(model.spec.controls), len(times)), float(guess))

@@ -48,7 +48,7 @@ def classical(instance: str, differentiator: float = 0.0) -> Record:
 
     case = motion.loaded(instance)
     if case.classical is None or case.tf is None:
-        raise BadInput(f"{instance} has no table [classical], or no final time")
+        raise BadInput(f"{instance} lacks a table [classical] or a final time")
     until = min(case.tf, case.t0 + _LAGS * differentiator) if differentiator else case.tf
     case = replace(case, tf=until, classical=replace(case.classical, differentiator=differentiator))
     found = law.simulate(case)
@@ -130,7 +130,7 @@ def crossing_time(shares: list[float], controls: list[float]) -> float:
     middle = 0.5 * (fine[1:] + fine[:-1])
     rate = np.concatenate([[0.0], np.cumsum(np.interp(middle, shares, controls) * np.diff(fine))])
     if abs(rate[-1]) > 1e-9:
-        raise BadInput(f"it ends with the rate {rate[-1]:.3g}, and not at rest")
+        raise BadInput(f"the motion must end at rest, but its final rate is {rate[-1]:.3g}")
     return float(((rate[1:] + rate[:-1]) * np.diff(fine) / 2.0).sum()) ** -0.5
 
 
@@ -139,7 +139,7 @@ def _numbers(instance: str) -> dict[str, float]:
     case = motion.loaded(instance)
     law = case.classical
     if law is None or law.damping is None:
-        raise BadInput(f"{instance} has no damping in a table [classical]")
+        raise BadInput(f"{instance} gives no damping in a table [classical]")
     found = {v.symbol: float(p) for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
     return {**found, "E": law.damping, "P_c": law.command}
 

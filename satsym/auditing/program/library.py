@@ -78,7 +78,7 @@ def _refuse_others(value: Any) -> None:
         for entry in value:
             _refuse_others(entry)
     elif not isinstance(value, int | float | complex | np.number | np.ndarray):
-        raise BadInput(f"an array of entries that are not numbers ({type(value).__name__}) is not known here")
+        raise BadInput(f"the entries of an array must be numbers, not {type(value).__name__}")
 
 
 MAX_STATES = 100
@@ -180,7 +180,7 @@ def _array(entries: object) -> Any:
 
 def _sqrt(*arguments: Any, **named: Any) -> Any:
     if len(arguments) != 1 or named:
-        raise BadInput("np.sqrt of more than one thing, or by name, is not known here")
+        raise BadInput("np.sqrt is supported with one positional argument only")
     return np.sqrt(numeric(arguments[0]))
 
 
@@ -210,7 +210,10 @@ def _solve_ivp(rates: Callable[..., Any], span: Any, start: Any, **named: Any) -
     from scipy import integrate
 
     if unknown := set(named) - _KEYWORDS:
-        raise BadInput(f"solve_ivp with {', '.join(sorted(unknown))}; known are {', '.join(sorted(_KEYWORDS))}")
+        raise BadInput(
+            f"solve_ivp is not supported with {', '.join(sorted(unknown))}; supported arguments are "
+            f"{', '.join(sorted(_KEYWORDS))}"
+        )
     count = numeric(start).size
     if count > MAX_STATES:
         raise OverBudget(f"solve_ivp with more than {MAX_STATES} states")

@@ -123,7 +123,7 @@ class _Walker:
             path = alias.name if isinstance(found, ast.Import) else str(found.module)
             module = self._modules.get(path)
             if module is None:
-                raise BadInput(f"the module {shown(path)} is not known here")
+                raise BadInput(f"the module {shown(path)} is not supported")
             entry = module if isinstance(found, ast.Import) else self._attribute(module, alias.name)
             self.world[alias.asname or alias.name] = entry
 
@@ -198,7 +198,7 @@ class _Walker:
 
     def _attribute(self, module: Module, name: str) -> Any:
         if name not in module.attributes:
-            raise BadInput(f"{module.name} has no {shown(name)} that is known here")
+            raise BadInput(f"{shown(name)} of {module.name} is not supported")
         return module.attributes[name]
 
     def _unary(self, found: ast.UnaryOp, scope: Mapping[str, Any]) -> Any:

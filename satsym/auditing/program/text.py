@@ -44,9 +44,9 @@ def read(lines: Sequence[object]) -> Program:
     for character in text:
         depth += (character in "([{") - (character in ")]}")
         if depth > MAX_DEPTH:
-            raise BadInput(f"a program with brackets more than {MAX_DEPTH} deep")
+            raise BadInput(f"the program nests brackets more than {MAX_DEPTH} levels deep")
     if len(text) > MAX_LENGTH:
-        raise BadInput(f"a program of more than {MAX_LENGTH} characters")
+        raise BadInput(f"the program has more than {MAX_LENGTH} characters")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -54,7 +54,7 @@ def read(lines: Sequence[object]) -> Program:
     except SyntaxError as error:
         raise BadInput(f"line {error.lineno} of the program, {shown(error.text or '')}: not Python") from None
     except (RecursionError, MemoryError, ValueError):
-        raise BadInput("the program is nested too deep") from None
+        raise BadInput("the program is nested too deeply") from None
 
 
 def loose_names(program: Program) -> list[str]:

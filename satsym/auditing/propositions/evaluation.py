@@ -119,7 +119,7 @@ class Evaluation:
         if value is None:
             return Answer(None, (f"{_text(node)} is undecided",))
         if not isinstance(value, bool | np.bool_):
-            raise BadInput(f"{_text(node)} is {in_words(value)}, neither true nor false; write a relation")
+            raise BadInput(f"{_text(node)} is {in_words(value)}, which is neither true nor false; write a relation")
         return Answer(bool(value), (f"{_text(node)} is {in_words(value)}",), {_text(node): in_words(value)})
 
     def _compared(self, node: ast.Compare, bound: Mapping[str, Any]) -> Answer:
@@ -134,7 +134,7 @@ class Evaluation:
                 found = compared(sign, left, right)
             except _BREAKS as error:
                 raise BadInput(
-                    f"{_text(node)}: {in_words(left)} and {in_words(right)} do not compare ({error})"
+                    f"{_text(node)}: {in_words(left)} cannot be compared with {in_words(right)} ({error})"
                 ) from None
             if not found.holds:
                 miss = found.fit if found.fit in (Fit.NEAR, Fit.UNIT) and isinstance(sign, ast.Eq) else None
@@ -227,7 +227,7 @@ class Evaluation:
     def _part(self, node: ast.Attribute, bound: Mapping[str, Any]) -> Any:
         whole = self._value(node.value, bound)
         if not isinstance(whole, Record):
-            raise BadInput(f"{_text(node.value)} is {in_words(whole)}, which has no parts")
+            raise BadInput(f"{_text(node.value)} is {in_words(whole)}, which has no attributes")
         return whole.part(node.attr)
 
     def _entry(self, node: ast.Subscript, bound: Mapping[str, Any]) -> Any:
@@ -241,7 +241,7 @@ class Evaluation:
                 else whole[tuple(index) if isinstance(index, list) else index]
             )
         except _BREAKS:
-            raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
+            raise BadInput(f"{_text(node)}: {in_words(whole)} has no such entry") from None
 
     def _called(self, node: ast.Call, bound: Mapping[str, Any]) -> Any:
         arguments = [self._value(argument, bound) for argument in node.args]
@@ -256,7 +256,7 @@ class Evaluation:
     def _worked_out(self, node: ast.BinOp, bound: Mapping[str, Any]) -> Any:
         left, right = alike(self._value(node.left, bound), self._value(node.right, bound))
         if isinstance(node.op, ast.Pow) and not (isinstance(right, int | float) and abs(right) <= _MAX_POWER):
-            raise BadInput(f"{_text(node)}: an exponent is a number, at most {_MAX_POWER}")
+            raise BadInput(f"{_text(node)}: an exponent must be a number and at most {_MAX_POWER}")
         try:
             if isinstance(node.op, ast.Pow) and isinstance(left, np.ndarray) and left.ndim > 1:
                 return np.linalg.matrix_power(left, right)
@@ -267,7 +267,7 @@ class Evaluation:
 
 def _plain(node: ast.expr, entry: Any) -> Answer:
     if not isinstance(entry, bool | np.bool_):
-        raise BadInput(f"{_text(node)} holds {in_words(entry)}, neither true nor false")
+        raise BadInput(f"{_text(node)} contains {in_words(entry)}, which is neither true nor false")
     return Answer(bool(entry), (f"{_text(node)}: {in_words(entry)}",))
 
 
@@ -277,7 +277,7 @@ def _iterated(part: ast.comprehension, family: Any) -> Iterable[Any]:
             return list(family)
     except TypeError:
         pass
-    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, not a family or list")
+    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, but must be a family or a list")
 
 
 def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
@@ -288,7 +288,7 @@ def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
     try:
         return dict(zip(names, member, strict=True))
     except (TypeError, ValueError):
-        raise BadInput(f"a member is {in_words(member)}, not {len(names)} values") from None
+        raise BadInput(f"each member of the family is {in_words(member)}, not {len(names)} values") from None
 
 
 def _joined(answers: list[Answer], conjunction: bool) -> Answer:

@@ -97,7 +97,7 @@ def explanation(text: str, words: Words, *, own: bool = False) -> tuple[str | Pr
     """A sentence with terms in braces: texts, and the terms between them, read."""
     parts = _BRACES.split(text)
     if any(brace in part for part in parts[::2] for brace in "{}"):
-        raise BadInput("a brace stands alone; write a term between { and }")
+        raise BadInput("a brace has no matching brace; write a term between { and }")
     return tuple(proposition(part, words, own=own) if k % 2 else part for k, part in enumerate(parts) if part)
 
 
@@ -146,7 +146,7 @@ def row_key(node: ast.Subscript) -> str:
     """The key that ``row['item']`` or ``row['item', 'part']`` names."""
     parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     if not all(isinstance(part, ast.Constant) and isinstance(part.value, str) for part in parts):
-        raise BadInput("a row is named by its item and part in quotes, such as row['2.19', 'k1']")
+        raise BadInput("the index of a row must be its item and part in quotes, as in row['2.19', 'k1']")
     return " ".join(str(part.value) for part in parts if isinstance(part, ast.Constant))
 
 
@@ -177,7 +177,7 @@ class _Check(ast.NodeVisitor):
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         if node.attr.startswith("_"):
-            raise BadInput(f"{shown(node.attr)} is not a part of anything{_column(node)}")
+            raise BadInput(f"{shown(node.attr)} is not a permitted attribute{_column(node)}")
         self.visit(node.value)
 
     def visit_Subscript(self, node: ast.Subscript) -> None:
@@ -186,18 +186,18 @@ class _Check(ast.NodeVisitor):
             return
         if isinstance(node.value, ast.Name) and node.value.id == MEANINGS:
             if not (isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str)):
-                raise BadInput(f"name one letter in quotes, such as meanings['x1']{_column(node)}")
+                raise BadInput(f"the index must be one quoted symbol, as in meanings['x1']{_column(node)}")
             self.symbols[MEANINGS] = None
             return
         self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> None:
         if not isinstance(node.func, ast.Name):
-            raise BadInput(f"calling what is not a plain name is not allowed here{_column(node)}")
+            raise BadInput(f"only a function given by its name can be called here{_column(node)}")
         name = node.func.id
         if name in QUANTIFIERS:
             if len(node.args) != 1 or node.keywords:
-                raise BadInput(f"{name} takes one comprehension or list{_column(node)}")
+                raise BadInput(f"{name} takes one argument, a comprehension or a list{_column(node)}")
         elif name in CONNECTIVES:
             if len(node.args) != 2 or node.keywords:
                 raise BadInput(f"{name} takes two propositions{_column(node)}")
@@ -225,7 +225,7 @@ class _Check(ast.NodeVisitor):
             targets = part.target.elts if isinstance(part.target, ast.Tuple) else [part.target]
             for target in targets:
                 if not isinstance(target, ast.Name) or target.id in {*self._words.values, *self._words.functions}:
-                    raise BadInput(f"write a new name for each member{_column(part.target)}")
+                    raise BadInput(f"use a new name for the members{_column(part.target)}")
                 self._bound.append(target.id)
             for condition in part.ifs:
                 self.visit(condition)

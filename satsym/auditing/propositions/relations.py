@@ -92,10 +92,10 @@ def _in_printed_unit(value: Any, unit: str) -> float:
     if isinstance(value, Quantity):
         one = quantities.one(unit)
         if dict(one.dimension) != dict(value.dimension):
-            raise BadInput(f"{in_words(value)} is not measured in {unit}")
+            raise BadInput(f"{in_words(value)} cannot be measured in {unit}")
         return number / one.value
     if unit != "1":
-        raise BadInput(f"{in_words(value)} is a plain number, and is not measured in {unit}")
+        raise BadInput(f"{in_words(value)} is dimensionless, so it cannot be measured in {unit}")
     return number
 
 
@@ -107,7 +107,7 @@ def equal(left: Any, right: Any) -> Comparison:
         return Comparison(bool(left == right))
     if isinstance(right, str):
         if _is_sequence(left):
-            raise BadInput(f"a list and the text {in_words(right)} do not compare")
+            raise BadInput(f"a list cannot be compared with the string {in_words(right)}")
         how = fit(left, quantities.printed_number(right))
         return Comparison(how is Fit.INSIDE, how)
     if isinstance(left, Quantity) and isinstance(right, Quantity):
@@ -155,7 +155,7 @@ def order(left: Any, right: Any) -> int:
     if isinstance(left, Quantity) or isinstance(right, Quantity):
         left, right = (v if isinstance(v, Quantity) else Quantity(float(v), {}) for v in (left, right))
         if left.value and right.value and dict(left.dimension) != dict(right.dimension):
-            raise BadInput(f"{in_words(left)} and {in_words(right)} are of different dimensions")
+            raise BadInput(f"{in_words(left)} and {in_words(right)} have different dimensions")
         # the scale of a quantity is that of its unit, so that only relative differences count
         size = max(abs(left.value), abs(right.value))
         gap = left.value - right.value
@@ -202,7 +202,7 @@ def _real(value: Any) -> float:
     if math.isnan(abs(number)):
         raise Undecided(f"{in_words(value)} is not a number")
     if abs(number.imag) > max(RELATIVE * abs(number), ABSOLUTE):
-        raise BadInput(f"{in_words(value)} is complex, and neither less nor greater than anything")
+        raise BadInput(f"{in_words(value)} is complex, so it cannot be ordered")
     return number.real
 
 

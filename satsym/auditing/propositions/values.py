@@ -82,7 +82,7 @@ def is_number(value: Any) -> bool:
 def measured(of: Any) -> Any:
     """An exact number or matrix as an array of plain numbers."""
     if of.free_symbols:
-        raise BadInput(f"{of} has letters where numbers are needed")
+        raise BadInput(f"{of} contains symbols, but must consist of numbers")
     found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
     found = found if np.imag(found).any() else np.real(found)
     found.flags.writeable = False

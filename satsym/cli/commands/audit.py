@@ -63,7 +63,7 @@ def audit(
     read = [auditing.read(path) for path in paths]
     auditing.refuse_unknown_items(read, items)
     if (text and not (coverage and len(read) == 1)) or (keep and not text):
-        raise BadInput("--text goes with --coverage and one LEDGER, and --keep with --text; give them together")
+        raise BadInput("--text requires --coverage and one LEDGER, and --keep requires --text; give them together")
     if coverage:
         from satsym.auditing.ledger import coverage as contents
 
@@ -89,7 +89,7 @@ def audit(
     drafts = sum(row.table.draft for ledger in read for row in ledger.rows)
     remark = [
         "",
-        counted(drafts, "row is a draft that nobody has confirmed", "rows are drafts that nobody has confirmed"),
+        counted(drafts, "this row is a draft and has not been confirmed", "rows are drafts that nobody has confirmed"),
     ]
 
     def text_of_it() -> str:

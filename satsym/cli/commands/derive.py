@@ -100,7 +100,7 @@ def _command(files: Sequence[str], out: Path | None) -> str:
 
 def _compare(differences: Sequence[str], folder: Path, command: str) -> ExitCode:
     if not differences:
-        tell(say("<folder> is what the derivations say", folder=folder))
+        tell(say("<folder> agrees with the derivations", folder=folder))
         return ExitCode.DONE
     emit("".join(differences))
     complain(f"{folder} is not what the derivations say; run: {command}")
@@ -122,9 +122,9 @@ def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
             if ours:
                 path.unlink()
             said = (
-                "removed: no derivation leads to it"
+                "removed, because no derivation produces this file"
                 if ours
-                else "was not written by satsym; remove it: no derivation leads to it"
+                else "was not written by satsym; remove this file, because no derivation produces it"
             )
             lines.append(f"{path}  {say(said)}")
     return lines

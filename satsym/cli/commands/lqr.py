@@ -51,7 +51,9 @@ def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, 
     given, numbers = find(subject), dict[str, float]()
     if values:
         if isinstance(given, Kernels):
-            raise BadInput(f"--set {printable(values[0])}: is for an instance, and {printable(subject)} is a model")
+            raise BadInput(
+                f"--set {printable(values[0])}: applies to instances only, but {printable(subject)} is a model"
+            )
         numbers = settings(given, values)
         given = changed(given, numbers)
     folder = folder_for(Path(subject).stem, "lqr", out, look)

@@ -47,7 +47,7 @@ def new(name: str, original: str | None, out: Path | None) -> ExitCode:
     texts, following = _model(name, out or Path(name)) if original is None else _copy(name, original, out or Path())
     for path in texts:
         if path.exists():
-            raise BadInput(f"{path}: already exists and is not overwritten; choose another name, or --out DIR")
+            raise BadInput(f"{path}: already exists and is not overwritten; choose another name, or give --out DIR")
     folder = next(iter(texts)).parent
     check_writable(folder)
     for path, (text, _) in texts.items():
@@ -69,7 +69,9 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
     if keyword.iskeyword(name):
         raise BadInput(f"NAME: {name} is a Python keyword; choose another name, such as my_{name}")
     if not _NAME.match(name):
-        raise BadInput(f"NAME: got {shown(name)}; write small letters, digits and single underscores, such as my_model")
+        raise BadInput(
+            f"NAME: got {shown(name)}; write lower-case letters, digits and single underscores, such as my_model"
+        )
     if name in {*sys.stdlib_module_names, "numpy", "pytest", "satsym", "scipy", "sympy"}:
         raise BadInput(f"NAME: {name}.py would hide a module that Python imports; choose another name")
     if name in kernels.shipped():
@@ -95,7 +97,9 @@ def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str,
         raise BadInput(f"NAME: got {shown(name)}; write letters, digits, - and _, such as my-case")
     if original not in files.shipped():
         files.locate(original)
-        raise BadInput(f"--instance: {shown(original)} is a path; name a shipped one (`satsym instances` lists them)")
+        raise BadInput(
+            f"--instance: {shown(original)} is a path; name a shipped instance (`satsym instances` lists them)"
+        )
     source = files.locate(original)
     path = folder / f"{name}.toml"
     command = "solve" if instance.load(original).model.spec.has_cost else "analyse"

@@ -100,7 +100,7 @@ def _redrawn(name: str, command: str | None, home: Path, out: Path | None, look:
 
 def _require(command: str | None, found: Found) -> None:
     if command not in (None, found.command):
-        raise BadInput(f"{printable(str(found.folder))}: holds the result of {found.command}, not of {command}")
+        raise BadInput(f"{printable(str(found.folder))}: contains the result of {found.command}, not of {command}")
 
 
 def _save(folder: Path, found: Found, begins: Mapping[str, Any], pictures: Mapping[str, Content]) -> list[Path]:

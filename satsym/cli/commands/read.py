@@ -63,4 +63,4 @@ def _text_before(ledger: Path) -> str:
     try:
         return ledger.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
-        raise BadInput(f"{ledger}: exists, and is not text; give another --out") from None
+        raise BadInput(f"{ledger}: exists already and is not a text file; give another --out") from None

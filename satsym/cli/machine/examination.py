@@ -16,11 +16,11 @@ from satsym.cli.names import checkout
 from satsym.cli.requirements import Requirement, requirements
 
 EXTRAS = {
-    "fast": "compiled kernels, for many steps or many cases",
+    "fast": "compiled kernels, which are faster for many steps or many cases",
     "cluster": "studies on a Dask cluster",
     "table": "tables of studies as Parquet",
     "control": "comparison with python-control",
-    "bench": "the peers that `make bench` times, and Dask",
+    "bench": "the programs that `make bench` compares satsym with, and Dask",
     "dev": "tests and lint",
 }
 PROGRAMS = (

@@ -50,7 +50,9 @@ def module_text(kernels: Kernels) -> str:
     if kernels.text is not None:
         return kernels.text
     if kernels.origin is None:
-        raise BadInput(f"{kernels.spec.name}: made without a generated module, so there is nothing to compile")
+        raise BadInput(
+            f"{kernels.spec.name}: the kernels were made without a generated module, so there is nothing to compile"
+        )
     return loading.shipped_text(kernels.origin[0])
 
 

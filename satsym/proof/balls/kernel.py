@@ -150,7 +150,7 @@ class _Exact(ast.NodeTransformer):
         number = Fraction(repr(node.value))
         digits = repr(node.value).partition("e")[0].replace(".", "").strip("0")
         if number != Fraction(node.value) and len(digits) >= ROUNDED:
-            raise BeyondProof(f"a constant in the equations of motion that may be rounded, {node.value!r}")
+            raise BeyondProof(f"a constant in the equations of motion that might be rounded, {node.value!r}")
         name = f"_number_{len(self.numbers)}"
         self.numbers[name] = number
         return ast.Name(name, ast.Load())

@@ -41,7 +41,7 @@ def exported(result: Solution | Simulation, kind: str) -> str:
         sky: the model has no central body, no real units, or the instance no table [orbit].
     """
     if kind not in FORMATS:
-        raise BadInput(f"no export as {shown(kind)}; {suggestion(kind, FORMATS)}")
+        raise BadInput(f"there is no export format {shown(kind)}; {suggestion(kind, FORMATS)}")
     return _writer(kind)(Ephemeris.of(result))
 
 

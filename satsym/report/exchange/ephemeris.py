@@ -113,7 +113,10 @@ class Ephemeris:
         length = units.in_base_units(_length_unit(instance)) / 1000.0
         second = units.in_base_units(units.time_unit(v.unit for v in (*spec.states, *spec.controls)))
         if np.abs(times).max() * second > LATEST:
-            raise BadInput(f"{instance.called}: [time] tf: too far from the epoch for a date; export a shorter motion")
+            raise BadInput(
+                f"{instance.called}: [time] tf: the time is too far from the epoch to be written as a date; export "
+                "a shorter motion"
+            )
         turn = _turn(orbit)
         state = np.asarray(model.inertial_state_batch(times, x, p), dtype=float)
         thrust = np.zeros((3, len(times)))
@@ -186,8 +189,8 @@ def placed(instance: Instance) -> OrbitOptions:
     spec, orbit = instance.model.spec, instance.orbit
     if not spec.keplerian:
         raise BadInput(
-            f"{instance.called}: the model {spec.name} has no central body whose gravity its motion follows; "
-            "export one that has, such as return-to-geo"
+            f"{instance.called}: the motion of the model {spec.name} is not an orbit about a central body; "
+            "export an instance of such a model, such as return-to-geo"
         )
     if orbit is None:
         raise BadInput(
@@ -199,9 +202,9 @@ def placed(instance: Instance) -> OrbitOptions:
     factor = units.in_base_units(length) ** 3 / units.in_base_units(time) ** 2 / 1e9
     if abs(mu * factor - orbit.body.mu) > MU_TOLERANCE * orbit.body.mu:
         raise BadInput(
-            f"{instance.called}: [orbit] centre: the model attracts with mu = {mu * factor:.7g} km**3/s**2, but "
-            f"that of the body {orbit.centre} is {orbit.body.mu:.7g} km**3/s**2; correct the centre, or write "
-            "[parameters] in real units"
+            f"{instance.called}: [orbit] centre: the model has mu = {mu * factor:.7g} km**3/s**2, but the body "
+            f"{orbit.centre} has mu = {orbit.body.mu:.7g} km**3/s**2; correct the centre, or write "
+            "[parameters] in physical units"
         )
     return orbit
 
@@ -218,7 +221,9 @@ def _length_unit(instance: Instance) -> str:
     stated = spec.position[0].unit
     found = stated if stated != "1" else length_unit(v.unit for v in spec.states)
     if found == "1" or dict(units.dimension(found)) != {"[length]": 1}:
-        raise BadInput(f"{instance.called}: the model {spec.name} states no unit of length; state that of its position")
+        raise BadInput(
+            f"{instance.called}: the model {spec.name} states no unit of length; state the unit of its position"
+        )
     return found
 
 
@@ -264,8 +269,8 @@ def _filled(arc: Arc, mu: Array, instance: Instance) -> Arc:
     if angle.max() > COARSEST:
         enough = int(np.ceil(1.1 * len(arc.times) * angle.max() / COARSEST))
         raise BadInput(
-            f"{instance.called}: nodes are up to {np.degrees(angle.max()):.0f} degrees of the orbit apart, too far "
-            f"for an ephemeris; set [solver] steps to {enough} or more"
+            f"{instance.called}: neighbouring nodes are up to {np.degrees(angle.max()):.0f} degrees of the "
+            f"orbit apart, which is too far for an ephemeris; set [solver] steps to {enough} or more"
         )
     times, position, velocity, thrust = (
         [arc.times[:1]],

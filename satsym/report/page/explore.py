@@ -42,7 +42,7 @@ WORDS = {
     "body_called": "body",
     "torque": "torque",
     "fixed": "fixed axes",
-    "magnified": "angles <times> times as large",
+    "magnified": "angles enlarged <times> times",
     "play": "Play",
     "pause": "Pause",
 }
@@ -145,13 +145,14 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
     said = json.loads(listing.result)
     if listing.command != STUDY or said.get("each") != "solve":
         raise BadInput(
-            f"--study: {place}: holds no study of solutions; `satsym study X --trajectories --out DIR` makes one"
+            f"--study: {place}: contains no study of solutions; write one with `satsym study X --trajectories "
+            "--out DIR`"
         )
     if (said["model"], said["instance"]) != (instance.model.spec.name, instance.name):
         raise BadInput(f"--study: {place}: belongs to {printable(said['instance'])}, not to {instance.name}")
     kept = _trajectories(study, sorted(listing.listed))
     if not kept:
-        raise BadInput(f"--study: {place}: kept no trajectories; make it again with --trajectories")
+        raise BadInput(f"--study: {place}: contains no trajectories; run the study again with --trajectories")
     table = study_table.columns(study_table.path_of(study), lambda _: [*said["varied"], "objective"])
     settings = {name: float(value) for name, value in said.get("settings", {}).items()}
     found = []

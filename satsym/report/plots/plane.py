@@ -100,7 +100,7 @@ def of_point(found: Survey) -> Figure:
     case, point = found.case, found.point
     page = style.titled(case.title or case.name, SIDE, SIDE + 0.5)
     axes = page.subplots()
-    says = 'the rule says "<verdict>" of every orbit: no point of one is an equilibrium'
+    says = 'the rule calls every orbit "<verdict>", although no point of an orbit is an equilibrium'
     axes.set_title(say(says, verdict=message(point.rule_verdict)))
     factor = _plane(axes, case.model.spec, point.closed_form.tolist(), say('the rule: "stable"'))
     axes.plot(point.eigenvalues.real * factor, point.eigenvalues.imag * factor, **OPEN)
@@ -238,7 +238,7 @@ def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
     axes.plot([0.0], [0.0], **ONE)
     axes.locator_params(axis="x", nbins=2)  # each tick carries its power of ten
     furthest, likely = (decimal(figure(value, 2)) for value in (float(np.abs(away).max()), expected))
-    axes.set_title(say("near 1: up to <furthest> from it, <likely> expected", furthest=furthest, likely=likely))
+    axes.set_title(say("near 1: up to <furthest> away, <likely> expected", furthest=furthest, likely=likely))
     axes.set_xlabel(r"$\mathrm{Re}\,\mu - 1$")
     axes.set_ylabel(r"$\mathrm{Im}\,\mu$")
 

@@ -231,7 +231,7 @@ def reach(design: Design, case: Instance) -> Figure | None:
     for axes, state, initial in zip(np.atleast_1d(figure.subplots(len(states), 1)), states, start, strict=True):
         _interval(axes, state, found.extents[state.symbol], float(initial), _delta(design))
     axes.set_xlabel(
-        say("region of attraction, for a deviation of one state alone")
+        say("region of attraction, for deviations of a single state")
         + "\n"
         + say("the dot is the initial state of the instance")
     )

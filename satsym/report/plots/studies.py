@@ -202,10 +202,13 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
             low, high = (decimal(display.number(float(one), 4)) for one in (beyond[0], beyond[-1]))
             counts = {"count": len(finite) - len(shown), "rows": len(finite)}
             said = (
-                say("not shown: <count> of <rows> rows far out, at <value>", **counts, value=low)
+                say("not shown: <count> of <rows> rows, far from the others, at <value>", **counts, value=low)
                 if low == high
                 else say(
-                    "not shown: <count> of <rows> rows far out, from <low> to <high>", **counts, low=low, high=high
+                    "not shown: <count> of <rows> rows, far from the others, from <low> to <high>",
+                    **counts,
+                    low=low,
+                    high=high,
                 )
             )
             title += f"\n{said}"

@@ -79,7 +79,7 @@ def examine(instance: Instance, folder: Path, compared: bool = True) -> Examinat
     """
     solution, found = trajectory.read(instance, folder)
     if not isinstance(solution, Solution):
-        raise unusable(folder / LIST, "is of a simulation, which has no certificate")
+        raise unusable(folder / LIST, "is the result of a simulation, which has no certificate")
     stated = msgspec.json.decode(found.result)
     anew = msgspec.json.decode(msgspec.json.encode(plain(solution_object(solution))))
     if solution.method not in methods.METHODS:

@@ -166,8 +166,8 @@ def omitted_because(about: Linearisation, derived: bool = False) -> str:
     if letters * states <= MOST_LETTERS:
         return ""
     return (
-        f"the symbolic analysis is omitted: with {states} states and {letters} parameters its polynomials would "
-        "fill pages"
+        f"the symbolic analysis is omitted: with {states} states and {letters} parameters, the polynomials "
+        "would fill pages"
     )
 
 

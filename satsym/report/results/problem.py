@@ -54,7 +54,7 @@ def read(folder: Path) -> Instance:
     """
     listed = sets.read(folder).listed
     if FILE not in listed:
-        raise unusable(folder / FILE, "is not among the files of this result, so that its problem is unknown")
+        raise unusable(folder / FILE, "is not among the files of this result, so the problem is unknown")
     found = sets.read(folder, [FILE])
     try:
         name = msgspec.json.decode(found.result, type=_Named).instance or ""

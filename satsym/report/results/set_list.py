@@ -74,11 +74,11 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise unusable(path, f"cannot be read ({printable(str(error))})") from None
     if found.files is None:
-        raise unusable(path, "does not list its files, as results of this version do", found.command)
+        raise unusable(path, "does not list its files, so it was written by another version of satsym", found.command)
     wrong = next((name for name, each in found.files.items() if not (may_hold(name) and each.bytes >= 0)), None)
     if wrong is not None or len(found.files) > MOST_FILES:
         which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
-        raise unusable(path, f"lists files that do not belong to a result: {which}", found.command)
+        raise unusable(path, f"lists files that are not part of a result: {which}", found.command)
     return raw, found.command, found.files
 
 
@@ -113,7 +113,7 @@ def content(path: Path, listed: Listed) -> bytes:
     except OSError as error:
         raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None
     if hashlib.sha256(found).hexdigest() != listed.sha256:
-        raise unusable(path, "has changed while it was read")
+        raise unusable(path, "changed while it was being read")
     return found
 
 

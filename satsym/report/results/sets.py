@@ -151,7 +151,7 @@ def keep_apart(folder: Path, command: str) -> None:
             raise
         return  # which is not whole, and is to be written anew
     if other not in (None, command) and (other == STUDY or command in KEPT_APART):
-        raise BadInput(f"{printable(str(folder))}: holds the result of {other}; give another folder")
+        raise BadInput(f"{printable(str(folder))}: contains the result of {other}; give another folder")
 
 
 def _counting(folder: Path, wanted: Collection[str]) -> Found:
@@ -167,7 +167,7 @@ def _verified(folder: Path, path: Path, wanted: Collection[str]) -> Found:
     for name, each in listed.items():
         place = next((p for p in (path.parent / name, folder / name) if is_listed(p, each)), None)
         if place is None:
-            raise unusable(folder / name, f"is not the file that {LIST} lists, but is missing or has changed", command)
+            raise unusable(folder / name, f"is listed in {LIST}, but is missing or has changed", command)
         if name in wanted:
             contents[name] = content(place, each)
     return Found(folder, command, raw, listed, contents)
@@ -179,10 +179,10 @@ def _write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]
         with locked(folder):
             _recover(folder)
             if found is not None and decoded(folder / LIST)[0] != found.result:
-                raise BadInput(f"{printable(str(folder))}: has been written anew meanwhile; try again")
+                raise BadInput(f"{printable(str(folder))}: was rewritten in the meantime; try again")
             for name in (*files, LIST):
                 if (folder / name).is_dir():
-                    raise BadInput(f"{printable(str(folder / name))}: is a folder; remove it, or give another place")
+                    raise BadInput(f"{printable(str(folder / name))}: is a folder; remove it, or give another folder")
             _stage(folder, result, files, found)
             _install(folder)
     except OSError as error:
@@ -285,7 +285,10 @@ def locked(folder: Path, *, shared: bool = False) -> Iterator[None]:
     try:
         while not _taken(lambda: fcntl.flock(handle, kind)):
             if time.monotonic() > until:
-                raise BadInput(f"{printable(str(folder))}: in use by another process; wait for it, or give another")
+                raise BadInput(
+                    f"{printable(str(folder))}: is in use by another process; wait until it is free, or give "
+                    "another folder"
+                )
             time.sleep(PAUSE)
         yield
     finally:

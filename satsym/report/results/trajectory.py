@@ -147,17 +147,17 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
         theirs = printable(f"{result.instance} (model {result.model})")
         raise unusable(listing, f"belongs to {theirs}, not to {instance.name} (model {spec.name})")
     if result.command not in COMMANDS or ARRAYS not in found.contents:
-        raise unusable(listing, f"was made by `satsym {printable(result.command)}`, which writes no trajectory")
+        raise unusable(listing, f"was written by `satsym {printable(result.command)}`, which writes no trajectory")
     with_options = [f" --set {printable(name)}={value!r}" for name, value in result.settings.items()]
     again = partial(unusable, command=result.command, more="".join(with_options))
     if not _LAW.match(result.method if result.command == "solve" else result.feedback):
-        raise again(listing, "names no method and no feedback")
+        raise again(listing, "names neither a method nor a feedback")
     try:
         stored = files.unpacked(found.contents[ARRAYS])
     except ValueError as error:
         raise again(place, f"cannot be read ({printable(str(error), 120)})") from None
     if not _fits(stored, spec, result.command == "solve"):
-        raise again(place, f"does not hold what a trajectory of {spec.name} has")
+        raise again(place, f"does not contain a trajectory of {spec.name}")
     try:
         instance = changed(instance, result.settings)
     except BadInput as error:
@@ -167,7 +167,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
         {k: v for k, v in result.ends_met.items() if v is not None and k in instance.end_limits}
     )
     if not _starts_at(stored["x"], _begun(instance, result.feedback)):
-        raise again(place, f"starts from another state than {instance.name}, which has changed since")
+        raise again(place, f"does not start from the initial state of {instance.name}, which has changed since then")
     make = _solution if result.command == "solve" else _flight
     return make(instance, result, stored), found
 

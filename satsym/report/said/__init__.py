@@ -63,7 +63,9 @@ def known(name: str, place: str) -> str:
     from satsym.report import texts
 
     if name not in texts.languages():
-        raise BadInput(f"{place}: no texts in the language {shown(name)}; {suggestion(name, texts.languages())}")
+        raise BadInput(
+            f"{place}: there are no texts in the language {shown(name)}; {suggestion(name, texts.languages())}"
+        )
     return name
 
 

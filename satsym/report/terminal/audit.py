@@ -237,7 +237,7 @@ def _understood(answer: Answer) -> str:
     letters = ", ".join(f"{printed} = {ours}" for printed, ours in answer.letters.items())
     parts = [letters, say("the uncontrolled motion") if answer.free else ""]
     said = ", ".join(filter(None, parts))
-    return say("understood: <letters> (to correct it: --let LETTER=NAME)", letters=said) if said else ""
+    return say("symbols taken as: <letters> (to correct one: --let LETTER=NAME)", letters=said) if said else ""
 
 
 def _line(answer: Answer) -> str:
@@ -251,7 +251,12 @@ def _line(answer: Answer) -> str:
     if not answer.correct:
         return say("wrong: <diagnosis> (<address>)", diagnosis=why, address=answer.address)
     right = answer.correct
-    return say("wrong: <diagnosis>; right is <right> (<address>)", diagnosis=why, right=right, address=answer.address)
+    return say(
+        "wrong: <diagnosis>; the correct form is <right> (<address>)",
+        diagnosis=why,
+        right=right,
+        address=answer.address,
+    )
 
 
 def drafted_text(ledger: Path, found: Draft) -> str:
@@ -259,12 +264,12 @@ def drafted_text(ledger: Path, found: Draft) -> str:
     counted = Counter(row["verdict"] for row in found.rows)
     lines = [
         say(
-            "<ledger>: <rows> rows drafted, <kept> confirmed ones kept",
+            "<ledger>: <rows> rows drafted, <kept> confirmed rows retained",
             ledger=ledger,
             rows=len(found.rows),
             kept=found.kept,
         ),
-        say("judged at once: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]),
+        say("immediate verdicts: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]),
     ]
     lines += [say("<place>: not read: <said_why>", place=place, said_why=message(why)) for place, why in found.unread]
     lines += [

@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 LEFT_OUT = ("gain_rate", "gain_state")
 """Metrics of one law alone."""
 MEANINGS = {
-    "transition_time": "time the manoeuvre takes: that of the optimum, or the settling time of a law",
+    "transition_time": "duration of the manoeuvre: the optimal time, or the settling time of a control law",
     "first_reached": "time at which the command is first reached",
-    "settling_time": "time after which the response stays within 2 % of the command",
+    "settling_time": "time after which the response remains within 2 % of the command",
     "overshoot": "largest excess over the command, as a fraction of the step",
-    "impulse": "integral of the control over the instant of the step",
-    "_total": "integral of the magnitude, impulse included",
-    "_peak": "largest magnitude, impulse left out",
+    "impulse": "impulse of the control at the instant of the step",
+    "_total": "integral of the magnitude, including the impulse",
+    "_peak": "largest magnitude, without the impulse",
     "_effort": "integral of the square; infinite with an impulse",
     "_energy": "integral of the power; infinite with an impulse",
     "_final": "value at the final time",
-    "_driven": "largest departure from the undriven motion",
-    "_share": "rate that the driving control causes, relative to the largest such rate",
+    "_driven": "largest deviation from the undriven motion",
+    "_share": "rate caused by the driving control, relative to the largest such rate",
 }
 """What metrics measure, by their names or by what these end with."""
 

@@ -217,7 +217,7 @@ def _number(found: Attitudes) -> str:
     if whole.circles is None:
         text = "a continuum of dimension <n> (counting complex ones), which is not resolved"
         return say(text, n=whole.dimension)
-    text = "a continuum: <n> circles, by turns about the body's <axis>, one attitude of each below"
+    text = "a continuum: <n> circles of rotations about the body axis <axis>, with one attitude of each listed below"
     return say(text, n=len(whole.circles), axis=axis(whole))
 
 

@@ -81,7 +81,9 @@ def model_text(spec: ProblemSpec) -> str:
         _variables(say("parameter"), spec.parameters),
     ]
     if spec.has_reference:
-        blocks.append(wrapped(say('It has a reference: [final] may say "reference" for any state.')))
+        blocks.append(
+            wrapped(say('The model has a reference: in [final], any state can be given the value "reference".'))
+        )
     return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
 
 

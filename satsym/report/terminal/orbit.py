@@ -84,12 +84,12 @@ def _elements(found: Survey, length: str, time: str) -> list[str]:
 
 _BORDERS = {
     Conic.CIRCLE: "called a circle: the eccentricity is at most <tolerance>",
-    Conic.ELLIPSE: "called an ellipse: the eccentricity is above <tolerance>, up to which it would be a circle, and "
-    "the square of the speed falls short of that of escape by more than a relative tolerance of <tolerance>",
-    Conic.PARABOLA: "called a parabola: the square of the speed is that of escape within a relative tolerance of "
+    Conic.ELLIPSE: "called an ellipse: the eccentricity exceeds <tolerance>, the limit for a circle, and the squared "
+    "speed is below the squared escape speed by more than a relative <tolerance>",
+    Conic.PARABOLA: "called a parabola: the squared speed equals the squared escape speed within a relative tolerance "
+    "of <tolerance>",
+    Conic.HYPERBOLA: "called a hyperbola: the squared speed exceeds the squared escape speed by more than a relative "
     "<tolerance>",
-    Conic.HYPERBOLA: "called a hyperbola: the square of the speed exceeds that of escape by more than a relative "
-    "tolerance of <tolerance>",
     Conic.RECTILINEAR: "called rectilinear: the velocity is along the radius within <tolerance> rad",
 }
 
@@ -130,7 +130,7 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
     rows = [
         (say("exact multipliers"), say("6 times 1"), say("Jordan blocks <sizes>", sizes="2, 1, 1, 1, 1")),
         (
-            say("scatter of the computed ones"),
+            say("scatter of the computed multipliers"),
             figure(found.scatter or 0.0, 2),
             say("up to <scatter> expected", scatter=figure(found.expected_scatter or 0.0, 2)),
         ),
@@ -145,7 +145,7 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         (
             say("lag after a revolution"),
             figure(found.lag or 0.0) + unit,
-            say("if the speed is <share> higher; the same each time", share=f"{FASTER:g}"),
+            say("if the speed is <share> higher; equal in every revolution", share=f"{FASTER:g}"),
         ),
     ]
     return table([("", "", ""), *rows], right=(1,))[1:]
@@ -161,10 +161,11 @@ def _turning(found: Floquet, time: str) -> list[str]:
         for one in found.turning.eigenvalues
     ]
     says = say(
-        "These are Hill's equations (model hill) about the circle with this semi-major axis. There a circle is an "
-        "equilibrium, where eigenvalues mean something: oscillations once a revolution, in and out of the plane, and "
-        "a drift along the track from the block of size 2. Over a revolution each of them becomes exp(s T) = 1: the "
-        "multipliers above. Terms of the order of the eccentricity are neglected."
+        "These are Hill's equations (model hill) about the circular orbit with this semi-major axis. In these "
+        "axes a circular orbit is an equilibrium, so the eigenvalues have a meaning: oscillations once per "
+        "revolution, in the plane and out of it, and a drift along the track from the block of size 2. Over "
+        "one revolution, each eigenvalue s gives exp(s T) = 1: these are the multipliers above. Terms of the "
+        "order of the eccentricity are neglected."
     )
     return [
         *wrapped(say("in axes that rotate with the orbit:")),

@@ -68,7 +68,8 @@ def _verdict(counted_verdict: tuple[str, int]) -> tuple[str, str, str]:
 def _branches(found: Mapping[str, int]) -> str:
     """What comparing neighbouring rows came to."""
     return say(
-        "minima of <branches> (column branch), between <pairs> of rows; <rows> changed to one that costs less",
+        "minima of <branches> (column branch) and of <pairs> of neighbouring rows were compared; <rows> "
+        "changed to a branch with a lower cost",
         branches=counted(found["count"], "branch", "branches"),
         pairs=counted(found["borders"], "pair"),
         rows=counted(found["changed"], "row"),

@@ -43,7 +43,7 @@ class Texts:
         """
         text = self.find(table, key)
         if text is None:
-            raise MissingText(f'{self.language}.toml: no text for "{key}" in [{table}]')
+            raise MissingText(f'{self.language}.toml: there is no text for "{key}" in [{table}]')
         return _HOLE.sub(lambda hole: fill.get(hole[1], hole[0]), text)
 
     def counted(self, table: str, key: str, number: int, **fill: str) -> str:
@@ -90,6 +90,6 @@ def load(language: str) -> Texts:
     import tomllib
 
     if language not in languages():
-        raise BadInput(f"no texts in the language {shown(language)}; there are {', '.join(languages())}")
+        raise BadInput(f"there are no texts in the language {shown(language)}; there are {', '.join(languages())}")
     tables: dict[str, Any] = tomllib.loads((_FOLDER / f"{language}.toml").read_text(encoding="utf-8"))
     return Texts(language, tables)

@@ -251,7 +251,7 @@ def kernel(ties: Array) -> Array:
 FLAT = 1e-9
 """Relative curvature in the free end below which nobody can tell whether there is any."""
 
-NOT_STRICT = "not strict: other controls cost the same"
+NOT_STRICT = "not strict: other controls have the same cost"
 
 
 @dataclass(frozen=True)

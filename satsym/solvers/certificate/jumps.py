@@ -25,9 +25,13 @@ def checks(solution: Solution) -> list[Check]:
     unknown, unit = sum(not one.located for one in every), unit_sizes(solution)
     crossing = [one.saltation(solution, unit) for one in every if one.located]
     flat = sum(not -one.speed > CROSSED * float(np.abs(one.leap).max()) for one in crossing)
-    found = [Check("second variation unknown: jumps between minimisers", float(unknown), 0.0)] if unknown else []
-    found += [Check("minimisers of H that a jump joins stay as good", float(flat), 0.0)] if crossing else []
-    return found + ([Check("another minimiser of H stays as good", float(tied), 0.0)] if tied else [])
+    found = (
+        [Check("second variation unknown: the control jumps between minimisers", float(unknown), 0.0)]
+        if unknown
+        else []
+    )
+    found += [Check("the two minimisers of H at a jump remain equally good", float(flat), 0.0)] if crossing else []
+    return found + ([Check("another minimiser of H remains equally good", float(tied), 0.0)] if tied else [])
 
 
 def ties(solution: Solution) -> int:

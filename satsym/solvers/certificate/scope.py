@@ -15,23 +15,27 @@ from satsym.solvers.failures import tried
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.status import Scope, Verdict
 
-NOTHING_COSTS = "every control costs at least as much as this one, and states cost nothing"
-CONVEX = "the motion is linear, costs and constraints are convex and the final time is given (Mangasarian 1966)"
-PRICED = "the motion is linear, the cost is convex in the controls and the final time is given (Mangasarian 1966)"
+NOTHING_COSTS = "no control has a lower running cost than this one, and the cost does not depend on the states"
+CONVEX = "the motion is linear, the cost and the constraints are convex, and the final time is given (Mangasarian 1966)"
+PRICED = "the motion is linear, the cost is convex in the controls, and the final time is given (Mangasarian 1966)"
 SOONEST = (
-    "the motion is linear, only time costs and the final state can be maintained, so that what can be reached grows "
-    "with time and an extremal leads to its boundary (Lee and Markus 1967, chapter 2)"
+    "the motion is linear, the cost is time alone and the final state can be maintained, so the reachable set "
+    "grows with time and an extremal leads to its boundary (Lee and Markus 1967, chapter 2)"
 )
 """Why no admissible motion at all costs less."""
 
 THEOREMS = {
-    "no proof of a minimum along singular arcs: not convex": "convexity around the extremal (Mangasarian 1966)",
-    "second variation in lengths of arcs and directions": "strict signs of the switching functions and a positive "
+    "no proof of a minimum along singular arcs: the problem is not convex": (
+        "convexity around the extremal (Mangasarian 1966)"
+    ),
+    "second variation in arc lengths and directions": "strict signs of the switching functions and a positive "
     "second variation in arc lengths and directions (Chen, Caillau and Chitour 2016)",
-    "second variation with the active arcs fixed": "positive multipliers and a positive second variation with the "
-    "active arcs fixed (Maurer 1981; Bonnans and Hermant 2009)",
-    "multiplier vanishes on a boundary": "positive multipliers, strict signs of the switching functions and a positive "
-    "second variation in the switching and junction times (Maurer and Vossen 2009)",
+    "second variation with the active arcs held fixed": "positive multipliers and a positive second variation with the "
+    "active arcs held fixed (Maurer 1981; Bonnans and Hermant 2009)",
+    "a multiplier vanishes on a boundary arc": (
+        "positive multipliers, strict signs of the switching functions and a positive "
+        "second variation in the switching and junction times (Maurer and Vossen 2009)"
+    ),
     "second variation in the switching times": "the strict bang-bang condition and a positive second variation in the "
     "switching times (Agrachev, Stefani and Zezza 2002; Maurer and Osmolovskii 2004)",
     "conjugate points: none": "the strict Legendre-Clebsch condition and no conjugate points (Bryson and Ho 1975, "

@@ -13,7 +13,7 @@ class Origin(str, Enum):
 
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
-    NO_MINIMUM = "straight line, but no minimum was found"
+    NO_MINIMUM = "straight line, because no minimum was found"
     LAST_ANSWER = "last answer"
     COLD_START = "cold start"
 

@@ -67,8 +67,9 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
         if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
-                f"{instance.called}: {key}: path constraint {one.name} is reached at the rate {rate:.6g}, which no "
-                f"control can change instantly, so it is violated right {when}; change the velocity there"
+                f"{instance.called}: {key}: path constraint {one.name} is reached with the rate of change "
+                f"{rate:.6g}, which no control can change instantly, so the constraint is violated just "
+                f"{when}; change the velocity there"
             )
 
 
@@ -85,6 +86,6 @@ def _refuse_values(
     for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
         if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
-                f"{instance.called}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
-                "change that state, or the constraint's parameters"
+                f"{instance.called}: {key}: path constraint {one.name} has the value {value:.6g} there, but "
+                "must not be positive; change that state, or the constraint's parameters"
             )

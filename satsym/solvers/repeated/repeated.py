@@ -86,17 +86,18 @@ class Repeated:
         instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
-                f"{instance.called}: the controls of {instance.model.spec.name} switch, which repeated solving does "
-                "not support; solve each instance by itself"
+                f"{instance.called}: the controls of {instance.model.spec.name} switch, but switching is not "
+                "supported in repeated solving; solve each instance separately"
             )
         if instance.end_limits:
             name = next(iter(instance.end_limits))
             raise BadInput(
-                f"{instance.called}: whether {name} is active at the end is not determined in repeated solving"
+                f"{instance.called}: repeated solving does not determine whether {name} is active at the end"
             )
         if instance.solver.free_angles:
             raise BadInput(
-                f"{instance.called}: [solver] free_angles: turns are not searched for in repeated solving; remove it"
+                f"{instance.called}: [solver] free_angles: repeated solving does not search for the number of "
+                "turns; remove it"
             )
         compiled = find_spec("numba") is not None if compiled is None else compiled
         self._means = _shooting() if compiled else ByCollocation()

@@ -66,7 +66,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
     if limits.expired:
         return Status.NOT_CONVERGED, message
     if near.undecided or (early and near.distance <= FAR_OFF):
-        return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls may reach it"
+        return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls might reach it"
     return Status.INFEASIBLE, f"{near.message}; {message}"
 
 
@@ -83,8 +83,8 @@ def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
     if longer and shorter and not any(_clearly_less(a, b) for a in both for b in both):
         return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix it"
     if _always_cheaper(instance, longer, limits):
-        advice = "put a weight on time, or fix the final time"
-        return Status.NO_MINIMISER, f"longer is always cheaper: {_listed(longer)}; {advice}"
+        advice = "add a cost of time, or fix the final time"
+        return Status.NO_MINIMISER, f"a longer duration is always cheaper: {_listed(longer)}; {advice}"
     if shorter and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
         advice = "give time a smaller weight, constrain the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_listed(shorter)}; {advice}"
@@ -137,4 +137,4 @@ def _undecided(instance: Instance, limits: Limits) -> str:
     if single:
         alone = all(part.branch != "throttled" for part in spec.control_parts)
         what = f"the value of {' or '.join(single)}" if alone else "the value of a control"
-    return f"over an interval nothing determines {what}, and no law is known there"
+    return f"no law is known for {what} on an interval where the minimum principle does not determine it"

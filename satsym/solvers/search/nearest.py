@@ -93,8 +93,8 @@ class Nearest:
             for name, value in self.missed.items()
         )
         return (
-            f"no control within its bounds was found that reaches the given end: "
-            f"the nearest of {self.starts} local searches misses {misses}"
+            f"no control within the bounds was found to reach the given end: the nearest of {self.starts} "
+            f"local searches misses {misses}"
         )
 
 

@@ -67,14 +67,16 @@ def simulate(
     """
     nodes, start, parameters, controls = _checked(kernels, times, x0, p, u)
     if steps < 1:
-        raise BadInput(f"steps: {steps}; take at least one between two times")
+        raise BadInput(f"steps: {steps}; use at least one step between two times")
     if method not in METHODS:
         raise BadInput(f"method: {shown(method)}; {suggestion(method, METHODS)}")
     count, symplectic, compiled = start.shape[1], method == "symplectic", kernels.backend == "numba"
     if symplectic:
         kernels.require_separable()
         if controls.any():
-            raise BadInput(f"u: the symplectic method is for uncontrolled motions; take RK4 for {kernels.spec.name}")
+            raise BadInput(
+                f"u: the symplectic method supports uncontrolled motions only; use RK4 for {kernels.spec.name}"
+            )
     if compiled:
         advance, block = block_step(kernels, symplectic), COMPILED_BLOCK
     else:
@@ -181,7 +183,7 @@ def _rows(name: str, values: ArrayLike | Sequence[ArrayLike], count: int, column
     try:
         rows = [np.broadcast_to(np.asarray(row, float), columns) for row in values]  # type: ignore[union-attr]
     except (TypeError, ValueError):
-        raise BadInput(f"{name}: not a number or an array of {columns} for each component") from None
+        raise BadInput(f"{name}: each component must be a number or an array of {columns}") from None
     if len(rows) != count:
         raise BadInput(f"{name}: {len(rows)} components; the model has {count}")
     return np.array(rows).reshape(count, columns)

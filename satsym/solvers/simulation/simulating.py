@@ -73,7 +73,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a simulation needs a final time; write a number")
+        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; write a number")
     limits, _ = watched(instance, None)
     try:
         return _simulated(instance, law, limits)
@@ -212,7 +212,7 @@ def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.TIME_LIMIT:
         return f"time was up: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
     if status is Status.NOT_CONVERGED:
-        return f"even {steps} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
+        return f"even {steps} steps leave an estimated error of {error:.0e}: the motion passes close to a singularity"
     return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice
 
 

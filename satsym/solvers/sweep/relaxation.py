@@ -88,7 +88,8 @@ class Relaxation:
     def _advice(self) -> str:
         largest = largest_stable(self.problem, self._near_extremal())
         return (
-            f"it is stable only below about {largest:.2g} here; leave relaxation out for a method that is not limited"
+            f"here the iteration converges only if relaxation is below about {largest:.2g}; leave out "
+            "relaxation to use a method without this limit"
         )
 
     def _near_extremal(self) -> Forward:

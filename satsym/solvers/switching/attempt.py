@@ -52,7 +52,7 @@ class Origin(Enum):
     REST = "rest"
     REACH = "the reachable set"
     DRAWN = "randomly drawn switching times"
-    SMOOTHED = "the regularised problem, smoothed by {:.1e}"
+    SMOOTHED = "the regularised problem with the weight {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
     SEARCH = "a direct search"
 

@@ -112,8 +112,9 @@ def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) ->
     t, z, u = _along(problem, found, tau)
     times = _passages(instance, t, u, signs(instance, t, z[: problem.states], z[problem.states :])[0])
     message = (
-        f"infinitely many switching times: chattering; {sum(map(len, times))} of them show where "
-        f"{interval.smoothing:.1e} is smoothed, with a duality gap of {interval.upper - interval.lower:.1e}"
+        f"infinitely many switching times: chattering; with a regularisation of {interval.smoothing:.1e}, "
+        f"{sum(map(len, times))} of them are resolved and the duality gap is "
+        f"{interval.upper - interval.lower:.1e}"
     )
     return Solution(
         instance=instance,

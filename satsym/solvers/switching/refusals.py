@@ -21,22 +21,22 @@ def refuse(instance: Instance) -> None:
     for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
         if not np.isfinite([low, high]).all():
             raise BadInput(
-                f"{instance.called}: [control] {name}: the square of this control is not in the cost, "
-                f"so it needs both bounds; write {name} = [lower, upper]"
+                f"{instance.called}: [control] {name}: the cost has no term in the square of this control, so "
+                f"it needs both bounds; write {name} = [lower, upper]"
             )
     if instance.lower == instance.upper:
         raise BadInput(
-            f"{instance.called}: [control]: no control has any room between its bounds, so there is nothing to choose; "
-            "widen one of them"
+            f"{instance.called}: [control]: the lower and upper bounds of every control are equal, so there is "
+            "nothing to choose; widen the bounds of one control"
         )
     if instance.tf is not None and _free_of_charge(instance):
         raise BadInput(
-            f'{instance.called}: [time] tf: with a given final time all controls cost the same; write tf = "free"'
+            f'{instance.called}: [time] tf: with a given final time, all controls have the same cost; write tf = "free"'
         )
     if instance.tf is None and instance.final and _there(instance):
         raise BadInput(
-            f"{instance.called}: [initial]: the motion starts where it is to end, so the best final time is zero; "
-            "move the start, or give a final time"
+            f"{instance.called}: [initial]: the initial state satisfies the final conditions, so the best "
+            "final time is zero; change the initial state, or give a final time"
         )
 
 

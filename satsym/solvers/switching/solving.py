@@ -129,7 +129,7 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
                     continue
                 return None
             cheaper = known is None or endless.objective < known.trajectory.cost(instance)
-            return replace(endless, message=f"{endless.message}; a longer time costs the same") if cheaper else None
+            return replace(endless, message=f"{endless.message}; a longer time has the same cost") if cheaper else None
     return None
 
 
@@ -147,7 +147,7 @@ def _by_least_time(
     least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
     if found.origin is Origin.REACH and least > given * (1.0 + SHORTFALL):
         message = (
-            f"the minimum time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+            f"the minimum time to the given end is {least:.10g} (structure {name}), but only {given:.10g} is allowed"
         )
         return replace(stopped, status=Status.INFEASIBLE, message=message)
     near = attempt(instance, _with_coasts(instance, found), limits) if least < given else None
@@ -174,7 +174,8 @@ def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
     if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
     advice = (
-        "singular arcs are found only without |u|; use two controls, one for each sign, both with the lower bound 0"
+        "singular arcs are supported only if |u| does not occur; use two controls, one for each sign, both "
+        "with the lower bound 0"
     )
     return replace(stopped, message=f"{stopped.message}; {advice}")
 

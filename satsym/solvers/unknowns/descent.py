@@ -90,7 +90,7 @@ def _descended(trials: Trials, here: Trial, form: Array) -> Trial | Solution:
                 radius *= 2.5
             here = new
             if float(np.abs(here.at - start).max()) > FAR_UNITS:
-                message = f"the cost falls without end, to {here.cost:.4g} with {trials.values(here.at)}"
+                message = f"the cost decreases without bound; it is {here.cost:.4g} with {trials.values(here.at)}"
                 return without_minimiser(here.solution, f"{message}; give numbers, or weigh them in the cost")
         elif drowned:
             break
@@ -113,7 +113,7 @@ def _first_form(trials: Trials, here: Trial) -> Array:
                 idle += [trials.unknowns[k]] if still else []
                 break
     for unknown in idle:
-        reason = "no cost and no end depends on it; give it a number"
+        reason = "neither the cost nor the conditions at the end depend on it; give it a number"
         raise BadInput(f'{trials.instance.called}: {unknown.key}: "free", but {reason}')
     return np.asarray((form + form.T) / 2.0)
 

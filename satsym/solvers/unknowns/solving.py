@@ -110,7 +110,7 @@ def _begin(trials: Trials) -> Trial | Solution:
             here = here or trials(step * axis)
     if here is None:
         names = ", ".join(unknown.name for unknown in trials.unknowns)
-        message = f"no answer with any of {counted(trials.tried, 'choice')} of {names}; guess them"
+        message = f"no answer with any of {counted(trials.tried, 'choice')} of {names}; give initial guesses"
         return _unanswered(trials, Status.NOT_CONVERGED, message)
     return here
 

@@ -186,7 +186,9 @@ def survey(derivation: Derivation, numbers: Mapping[str, float]) -> Attitudes:
     """
     rest = derivation.model.rest(derivation)
     if rest is None or rest.varied is None:
-        raise DerivationError(f"{derivation.name}: its equilibria are not those of one attitude in orbit")
+        raise DerivationError(
+            f"{derivation.name}: only equilibria of a single attitude in a circular orbit are supported"
+        )
     letters = (rest.inertia.free_symbols | rest.torque.free_symbols) - {*rest.cosines, *rest.turns}
     known = {s: sp.Rational(repr(numbers[s.name])) for s in letters | {rest.varied}}
     here = rest.at(known)

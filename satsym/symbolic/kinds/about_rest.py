@@ -62,7 +62,7 @@ class AboutRest(SpecialCase):
         if not (set(self.velocities) <= set(self.of.coordinates) and kept <= set(symbols_of(self.of.states))):
             yield f"the states must be coordinates of {self.of.name}, their rates, and speeds without a coordinate"
         if self.along:
-            yield "for a linearisation about rest, state the states that are kept; leave out the field `along`"
+            yield "a linearisation about rest lists the states that it retains; leave out the field `along`"
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
         """Return the bodies' groups of modes, each with its states that are kept and the rates of its coordinates."""
@@ -107,7 +107,7 @@ def second_order(so_far: Derivation) -> Step:
     foreign = sorted({s.name for _, lhs, rhs in kept for s in (lhs - rhs).free_symbols - known})
     if foreign:
         raise DerivationError(
-            f"{model.name}: its equations of motion contain other symbols; it depends on {', '.join(foreign)}"
+            f"{model.name}: its equations of motion contain undeclared symbols; they depend on {', '.join(foreign)}"
         )
     equations = tuple(Equation(name, loads, inertia) for name, inertia, loads in kept)
     return Step(
@@ -146,7 +146,7 @@ def _linear_rows(so_far: Derivation, model: AboutRest) -> list[tuple[str, sp.Exp
     assert original is not None
     rest = {s: sp.sympify(e) for s, e in of.reference.items()}
     if any(rest.get(q, 1) != 0 for q in of.coordinates):
-        raise DerivationError(f"{model.name}: {of.name} states no reference at rest with all coordinates zero")
+        raise DerivationError(f"{model.name}: {of.name} states no reference that is at rest with all coordinates zero")
     velocity = {q: model.velocities.get(q, sp.Symbol(f"{q.name}_rate", real=True)) for q in of.coordinates}
     chain = [*of.named.items(), *((e.lhs, e.rhs) for e in original.step("kane").equations if _is_part(e))]
     moving = [*of.coordinates, *of.speeds, *symbols_of(of.controls)]

@@ -33,7 +33,7 @@ def linearised_about_rest(so_far: Derivation) -> Step:
     rates = so_far.rhs("original_equations")
     rest = dict.fromkeys((*states, control), sp.Integer(0))
     if not all(vanishes(e) for e in rates.xreplace(rest)):
-        raise DerivationError(f"{model.name}: rest is not a motion of {model.of.name}")
+        raise DerivationError(f"{model.name}: the state of rest does not satisfy the equations of {model.of.name}")
     linear = rates.jacobian([*states, control]).xreplace(rest) * sp.Matrix([*states, control])
     equations = tuple(Equation(x.name, n.rate_of(x), tidy(f)) for x, f in zip(states, linear, strict=True))
     exact, found = numeric(list(rates)), numeric(list(linear))
@@ -57,7 +57,7 @@ def control_law(so_far: Derivation) -> Step:
     foreign = sp.sympify(model.law).free_symbols - allowed
     if foreign or sp.expand(linear - model.law) != 0:
         raise DerivationError(
-            f"{model.name}: the law must be linear in the states and the command, with no other symbols"
+            f"{model.name}: the law must be linear in the states and the command, and must contain no other symbols"
         )
     proof = identity("linear in states and command", [linear - model.law])
     return Step("law", "given law", equations, ("small_motions",), (proof,))
@@ -113,7 +113,7 @@ def critical_damping(so_far: Derivation) -> Step:
     wanted = sp.Poly(polynomial - (s + damping) ** 2, s).all_coeffs()
     found = sp.solve(wanted, gains, dict=True)
     if len(found) != 1 or set(found[0]) != set(gains):
-        raise DerivationError(f"{model.name}: the gains cannot give both poles")
+        raise DerivationError(f"{model.name}: no choice of the gains places both poles")
     equations = tuple(Equation(k.name, k, factored(found[0][k])) for k in gains)
     value = numeric([polynomial, sp.diff(polynomial, s)])
     gain = numeric([e.rhs for e in equations])

@@ -86,15 +86,15 @@ class Linearised(Derived):
         states, controls = symbols_of(self.states), symbols_of(self.controls)
         new = [u for u in controls if u not in old_controls]
         if len(states) != len(of.states) or len(new) != len(self.replaced_controls()):
-            yield f"give as many states and controls as {of.name} has, in place of them"
+            yield f"give a replacement for each state and each control of {of.name}"
         if missing := [s.name for s in symbols_of(of.states) if s not in self.about]:
-            yield f"about which motion? no value for {', '.join(missing)}"
+            yield f"the reference motion is incomplete: it has no value for {', '.join(missing)}"
         if kept := [u.name for u in old_controls if u in controls and self.about.get(u, 0) != 0]:
-            yield f"{', '.join(kept)} is not zero along the motion; give its deviation another name"
+            yield f"{', '.join(kept)} is not zero along the reference motion; give the deviation a name of its own"
         if set(self.deviations) != {*states, *new}:
-            yield "state one deviation for each state and each new control, no more, no less"
+            yield "state exactly one deviation for each state and each new control"
         if self.definitions != of.definitions:
-            yield f"the definitions must be those of {of.name}, no more, no less"
+            yield f"the definitions must be exactly those of {of.name}"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
         """What it is linearised about, by constants alone; deviations and the motion itself."""
@@ -133,12 +133,14 @@ def reference_condition(so_far: Derivation) -> Step | None:
     found = sp.solve([d for d in defects if d != 0], unknown, dict=True)
     if len(found) != 1 or set(found[0]) != set(unknown):
         names = ", ".join(s.name for s in unknown)
-        raise DerivationError(f"{model.name}: the reference does not determine {names}; it may not be a motion at all")
+        raise DerivationError(
+            f"{model.name}: the reference does not determine {names}; it might not be a motion of the model"
+        )
     for symbol, value in found[0].items():
         if not vanishes(value - constants[symbol]):
             raise DerivationError(
-                f"{model.name}: the reference solves the equations of motion exactly when {symbol} = {value}, "
-                f"but {symbol} is defined as {constants[symbol]}"
+                f"{model.name}: the reference satisfies the equations of motion if and only if {symbol} = "
+                f"{value}, but {symbol} is defined as {constants[symbol]}"
             )
     equations = tuple(Equation(s.name, s, tidy(found[0][s])) for s in unknown)
     values, equal = numeric([e.rhs for e in equations]), numeric(defects)
@@ -168,7 +170,7 @@ def reference(so_far: Derivation) -> Step:
     defects = [d.xreplace(definitions_of(model)) for d in _defects(so_far)]
     proof = identity("satisfies the equations with its controls", defects)
     if not proof.passed:
-        raise DerivationError(f"{model.name}: what it is linearised about is not a motion of {model.of.name}")
+        raise DerivationError(f"{model.name}: the reference of the linearisation is not a motion of {model.of.name}")
     states, about = symbols_of(model.of.states), _about(model)
     controls = [u for u in symbols_of(model.of.controls) if about[u] != 0]
     equations = tuple(Equation(s.name, s, about[s]) for s in (*states, *controls))
@@ -183,7 +185,7 @@ def deviations(so_far: Derivation) -> Step:
     stated = _stated(model)
     proof = identity("vanish on the reference", [d.xreplace(_about(model)) for d in stated.values()])
     if not proof.passed:
-        raise DerivationError(f"{model.name}: the deviations do not all vanish on the reference")
+        raise DerivationError(f"{model.name}: some deviations do not vanish on the reference")
     equations = tuple(Equation(s.name, s, d) for s, d in stated.items())
     return Step("deviations", "change of variables", equations, ("reference",), (proof,))
 

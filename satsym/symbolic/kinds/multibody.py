@@ -39,7 +39,7 @@ class Multibody(Bodies):
         known, constants = ({v.symbol for v in each} for each in (self.states, self.parameters))
         for group in self.modes:
             if not group.states or not known.issuperset(group.states):
-                yield f"the mode {group.name!r}: name some of the states, and nothing else"
+                yield f"the mode {group.name!r}: name states of the model only"
             if group.vanishing and group.vanishing not in constants:
                 yield f"the mode {group.name!r}: {group.vanishing} is not a parameter"
 

@@ -59,12 +59,12 @@ class Newton(Particle):
         states, moving = symbols_of(self.states), [*self.coordinates, *self.coordinates.values()]
         if len(moving) != len(states) or set(moving) != set(states):
             odd = unlike(symbols_of(self.states), moving, "neither coordinate nor rate", "no state")
-            yield f"the states must be the coordinates and their rates, each once; {odd or 'one is there twice'}"
+            yield f"the states must be the coordinates and their rates, each once; {odd or 'one of them occurs twice'}"
         vectors = {name: vector for name, vector, _ in self.stated()}
         if others := [name for name, vector in vectors.items() if not isinstance(vector, sp.MatrixBase)]:
             yield f"{others[0]} must be a vector, such as Matrix([x, y])"
         elif {len(vector) for vector in vectors.values()} != {len(self.directions)}:
-            yield "vectors need as many components as there are directions"
+            yield "a vector must have one component for each direction"
 
     def stated(self) -> Iterator[tuple[str, sp.Matrix, set[sp.Symbol]]]:
         """Vectors: those that place things by coordinates alone, forces by states and controls."""
@@ -150,7 +150,7 @@ def unit_vectors(so_far: Derivation) -> Step:
     basis = sp.Matrix.hstack(*model.directions.values())
     orthonormal = identity("orthonormal", basis.T * basis - sp.eye(basis.cols))
     if not orthonormal.passed:
-        raise DerivationError(f"{model.name}: the directions must have length one and be at right angles")
+        raise DerivationError(f"{model.name}: the directions must be orthonormal")
     rates = [
         Equation(name, sp.Symbol(f"d_{name}"), _resolved(model, total_derivative(vector, model.coordinates)))
         for name, vector in model.directions.items()

@@ -41,7 +41,7 @@ class Reduced(SpecialCase):
         """States that are neither kept nor left out, or both, and other controls."""
         states, old = set(symbols_of(self.states)), set(symbols_of(self.of.states))
         if states | set(self.along) != old or states & set(self.along):
-            yield "keep or leave out each state once"
+            yield "each state of the original model must be either a state of this model or a key of `along`"
         if self.controls != self.of.controls:
             yield f"the controls must be those of {self.of.name}"
 
@@ -55,7 +55,7 @@ def special_case(so_far: Derivation) -> Step:
     drifts = [total_derivative(state - value, rates).xreplace(along) for state, value in along.items()]
     proof = identity("holds ever after", drifts)
     if not proof.passed:
-        raise DerivationError(f"{model.name}: the other states do not determine those that are left out")
+        raise DerivationError(f"{model.name}: the other states do not determine the states that are left out")
     equations = tuple(Equation(symbol.name, symbol, value) for symbol, value in special.items())
     return Step("special_case", "set of motions", equations, ("original_equations",), (proof,))
 

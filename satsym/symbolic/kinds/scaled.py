@@ -73,11 +73,11 @@ class Scaled(SpecialCase):
     def misfits(self) -> Iterator[str]:
         """Variables without a scale, parameters that are no groups, states that the old motion has not."""
         if set(self.scaled) != set(symbols_of((*self.states, *self.controls))):
-            yield "give a scale for each state and each control, no more, no less"
+            yield "give exactly one scale for each state and each control"
         if set(self.groups) != set(symbols_of(self.parameters)):
-            yield "each parameter must be a group, no more, no less"
+            yield "the parameters must be exactly the dimensionless groups"
         if not set(self.along) <= set(symbols_of(self.of.states)):
-            yield f"what is left out must be states of {self.of.name}"
+            yield f"the keys of `along` must be states of {self.of.name}"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
         """Everything by the old variables."""
@@ -115,8 +115,8 @@ def scales(so_far: Derivation) -> Step:
     model = stated_as(Scaled, so_far)
     if any(e.rhs.has(t) for e in so_far.step("original_equations").equations):
         raise DerivationError(
-            f"{model.name}: the motion of {model.of.name} depends on time; "
-            "only motions that do not depend on time can be scaled"
+            f"{model.name}: the motion of {model.of.name} depends on time; only a motion whose equations do "
+            "not depend on time can be scaled"
         )
     special = {**model.where, **model.along}
     equations = [
@@ -130,7 +130,7 @@ def scales(so_far: Derivation) -> Step:
     multiples = [old - sum(sp.diff(old, x) * x for x in olds) for old in map(sp.sympify, model.scaled.values())]
     proof = identity("multiples of the old ones", multiples)
     if not proof.passed:
-        raise DerivationError(f"{model.name}: each scaled variable must be a multiple of old ones")
+        raise DerivationError(f"{model.name}: each scaled variable must be a multiple of an original variable")
     return Step("scales", "new units", tuple(equations), ("original_equations",), (proof,))
 
 
@@ -192,7 +192,10 @@ def first_order(so_far: Derivation) -> Step:
     foreign = set().union(*(e.rhs.free_symbols for e in equations)) - plain
     if foreign:
         odd = ", ".join(sorted(s.name for s in foreign))
-        raise DerivationError(f"{model.name}: the scaled motion still depends on {odd}; state a group or another scale")
+        raise DerivationError(
+            f"{model.name}: the scaled motion still depends on {odd}; state a further dimensionless group or "
+            "another scale"
+        )
     sources = ("original_equations", "scales", "original_states")
     checks = (check, Check("plain numbers alone", float(len(foreign)), 0.0))
     return Step("first_order", "chain rule in new units", tuple(equations), sources, checks)

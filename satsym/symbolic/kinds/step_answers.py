@@ -28,7 +28,7 @@ def step_response(so_far: Derivation) -> Step:
     states = symbols_of(model.states)
     answers = {x: _answer(so_far, x) for x in states}
     if any(impulse != 0 for impulse, _ in answers.values()):
-        raise DerivationError(f"{model.name}: a state answers a step with an impulse")
+        raise DerivationError(f"{model.name}: the step response of a state contains an impulse")
     special = [Equation(f"where_{symbol.name}", symbol, sp.sympify(value)) for symbol, value in model.where.items()]
     equations = (*special, *(Equation(x.name, n.answer_of(x), value) for x, (_, value) in answers.items()))
     check = _transformed(so_far, {x: (sp.Integer(0), value) for x, (_, value) in answers.items()})
@@ -61,7 +61,9 @@ def extremes(so_far: Derivation) -> Step:
     first, highest = _zeros(followed - command, damping), _zeros(sp.diff(followed, SECONDS), damping)
     turns = _zeros(control, damping)
     if not len(first) == len(highest) == len(turns) == 1:
-        raise DerivationError(f"{model.name}: the step response has no single crossing, maximum and change of sign")
+        raise DerivationError(
+            f"{model.name}: the step response must have exactly one crossing, one maximum and one change of sign"
+        )
     overshoot = simplify(followed.xreplace({SECONDS: highest[0]}) / command - 1)
     before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
     pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
@@ -115,9 +117,7 @@ def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     numerator, denominator = sp.fraction(image)
     quotient, rest = sp.div(sp.Poly(numerator, s), sp.Poly(denominator, s))
     if quotient.degree() > 0:
-        raise DerivationError(
-            f"{model.name}: {symbol.name} answers a step with something more singular than an impulse"
-        )
+        raise DerivationError(f"{model.name}: the step response of {symbol.name} is more singular than an impulse")
     value = sp.Integer(0)
     for part in sp.Add.make_args(sp.apart(factored((rest / denominator).as_expr()), s)):
         above, below = sp.fraction(sp.together(part))

@@ -49,8 +49,8 @@ def system_of(derivation: Derivation) -> LinearSystem:
     """
     if coefficients_of(derivation) != "constant":
         raise DerivationError(
-            f"{derivation.name}: not linear with constant coefficients; linearise it about a motion, "
-            "as derivations/clohessy_wiltshire.py does"
+            f"{derivation.name}: the system is not linear with constant coefficients; linearise the model "
+            "about a motion, as derivations/clohessy_wiltshire.py does"
         )
     model = derivation.model
     outputs = tuple(o.variable.symbol for o in model.outputs)

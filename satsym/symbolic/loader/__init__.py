@@ -106,7 +106,10 @@ def load(path: Path) -> tuple[Problem | Model, ...]:
         raise BadInput(f"{path}: PROBLEMS must be a tuple of problems and models; end the file with PROBLEMS = (...,)")
     names = [p.name for p in problems]
     if len(set(names)) < len(names):
-        raise BadInput(f"{path}: two entries of PROBLEMS have the same name; names are those of the generated files")
+        raise BadInput(
+            f"{path}: two entries of PROBLEMS have the same name; a name is also that of a generated file, so it "
+            "must be unique"
+        )
     return problems
 
 
@@ -125,10 +128,12 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
     found = {one.name: (one, path) for path in paths for one in load(path)}
     if file and wanted == name:
         if len(found) > 1:
-            raise BadInput(f"{printable(file)}: states {', '.join(found)}; say which, as in {file}:{next(iter(found))}")
+            raise BadInput(
+                f"{printable(file)}: states {', '.join(found)}; name one of them, as in {file}:{next(iter(found))}"
+            )
         return next(iter(found.values()))
     if wanted not in found:
-        raise BadInput(f"{printable(name)}: no derivation of this name; {suggestion(wanted, found)}")
+        raise BadInput(f"{printable(name)}: there is no derivation of this name; {suggestion(wanted, found)}")
     return found[wanted]
 
 

@@ -38,7 +38,7 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
     line, text = _line(path, error), " ".join(str(error).split())
     if isinstance(error, TypeError):
         if _POWER.match(text):
-            return line, "powers are written **, as in x**3; ^ is not the power operator in Python"
+            return line, "write powers with **, as in x**3; ^ is not the power operator in Python"
         if (found := _UNKNOWN.match(text)) and (known := _fields(found[1], names)):
             at = next(_keywords(path, line, found[2]), line)
             return at, f"{found[1]} has no field {found[2]!r}; {suggestion(found[2], known)}"
@@ -46,8 +46,8 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
             return line, f"{found[1]} needs {found[2]}; its fields are {', '.join(known)}"
         if (found := _TOO_MANY_ARGUMENTS.match(text)) and (known := _fields(found[1], names)):
             ordered = ", ".join(name for name, keyword in known.items() if not keyword)
-            instead = f"without a name it takes {ordered}" if ordered else "name its fields, such as name=..."
-            return line, f"{found[1]} got more values than fields; {instead}"
+            instead = f"its positional fields are {ordered}" if ordered else "name its fields, such as name=..."
+            return line, f"{found[1]} has fewer fields than the values it was given; {instead}"
     if isinstance(error, SyntaxError):
         return line, f"{type(error).__name__}: {error.msg}"
     if isinstance(error, ModuleNotFoundError) and (error.name or "").startswith("satsym"):

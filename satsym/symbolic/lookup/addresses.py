@@ -49,7 +49,7 @@ def resolve(derivation: Derivation, address: str) -> Found:
         return _declared(derivation, name, address)
     if step_name not in derivation:
         known = [step.name for step in derivation.steps]
-        raise BadInput(f"{shown(address)}: no step {shown(step_name)}; {suggestion(step_name, known)}")
+        raise BadInput(f"{shown(address)}: there is no step {shown(step_name)}; {suggestion(step_name, known)}")
     step = derivation.step(step_name)
     for equation in step.equations:
         if equation.name == name:
@@ -117,7 +117,7 @@ def _declared(derivation: Derivation, name: str, address: str) -> Found:
         found |= interior.named(problem)
     found |= {key: _column(value) if value.is_Matrix else value for key, value in model.declared().items()}
     if name not in found:
-        raise BadInput(f"{shown(address)}: nothing declared is called so; {suggestion(name, found)}")
+        raise BadInput(f"{shown(address)}: no declared variable has this name; {suggestion(name, found)}")
     return found[name]
 
 

@@ -47,7 +47,7 @@ def derivation(name: str) -> Derivation:
     with exempt():
         found = {problem.name: problem for path in loader.shipped() for problem in loader.load(path)}
         if name not in found:
-            raise BadInput(f"no derivation {shown(name)}; {suggestion(name, found)}")
+            raise BadInput(f"there is no derivation {shown(name)}; {suggestion(name, found)}")
         try:
             return derive(found[name])
         except DerivationError as error:
@@ -192,8 +192,8 @@ def linear_system(model: str) -> LinearSystem:
         return sp.ImmutableMatrix(len(rows), len(columns), entries)
 
     refusal = (
-        f"{model}: not linear with constant coefficients; linearise it about a motion, "
-        "as derivations/clohessy_wiltshire.py does"
+        f"{model}: the system is not linear with constant coefficients; linearise the model about a motion, as "
+        "derivations/clohessy_wiltshire.py does"
     )
     if all(step.name != "linearisation" for step in found.steps):
         raise BadInput(refusal)
@@ -307,7 +307,7 @@ class Sympy(Engine[sp.Expr]):
 
     def determinant(self, matrix: Matrix[sp.Expr]) -> sp.Expr:
         if matrix.shape[0] != matrix.shape[1]:
-            raise BadInput("the determinant of a matrix that is not square")
+            raise BadInput("a determinant requires a square matrix")
         return sp.expand(sp.Matrix(matrix.rows).det(method="berkowitz"))
 
     def rank(self, matrix: Matrix[sp.Expr]) -> int:
@@ -315,7 +315,7 @@ class Sympy(Engine[sp.Expr]):
 
     def require_linear(self, expression: sp.Expr, slope: sp.Expr, rest: sp.Expr, by: str) -> None:
         if formulas.is_zero(slope) or not formulas.is_zero(expression - slope * _symbol(expression, by) - rest):
-            raise BadInput(f"solve(...) needs what is linear in {by}")
+            raise BadInput(f"solve(...) requires an equation that is linear in {by}")
 
 
 def _symbol(expression: sp.Expr, name: str) -> sp.Symbol:

@@ -101,13 +101,15 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
             norms = {norm_of(other) for other in parts if other is not part}
             if mixed := sorted(v.name for v in slope.free_symbols & (others | norms)):
                 raise DerivationError(
-                    f"{name}: H has products of {u.name} with {', '.join(mixed)}, which are in other control sets; "
-                    "this is not supported: state them as one set, such as the components of a vector"
+                    f"{name}: H has products of {u.name} and {', '.join(mixed)}, which belong to different "
+                    "control sets; this is not supported: state them as one set, such as the components of a "
+                    "vector"
                 )
             if slope.has(sp.sign):
                 raise DerivationError(
-                    f'{name}: |{u.name}| among control_sets is not supported; state control_set = "box" for all '
-                    "controls, or two controls, one for each sign, both with the lower bound 0"
+                    f"{name}: |{u.name}| is not supported together with control_sets; state control_set = "
+                    '"box" for all controls, or use two controls, one for each sign, both with the lower bound '
+                    "0"
                 )
             if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
@@ -153,9 +155,9 @@ def _turned(
     alone = not all(vanishes(e.xreplace({u: sp.Integer(0)})) for e in pair)
     if alone or beside.kind != "box":
         raise DerivationError(
-            f"{name}: H is linear in {u.name}, the magnitude of a vector that {angle.name} turns; this needs "
-            f'"{u.name}": Box("{u.name}"), and nothing else that {angle.name} turns; or state the components of this '
-            "vector as controls in a Ball"
+            f"{name}: H is linear in {u.name}, the magnitude of a vector whose direction is the angle "
+            f'{angle.name}; this requires "{u.name}": Box("{u.name}") and no other vector with the direction '
+            f"{angle.name}; or state the components of this vector as controls in a Ball"
         )
     cosine, sine = (tidy(sp.diff(e, u)) for e in pair)
     bounded = turned.kind == "box"
@@ -184,8 +186,8 @@ def _of_angle(name: str, h: sp.Expr, part: Part) -> Minimum:
     parts = by_circle(h, angle)
     if parts is None:
         raise DerivationError(
-            f"{name}: H is not a sum a cos({angle.name}) + b sin({angle.name}) + c, so that no angle is known to "
-            "minimise it"
+            f"{name}: H does not have the form a cos({angle.name}) + b sin({angle.name}) + c, so the angle "
+            "that minimises H is not known"
         )
     _, cosine, sine = parts
     return Minimum(part, "direction", (tidy(cosine), tidy(sine)))
@@ -227,9 +229,11 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
         return _of_each(name, side * h, part, slopes)
     if all(entry == 0 for entry in rows):
         if part.kind == "free":
-            raise DerivationError(f"{name}: H is linear in {controls}, which nothing limits; state a Box or a Ball")
+            raise DerivationError(f"{name}: H is linear in {controls}, which has no bounds; state a Box or a Ball")
         if part.kind != "box" and len(slopes) == 1:
-            raise DerivationError(f"{name}: H is linear in {controls} alone, whose direction is fixed; state a Box")
+            raise DerivationError(
+                f"{name}: H is linear in the single control {controls}, so there is no direction to choose; state a Box"
+            )
         return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
     refuse_singular(name, part.kind, part.symbols, rows)
     if part.kind == "box" and rows.is_diagonal() and any(_falls(name, side * row) for row in rows.diagonal()):
@@ -251,12 +255,14 @@ def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimu
     controls = ", ".join(u.name for u in part.symbols)
     if part.kind not in ("free", "box"):
         raise DerivationError(
-            f"{name}: H is neither linear nor quadratic in {controls}, which needs a box, or no bounds"
+            f"{name}: H is neither linear nor quadratic in {controls}, so this control must have a box or no bounds"
         )
     apart = all(not s.has(*(v for v in part.symbols if v != u)) for u, s in zip(part.symbols, slopes, strict=True))
     if not apart:
-        raise DerivationError(f"{name}: H is not quadratic in {controls}, and has products of them: not supported")
+        raise DerivationError(
+            f"{name}: H is not quadratic in {controls} but has products of these controls, which is not supported"
+        )
     if part.kind == "free" and any(by_circle(h, u) for u in part.symbols):
-        raise DerivationError(f"{name}: {controls} is an angle that nothing limits; state Angle({controls!r})")
+        raise DerivationError(f"{name}: {controls} is an angle without bounds; state Angle({controls!r})")
     laws = tuple(minimiser(name, h, u, ends_of(part, u)) for u in part.symbols)
     return Minimum(part, "stationary", gradient=tuple(slopes), laws=laws)

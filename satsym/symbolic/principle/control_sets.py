@@ -59,7 +59,9 @@ def project(
     m = len(unconstrained)
     if control_set == "box":
         if not hessian.is_diagonal():
-            raise DerivationError("a box needs a diagonal H_uu: clipping each control minimises H only then")
+            raise DerivationError(
+                "a box requires a diagonal H_uu, because only then does clipping each control minimise H"
+            )
         return [Clip(u, limits[i], limits[m + i]) for i, u in enumerate(unconstrained)]
     if control_set == "ball":
         refuse_unequal(hessian)
@@ -72,7 +74,10 @@ def refuse_unequal(hessian: sp.Matrix) -> None:
     """Refuse an H_uu that is not a multiple of the identity."""
     m = hessian.rows
     if not all(vanishes(e) for e in hessian - hessian[0, 0] * sp.eye(m)):
-        raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
+        raise DerivationError(
+            "a ball requires equal weights of the controls, because only then does shortening the control vector "
+            "minimise H"
+        )
 
 
 def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], hessian: sp.Matrix) -> None:
@@ -88,11 +93,14 @@ def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], he
     names = ", ".join(u.name for u in controls)
     linear = [u.name for k, u in enumerate(controls) if all(vanishes(entry) for entry in hessian.row(k))]
     if linear and kind == "free":
-        message = f"H is linear in {', '.join(linear)}, which nothing limits; state a Box or a Ball"
+        message = f"H is linear in {', '.join(linear)}, which has no bounds; state a Box or a Ball"
         raise DerivationError(f"{name}: {message}")
     if linear and kind in ("ball", "annulus"):
         refuse_unequal(hessian)
-    message = f"H_uu of {names} is singular, so H_u = 0 does not determine them; give the square of each a weight"
+    message = (
+        f"H_uu of {names} is singular, so H_u = 0 does not determine them; add the square of each of these "
+        "controls to the cost"
+    )
     raise DerivationError(f"{name}: {message}")
 
 

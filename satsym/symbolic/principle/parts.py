@@ -167,7 +167,7 @@ def _part(name: str, kind: PartKind, controls: tuple[Variable, ...], mark: str) 
         return Part(name, kind, controls, (reach,))
     if len(units := {v.unit for v in controls}) > 1:
         raise DerivationError(
-            f"control_sets {name!r}: a norm needs controls of one unit, not {', '.join(sorted(units))}"
+            f"control_sets {name!r}: a norm requires controls with the same unit, not {', '.join(sorted(units))}"
         )
     if kind == "ball":
         return Part(name, kind, controls, (largest,))
@@ -202,5 +202,5 @@ def unsigned(problem: Problem, curvatures: sp.Matrix) -> str:
     symbols = zip(declared, symbols_of(declared), strict=True)
     found = [v.symbol for v, symbol in symbols if curvatures.has(symbol) and not symbol.is_positive]
     if not found:
-        return "give the square of each control a weight"
-    return f'declare positive {", ".join(found)}: Variable("{found[0]}", ..., positive=True)'
+        return "add the square of each control to the cost"
+    return f'declare {", ".join(found)} positive: Variable("{found[0]}", ..., positive=True)'

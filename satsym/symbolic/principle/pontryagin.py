@@ -220,7 +220,7 @@ def _linear_system(
     try:
         rows, load = sp.linear_eq_to_matrix(h_u, controls)
     except NonlinearError:
-        raise DerivationError(f"{so_far.name}: H is not quadratic in the controls, H_u = 0 not linear") from None
+        raise DerivationError(f"{so_far.name}: H is not quadratic in the controls, so H_u = 0 is not linear") from None
     control_sets.refuse_singular(so_far.name, _problem(so_far).control_set, controls, rows)
     return rows, load
 

@@ -47,7 +47,9 @@ def refuse(so_far: Derivation) -> None:
     held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
     if held:
         message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
-        raise DerivationError(f"{message}derived; state it as a bound of that control", ("path_constraints",))
+        raise DerivationError(
+            f"{message}derived; state the constraint as a bound of that control", ("path_constraints",)
+        )
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
         message = "beside |u| they are not derived; use two controls, one for each sign, both with the lower bound 0"

@@ -75,10 +75,10 @@ def refuse_magnitudes(so_far: Derivation) -> None:
     stated = (a for a in magnitudes if isinstance(a, sp.Abs))  # that of a positive control is the control itself
     if magnitude := next((a for a in stated if any(rate.has(a) for rate in rates)), None):
         raise DerivationError(
-            f"{so_far.name}: {magnitude} in the equations of motion is supported only where cost and motion are sums "
-            'of controls and their magnitudes, with control_set = "box"; use two controls, one '
-            "for each sign, both with the lower bound 0, with their difference in its place and their sum for its "
-            "magnitude"
+            f"{so_far.name}: {magnitude} in the equations of motion is supported only if the cost and the "
+            'motion are linear in the controls and their magnitudes and control_set = "box"; use two controls, '
+            "one for each sign, both with the lower bound 0; replace the control by their difference and its "
+            "magnitude by their sum"
         )
 
 
@@ -303,7 +303,7 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
     """Refuse what no law here minimises."""
     if problem.control_set != "box":
         raise DerivationError(
-            f"{name}: H is linear in the controls, so that its minimum is at their bounds; this needs "
+            f"{name}: H is linear in the controls, so its minimum lies at their bounds; this requires "
             f'control_set = "box", not "{problem.control_set}"'
         )
     stands_for = s.magnitudes(controls)
@@ -312,8 +312,8 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
         weight = tidy(sp.diff(cost, v))
         if not weight.is_nonnegative:
             raise DerivationError(
-                f"{name}: the weight of |{u.name}| in the cost, {weight}, may be negative, which is not supported; "
-                "declare its factors positive"
+                f"{name}: the weight of |{u.name}| in the cost, {weight}, might be negative, which is not "
+                "supported; declare the factors of the weight positive"
             )
         if weight == 0 and all(vanishes(sp.diff(e, u)) for e in (cost, *f)):
             raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")

@@ -21,7 +21,7 @@ COST_MARGIN = 1e-9
 SAME_COST = 1e-9
 """Relative error of refined costs; it makes no difference."""
 
-UNCOMPARED = "compared with nothing: no competitor was solved"
+UNCOMPARED = "no comparison: no competitor was solved"
 """The check that fails where that is so."""
 
 LARGEST_MARGIN = 1e300

@@ -50,7 +50,7 @@ class Fall:
     def message(self) -> str:
         """One line."""
         costs, sizes = (", ".join(f"{value:.4g}" for value in row[-3:]) for row in (self.costs, self.sizes))
-        return f"the cost is unbounded below: controls up to {sizes} cost {costs}"
+        return f"the cost is unbounded below: controls up to {sizes} have the costs {costs}"
 
 
 def fall(solution: Solution) -> Fall | None:

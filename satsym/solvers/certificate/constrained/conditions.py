@@ -100,7 +100,7 @@ def _in_segments(solution: Solution, again: Replay) -> tuple[list[Check], Replay
     if all(c.passed for c in first) or (parts := replay(solution, in_segments=True)) is None:
         return first, again
     renamed = [replace(c, name=NAMES.get(c.name, c.name)) for c in _first_order(solution, parts)]
-    checks = [*renamed, Check("gaps where the flow begins anew", parts.gap, RESIDUAL)]
+    checks = [*renamed, Check("gaps where the integration restarts", parts.gap, RESIDUAL)]
     return (checks, parts) if all(c.passed for c in checks) else (first, again)
 
 
@@ -111,12 +111,14 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     checks.append(Check("path constraint violated", _violated(solution, again), VIOLATED))
     if again.meets_a_boundary(solution):
         checks += [
-            Check("off the boundary on a boundary arc", _off_boundary(solution, again), VIOLATED),
-            Check("off tangency at junctions", _off_tangency(solution, again), DEFECT),
+            Check("distance from the boundary on a boundary arc", _off_boundary(solution, again), VIOLATED),
+            Check("deviation from tangency at junctions", _off_tangency(solution, again), DEFECT),
             Check("negative multiplier", _negative(solution, again), SIGN),
         ]
     if any(again.jumps):
-        checks.append(Check("jump of costates off the constraint's gradient", again.off_gradient, DEFECT))
+        checks.append(
+            Check("jump of the costates that is not along the constraint's gradient", again.off_gradient, DEFECT)
+        )
     checks += passing(solution, again)
     drift = _drift(solution, again)
     return checks if drift is None else [*checks, Check(HAMILTONIAN, drift, DRIFT)]
@@ -126,13 +128,16 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
     least, most = _least_multiplier(solution, again, strict=True)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
-    vanishing = [Check("multiplier vanishes on a boundary", float(not strict), 0.0)]
+    vanishing = [Check("a multiplier vanishes on a boundary arc", float(not strict), 0.0)]
     vanishing = vanishing if again.meets_a_boundary(solution) else []
     if solution.instance.tf is None and (again.pressed or again.pieces[-1].active):
-        return [*vanishing, Check("second variation not resolved: ends on a boundary at a free time", 1.0, 0.0)]
+        return [
+            *vanishing,
+            Check("second variation not resolved: the motion ends on a boundary at a free time", 1.0, 0.0),
+        ]
     return [
         *vanishing,
-        Check("second variation with the active arcs fixed", float(not curvature(solution, again) > CURVED), 0.0),
+        Check("second variation with the active arcs held fixed", float(not curvature(solution, again) > CURVED), 0.0),
     ]
 
 

@@ -80,7 +80,7 @@ def jumping(again: Replay) -> bool:
 
 def strict(again: Replay) -> list[Check]:
     """Whether multipliers press strictly."""
-    return [Check("multiplier vanishes on a boundary", float(not _pressure(again, BESIDE) > STRICT), 0.0)]
+    return [Check("a multiplier vanishes on a boundary arc", float(not _pressure(again, BESIDE) > STRICT), 0.0)]
 
 
 def _pressure(again: Replay, beside: float) -> float:

@@ -61,7 +61,9 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
     second = [Check("width of the cost interval", width / size, NARROW)]
     second += [Check("infinitely many switching times: chattering", 1.0, 0.0)]
     if not proved:
-        second.append(Check("lower end of the cost interval is an estimate: not convex", 1.0, 0.0))
+        second.append(
+            Check("the lower end of the cost interval is only an estimate, because the problem is not convex", 1.0, 0.0)
+        )
     others = Comparison((), () if proved else tuple(kinds(solution.instance)))
     return concluded(first, second, float("nan"), others)
 

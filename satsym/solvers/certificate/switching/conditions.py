@@ -43,7 +43,7 @@ CLOSE_TO_SWITCH = 0.01
 CURVED = 1e-7
 """Least relative curvature in the switching times."""
 
-LATER = Check("not strict: the same switches later cost the same", 1.0, 0.0)
+LATER = Check("not strict: the same arcs at a later time have the same cost", 1.0, 0.0)
 """Why a second variation is not positive, where a shift in time is the whole reason."""
 
 
@@ -80,7 +80,7 @@ def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] |
         return None
     if again is None:
         return None
-    first = [Check("gaps where the flow begins anew", again.gap, RESIDUAL), *_first_order(solution, again)]
+    first = [Check("gaps where the integration restarts", again.gap, RESIDUAL), *_first_order(solution, again)]
     return (again, first) if all(c.passed for c in first) else None
 
 
@@ -103,7 +103,7 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     free = [decided_by_none(solution, control) for control in range(len(shown_by(solution.instance)))]
     extended = with_end_switches(again, _along(again)[0])
     rates, gap, distance = _strictness(again, extended, free)
-    checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
+    checks = [Check("not strict: other controls have the same cost", 1.0, 0.0)] if any(free) else []
     if _decided_by_signs(solution, again, free):
         return [Check("switching function vanishes on an arc", float(_vanishes(solution, again, extended)), 0.0)]
     checks += [
@@ -113,7 +113,11 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     ]
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
-        checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
+        checks.append(
+            Check(
+                "no proof of a minimum along singular arcs: the problem is not convex", float(not convex(solution)), 0.0
+            )
+        )
     elif boundaries.on_boundary(again) and boundaries.jumping(again):
         checks.append(Check("not resolved: second variation where costates jump", 1.0, 0.0))
     elif solution.instance.model.spec.throttled or not any(free):

@@ -229,7 +229,7 @@ def _differentiated(so_far: Derivation, name: str) -> Constraint:
     if _uncontrolled(rates[-1], motion, controls):
         raise DerivationError(f"{what}: no control influences it, so it cannot be enforced", ("path_constraints",))
     raise DerivationError(
-        f"{what}: its order is more than {pn.HIGHEST}, for which no extremals are found", ("path_constraints",)
+        f"{what}: its order exceeds {pn.HIGHEST}, the highest order that is supported", ("path_constraints",)
     )
 
 
@@ -247,8 +247,9 @@ def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...
     effect = sp.Matrix(gradient(found.rates[-1], controls)).applyfunc(simplified)
     if any(e.free_symbols & set(controls) for e in effect):
         raise DerivationError(
-            f"{so_far.name}: path_constraints {found.name}: the controls enter {'its rate' if found.order else 'it'} "
-            "nonlinearly, for which the boundary control is not derived",
+            f"{so_far.name}: path_constraints {found.name}: the controls enter "
+            f"{'its rate' if found.order else 'it'} nonlinearly, so the control on the boundary cannot be "
+            "derived",
             ("path_constraints",),
         )
     return effect, found.rates[-1].xreplace(dict.fromkeys(controls, sp.Integer(0)))
@@ -275,8 +276,9 @@ def acting(so_far: Derivation, found: Constraint) -> sp.Symbol:
     (first, *more) = [u for u in symbols_of(so_far.model.controls) if found.rates[-1].has(u)]
     if more:
         raise DerivationError(
-            f"{so_far.name}: path_constraints {found.name}: {', '.join(map(str, (first, *more)))} act on it together, "
-            "and H is linear in the controls: which of them holds the motion on the boundary is not derived",
+            f"{so_far.name}: path_constraints {found.name}: the controls {', '.join(map(str, (first, *more)))} "
+            "act on it together and H is linear in the controls, so the control that holds the motion on the "
+            "boundary cannot be derived",
             ("path_constraints",),
         )
     return first
