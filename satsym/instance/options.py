@@ -96,7 +96,7 @@ def _values(value: float | str | list[float | str], variable: Variable, what: st
     if what == "costate":
         for entry in values:
             if isinstance(entry, str):
-                raise BadInput(f"{key}: {shown(entry)} is text, but a costate must be a number without a unit")
+                raise BadInput(f"{key}: {shown(entry)} is text; write a costate as a number without a unit")
         return tuple(quantity(entry, "1", key) for entry in values)
     return tuple(value_of(variable, entry, key) for entry in values)
 

@@ -155,7 +155,7 @@ def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, min
     assert (curvature(found, again) > 0.0) == minimum
     verdict, failed = judged(limited(found, 1e-9))
     assert verdict is Verdict.EXTREMAL_ONLY
-    assert ("second variation with the active arcs held fixed" in failed) == (not minimum)
+    assert ("second variation with fixed active arcs" in failed) == (not minimum)
 
 
 @pytest.mark.slow

@@ -118,7 +118,7 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("time.tf", '"fre"', ["[time] tf", "fre"]),
         ("time.t0", "6.0", ["[time] tf: 6 is not after t0 = 6"]),
         ("time.tf_guess", "3", ["[time] tf_guess", "remove"]),
-        ("control.u1", "[1, 0]", ["[control] u1", "lower bound 1", "above", "0"]),
+        ("control.u1", "[1, 0]", ["[control] u1", "lower bound 1", "exceeds", "0"]),
         ("control.u1", '["1 km/s^2", "5 m/s^2"]', ["[control] u1", "1 km/s^2", "5 m/s^2"]),
         ("control.u1", '["1 km", "5 m/s^2"]', ["[control] u1", "1 km", "km/s**2"]),
         ("control.u1", "[0, 1, 2]", ["[control] u1", "[-0.2, 0.2]"]),
@@ -233,7 +233,7 @@ def _change_model(monkeypatch: pytest.MonkeyPatch, change: Callable[[ProblemSpec
         ('model = "a"'.encode("utf-16"), ["UTF-8"]),
         (b"#" * 1_000_001, ["larger than 1000000 bytes"]),
         (b"'\x1b[31m' = 1", ["TOML"]),
-        (b"x = 1" + b"1" * 900_000, ["x: the number is too large"]),
+        (b"x = 1" + b"1" * 900_000, ["x: got a number that is too large"]),
     ],
 )
 def test_a_file_that_is_no_instance_is_refused_quickly(tmp_path: Path, content: bytes, words: list[str]) -> None:

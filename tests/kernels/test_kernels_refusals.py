@@ -329,11 +329,11 @@ def house(tmp_path: Path, legal: str) -> Path:
 @pytest.mark.parametrize(
     ("model", "reason"),
     [
-        ("../secret", "leads out"),
-        ("../inner/../secret", "leads out"),
-        ("link", "leads out"),
-        ("./link", "leads out"),
-        ("folder/secret", "leads out"),
+        ("../secret", "lies outside"),
+        ("../inner/../secret", "lies outside"),
+        ("link", "lies outside"),
+        ("./link", "lies outside"),
+        ("folder/secret", "lies outside"),
         ("/etc/passwd", "absolute"),
         ("./mine.py", "leave out"),
         (

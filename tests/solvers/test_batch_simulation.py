@@ -166,7 +166,7 @@ def test_a_model_that_is_not_separable_has_no_symplectic_method():
 
 
 def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):
-    with pytest.raises(BadInput, match=r"^two_body: no block step without compiling: take compiled\(\)"):
+    with pytest.raises(BadInput, match=r"^two_body: a block step requires compiled kernels: call compiled\(\)"):
         block_step(orbit)
 
 

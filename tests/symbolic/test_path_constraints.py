@@ -162,7 +162,7 @@ TURNED = replace(CHAIN, rates={a: b, b: d, d: u, e: sp.cos(symbols_of((WAY,))[0]
     ("problem", "message"),
     [
         (kept(e - 1), "no control influences it, so it cannot be enforced"),
-        (kept(a - 1), "its order is more than 2"),
+        (kept(a - 1), "its order exceeds 2"),
         (
             kept(b - 1, model=TURNED, running_cost=a**2, control_sets={"push": Box("u"), "way": Angle("w")}),
             "H is linear in u; they are derived where",

@@ -58,7 +58,7 @@ _HOLDS = {
     ),
     "second variation in arc lengths and directions": "second variation positive in arc lengths and directions",
     "second variation in the switching times": "second variation positive in the switching times",
-    "second variation with the active arcs held fixed": "second variation positive with the active arcs held fixed",
+    "second variation with fixed active arcs": "second variation positive with fixed active arcs",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
     "second-order condition at the free start": "second-order condition at the free start holds",
     "strict bang-bang condition": "strict bang-bang condition holds",

@@ -30,8 +30,8 @@ THEOREMS = {
     ),
     "second variation in arc lengths and directions": "strict signs of the switching functions and a positive "
     "second variation in arc lengths and directions (Chen, Caillau and Chitour 2016)",
-    "second variation with the active arcs held fixed": "positive multipliers and a positive second variation with the "
-    "active arcs held fixed (Maurer 1981; Bonnans and Hermant 2009)",
+    "second variation with fixed active arcs": "positive multipliers and a positive second variation with "
+    "fixed active arcs (Maurer 1981; Bonnans and Hermant 2009)",
     "a multiplier vanishes on a boundary arc": (
         "positive multipliers, strict signs of the switching functions and a positive "
         "second variation in the switching and junction times (Maurer and Vossen 2009)"

@@ -137,7 +137,7 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
         ]
     return [
         *vanishing,
-        Check("second variation with the active arcs held fixed", float(not curvature(solution, again) > CURVED), 0.0),
+        Check("second variation with fixed active arcs", float(not curvature(solution, again) > CURVED), 0.0),
     ]
 
 
