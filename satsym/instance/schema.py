@@ -143,7 +143,7 @@ class SwitchingTable(_Table, frozen=True):
 
 class DrivenTable(_Table, frozen=True):
     control: Annotated[Name, Key("a control that other instances supply", COMPARING)]
-    by: Annotated[Names, Key("the instances that supply it; one run for each", COMPARING)]
+    by: Annotated[Names, Key("the instances that supply this control; one run for each instance", COMPARING)]
 
 
 class GuessTable(_Table, frozen=True):

@@ -24,7 +24,7 @@ _HOLDS = {
     "stated times of events": "events occur at the stated times",
     "stated switching times, to the spacing of the nodes": "controls switch between the nodes next to the stated times",
     "stated times of saturation": "controls meet their bounds at the stated times",
-    "the two minimisers of H at a jump remain equally good": "only one minimiser of H on each side of a jump",
+    "the two minimisers of H at a jump remain equally good": "minimisers of H equally good at the jump only",
     "coinciding switching times": "switching times distinct",
     "conjugate points: none": "no conjugate points",
     "correction of the nodes": "nodes lie on the recomputed trajectory",
