@@ -20,8 +20,7 @@ FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
 
 MOST_LETTERS = 24
-"""Most letters of an exact analysis, times the number of states: polynomials of a high degree in many letters fill
-pages and say nothing."""
+"""Most letters of an exact analysis, times the number of states: of larger ones, polynomials fill pages."""
 
 ControlSetKind = Literal["free", "box", "ball"]
 NAMES = "a lower-case letter, followed by lower-case letters, digits and underscores"
@@ -30,13 +29,12 @@ _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
-_OF_LINEAR_MODELS = ("outputs", "linear")
 _OF_VARIABLES = (
     *("states", "controls", "parameters", "invariants", "position", "multipliers", "outputs"),
     *("quantities", "balances"),
 )
 _UNLESS_DEFAULT = (
-    *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
+    *("outputs", "linear", "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
     *("chattering", "moving_magnitudes", "path_constraints", "linear_quadratic", "terminal_inequalities", "interior"),
 )
@@ -87,16 +85,13 @@ class Variable:
         if not self.latex.strip() or not _closed(self.latex):
             raise ValueError(f"variable {self.symbol!r}: latex is {self.latex!r}; write its LaTeX, each {{ closed")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
-            raise ValueError(
-                f"variable {self.symbol!r}: the default must be a number, not {self.default!r}; give a finite number"
-            )
+            raise ValueError(f"variable {self.symbol!r}: got the default {self.default!r}; give a finite number")
         if self.typical is not None:
             low, high = self.typical if len(self.typical) == 2 else (inf, inf)
             if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
                 wanted = "0 < low < high" if self.positive else "low < high"
                 raise ValueError(
-                    f"variable {self.symbol!r}: the typical range must be a pair of numbers, not {self.typical!r}; "
-                    f"give two numbers, {wanted}"
+                    f"variable {self.symbol!r}: got the typical range {self.typical!r}; give two numbers, {wanted}"
                 )
 
 

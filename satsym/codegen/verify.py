@@ -181,10 +181,7 @@ def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
 
 
 def _allowed(spec: ProblemSpec, place: Arguments) -> bool:
-    """Whether signs are as :func:`drawn` has them, and the ends of rings in order.
-
-    Lower bounds are negative and others positive, as are states and parameters that are declared so.
-    """
+    """Whether lower bounds are negative, others and what is declared so positive, and the ends of rings in order."""
     bounds = place["bounds"]
     signs = all((b < 0) == (i in spec.lower_bounds) for i, b in enumerate(bounds))
     given = [*zip(spec.states, place["x"], strict=True), *zip(spec.parameters, place["p"], strict=True)]

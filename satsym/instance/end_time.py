@@ -48,8 +48,12 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
     for name in met:
         root = _root(instance, name)
         if root is None or (found is not None and abs(root - found) > TIME_TOLERANCE * max(abs(root), abs(found))):
-            when = "after the start" if found is None else f"{found:.6g} that is given"
-            raise BadInput(f"{instance.called}: terminal inequality {name}: no final time {when} satisfies it")
+            if found is None:
+                message = f"{instance.called}: terminal inequality {name}: no final time after the start satisfies it"
+                raise BadInput(message)
+            raise BadInput(
+                f"{instance.called}: terminal inequality {name}: the given final time {found:.6g} does not satisfy it"
+            )
         found = root
     return found
 
@@ -71,7 +75,7 @@ def never(instance: Instance) -> str:
         if not above[k]:
             continue
         if instance.tf is not None:
-            return f"terminal inequality {name}: no final time {instance.tf:.6g} that is given satisfies it"
+            return f"terminal inequality {name}: the given final time {instance.tf:.6g} does not satisfy it"
         times = instance.t0 + (last - instance.t0) * 10.0 ** np.random.default_rng(0).uniform(-1.0, 1.0, DRAWN)
         linear = all(inequalities_at(instance, t, x)[1][k, -1] == slopes[k, -1] for t in times)
         if linear and _root(instance, name) is None:

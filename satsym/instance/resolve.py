@@ -105,10 +105,8 @@ def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, flo
     tf_guess = None if table.tf_guess is None else time(table.tf_guess, "[time] tf_guess", spec)
     for key, end, given in (("tf", tf, table.tf), ("tf_guess", tf_guess, table.tf_guess)):
         if end is not None and not (end > t0 and math.isfinite(end - t0)):
-            why = "is not after" if end <= t0 else "is too far from"
-            raise BadInput(
-                f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; write a later time that can be reached"
-            )
+            why, what = ("is not after", "a later time") if end <= t0 else ("is too far from", "a time closer to t0")
+            raise BadInput(f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; write {what}")
     return t0, tf, tf_guess
 
 

@@ -158,7 +158,7 @@ class GuessTable(_Table, frozen=True):
 
 
 class OrbitTable(_Table, frozen=True):
-    epoch: Annotated[Epoch, Key("when the model's time is zero", EXPORTING)]
+    epoch: Annotated[Epoch, Key("date and time at which the model's time is zero", EXPORTING)]
     frame: Annotated[Name, Key("the axes: EME2000, ICRF or GCRF", EXPORTING)] = "EME2000"
     centre: Annotated[Name, Key("the body at the origin, such as Earth; pictures show it", (*EXPORTING, "plot"))] = (
         "Earth"

@@ -114,7 +114,7 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
     free = statement.own - given
     parts = [f"{given} states given"] if given else []
     parts += [f"{free} states free"] if free else []
-    parts += [f"{ranges} states in a range"] if ranges else []
+    parts += [f"{ranges} states with final values in a range"] if ranges else []
     if spec.multipliers:
         parts += [f"{len(statement.active)} active constraints", f"{len(spec.multipliers)} constraints in all"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]

@@ -45,7 +45,7 @@ def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection
             "functions with diff"
         )
     if found := _first(e, sp.Integral, sp.Sum, sp.Product):
-        return f"contains {found}, which is not evaluated; add a state whose rate is the integrand"
+        return f"contains {found}, which has no closed form; add a state whose rate is the integrand"
     if found := _first(e, AppliedUndef):
         return _unknown(found, names)
     if other := unknown_functions(e):

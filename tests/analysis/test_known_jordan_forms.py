@@ -65,7 +65,7 @@ def test_an_eigenvalue_that_is_zero_whatever_the_entries_are_stays_apart_from_a_
 def test_what_rounding_may_have_left_of_zero_is_undecided_and_both_possibilities_are_told() -> None:
     found = stability(*spectra(system([[0.0, 1.0], [-1.0, 1e-17]])))
     assert found.verdict == UNDECIDED
-    assert "Either marginally stable: on the imaginary axis lie ±1i" in found.reason
+    assert "Either marginally stable: the imaginary axis contains ±1i, in Jordan blocks of size 1 only" in found.reason
     assert "or unstable: the eigenvalue 5e-18 ± 1i has a positive real part" in found.reason
 
 

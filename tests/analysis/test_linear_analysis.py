@@ -139,7 +139,7 @@ def test_staircases_are_orthogonal_and_hide_what_is_out_of_reach(n, inputs, seed
     [
         ([[-1.0, 5.0], [0.0, -2.0]], "asymptotically stable", "the largest is -1"),
         ([[0.0, 1.0], [-4.0, 0.0]], "marginally stable", "±2i"),
-        ([[0.0, 0.0], [0.0, -1.0]], "marginally stable", "0, in Jordan blocks of size 1"),
+        ([[0.0, 0.0], [0.0, -1.0]], "marginally stable", "axis contains 0, in Jordan blocks of size 1 only"),
         ([[0.0, 1.0], [0.0, 0.0]], "unstable", "Jordan block of size 2"),
         ([[3.0, 0.0], [0.0, -2.0]], "unstable", "eigenvalue 3 has a positive real part"),
         (jordan([(0, 3)]), "unstable", "like t^2"),
@@ -251,10 +251,10 @@ def test_python_control_is_asked_for_where_it_is_missing(monkeypatch):
 @pytest.mark.parametrize(
     ("matrices", "complaint"),
     [
-        (([[1.0, 2.0]],), "A: its shape"),
-        (([[1.0]], [[1.0], [2.0]]), "B: its shape"),
+        (([[1.0, 2.0]],), r"A: the shape \(1, 2\) does not fit"),
+        (([[1.0]], [[1.0], [2.0]]), r"B: the shape \(2, 1\) does not fit"),
         (([[np.nan]],), "A: has an entry that is not finite"),
-        (([[1.0]], [[1.0]], [[1.0, 2.0]]), "C: its shape"),
+        (([[1.0]], [[1.0]], [[1.0, 2.0]]), r"C: the shape \(1, 2\) does not fit"),
     ],
 )
 def test_matrices_that_do_not_fit_are_refused(matrices, complaint: str):

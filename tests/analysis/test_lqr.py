@@ -182,7 +182,7 @@ def test_a_finite_horizon_with_a_negative_weight_ends_before_the_cost_escapes():
     chain = system([[0.0]], [[1.0]])
     assert lqr(chain, [-1.0], [1.0], 1.5).P[0, 0] == pytest.approx(-np.tan(1.5), rel=1e-12)
     for horizon in (1.6, 3.0, 4.0, 5.0, 100.0):
-        with pytest.raises(BadInput, match=r"\[lqr\] horizon: the cost has no lower bound over so long a time"):
+        with pytest.raises(BadInput, match=r"\[lqr\] horizon: over so long a horizon the cost has no lower bound"):
             lqr(chain, [-1.0], [1.0], horizon)
 
 
@@ -222,9 +222,9 @@ STUCK = system([[1.0, 0.0], [0.0, -1.0]], [[0.0], [1.0]])
 @pytest.mark.parametrize(
     ("given_system", "Q", "R", "complaint"),
     [
-        (satellite(), [1, 1, -0.1, 1], [1, 1], r"\[lqr\] Q: the cost has no lower bound, for at the frequency 0 the"),
-        (LAG, [-1.5], [1], r"\[lqr\] Q: the cost has no lower bound, for at the frequency 0 .* more than its inputs"),
-        (LAG, [-1.0], [1], r"\[lqr\] Q: the cost has no minimum, for at the frequency 0 .* all that its inputs"),
+        (satellite(), [1, 1, -0.1, 1], [1, 1], r"\[lqr\] Q: the cost has no lower bound, because at the frequency 0 "),
+        (LAG, [-1.5], [1], r"\[lqr\] Q: the cost has no lower bound, because at the frequency 0 .* outweigh the cost"),
+        (LAG, [-1.0], [1], r"\[lqr\] Q: the cost has no minimum, because at the frequency 0 .* balance the cost"),
         (satellite(), [[1, 2, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], [1, 1], "Q: not symmetric at row 2"),
         (satellite(), [1, 1, 1, 1], [1, 0], r"\[lqr\] R: not positive definite"),
         (satellite(), [1, 1, 1, 1], [[1, 1], [1, 1]], r"\[lqr\] R: not positive definite"),
@@ -488,10 +488,10 @@ def test_a_standing_pendulum_is_held_up_from_nearby_only():
         ("[lqr.allowed]\nr = 0.1\nu1 = 1.0\nu2 = 1.0\n", None),
         ("[lqr.allowed]\nr = 0.1\nu1 = 1.0\n", r"\[lqr.allowed\] u2: missing"),
         ("[lqr.allowed]\nu1 = 1.0\nu2 = 1.0\n", "no state has an allowed deviation"),
-        ("[lqr.allowed]\nr = 0.0\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] r: 0 is not an allowed deviation"),
+        ("[lqr.allowed]\nr = 0.0\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] r: an allowed deviation must be positive"),
         ('[lqr.allowed]\nr = "1 s"\nu1 = 1.0\nu2 = 1.0\n', r"\[lqr.allowed\] r:"),
         ("[lqr.allowed]\nx = 0.1\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr.allowed\] x: the model has no such state or active"),
-        ("[lqr]\nR = [1]\n[lqr.allowed]\nr = 0.1\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr\] R: \[lqr.allowed\] gives"),
+        ("[lqr]\nR = [1]\n[lqr.allowed]\nr = 0.1\nu1 = 1.0\nu2 = 1.0\n", r"\[lqr\] R: \[lqr.allowed\] already gives"),
         ("[lqr]\n", r"\[lqr\] Q: missing"),
     ],
 )

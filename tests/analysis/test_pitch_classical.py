@@ -157,7 +157,7 @@ def test_a_command_to_stay_leaves_everything_at_rest() -> None:
 
 @pytest.mark.parametrize("options", [{"damping": 1e6}, {"differentiator": 1e-9}])
 def test_a_loop_that_is_too_fast_to_be_followed_is_refused(options: dict[str, float]) -> None:
-    with pytest.raises(BadInput, match=r"shortest time constant, 1e-0\d, is too short"):
+    with pytest.raises(BadInput, match=r"shortest time constant of the loop, 1e-0\d, is too short"):
         simulate(classical(**options))
 
 

@@ -68,7 +68,7 @@ def test_what_is_right_is_said_first(audited: Run, tmp_path: Path) -> None:
     assert (code, err) == (0, "")
     assert out.startswith("small: A small document (A. Writer, 2024)\n")
     assert (
-        out.index("checked one is confirmed") < out.index("Slips without consequence") < out.rindex("The sign of `u2`")
+        out.index("checked, one is confirmed") < out.index("Slips without consequence") < out.rindex("The sign of `u2`")
     )
     assert "1. 2 again: The sign of `u2` is reversed." in out
     assert (
@@ -180,7 +180,7 @@ BAD = {
     "syntax": (text([row("1", "d_x4 = (u2 - ", TANGENTIAL)]), "is not a formula"),
     "unknown symbol": (text([row("1", "d_x4 = u3/x1", TANGENTIAL)]), '"u3" is not a symbol of [scope.main]'),
     "unknown scope": (text([{**GOOD, "scope": "other"}]), 'no scope "other"'),
-    "unknown name of ours": (text([GOOD], HEAD + 'x9 = "r_dott"\n'), '"r_dott" is not a name of a derivation'),
+    "unknown name of ours": (text([GOOD], HEAD + 'x9 = "r_dott"\n'), 'no derivation defines the name "r_dott"'),
     "unknown model": (text([row("1", "u2", "polar_orbits:first_order.r")]), 'there is no derivation "polar_orbits"'),
     "unknown row": (text([{**GOOD, "from": "row['4.1']"}]), 'there is no row "4.1" with a formula'),
     "follows from itself": (text([{**GOOD, "from": "row['1']"}]), "cannot follow from itself"),

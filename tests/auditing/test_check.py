@@ -220,7 +220,7 @@ def test_notebooks_show_mathematics() -> None:
 def test_indonesian_has_the_same(run: Run) -> None:
     code, out, _ = run(r"\ddot z = n^2 z", "--model", "hill", "--lang", "id")
     assert code == 5
-    assert "salah: tanda n^2 z terbalik; yang benar" in out
+    assert r"salah: tanda n^2 z terbalik; bentuk yang benar \ddot z = -n^2 z" in out
 
 
 def test_capitals_that_are_read_as_a_product_are_told_and_may_be_one_name() -> None:

@@ -67,7 +67,12 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
             ]
             cells = [name, *known, proof.theorem.name, f"{seconds:.1f}"]
             lines.append("| " + " | ".join(cells) + " |")
-    lines += ["", "Not proved, with the step that fails, or beyond what is proved here, with the feature:", ""]
+    lines += [
+        "",
+        "The following instances were not proved. "
+        "The reason is the step of the proof that fails, or a feature that is not covered:",
+        "",
+    ]
     lines += ["| instance | status | reason |", "| --- | --- | --- |"]
     lines += [f"| {n} | {p.status.value} | {p.reason} |" for n, p, _ in found if p.status is not Outcome.PROVED]
     return "\n".join(lines) + "\n"

@@ -513,7 +513,7 @@ def test_checkout_is_derived_whole_and_leftovers_go(
         "short_walk.py",
         "short_walk.tex",
     }
-    assert "notes.tex  was not written by satsym; remove it" in out
+    assert "notes.tex  was not written by satsym; remove this file" in out
     (generated / "notes.tex").unlink()
     assert run("derive", "--check")[0] == 0
     assert "derivations/walking.py" in (generated / "short_walk.py").read_text(encoding="utf-8")

@@ -170,7 +170,7 @@ def test_summaries_of_other_kinds_of_systems() -> None:
 @pytest.mark.parametrize(
     ("weights", "complaint"),
     [
-        ({"Q": "[1, 1, -0.1, 1]"}, "[lqr] Q: the cost has no lower bound, for at the frequency 0 "),
+        ({"Q": "[1, 1, -0.1, 1]"}, "[lqr] Q: the cost has no lower bound, because at the frequency 0 "),
         ({"Q": "[[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"}, "[lqr] Q: not symmetric"),
         ({"R": "[0]"}, "[lqr] R: not positive definite"),
         ({"inputs": '["u1"]'}, "[lqr] inputs: not stabilisable, the inputs u1 cannot control the mode s = 0"),

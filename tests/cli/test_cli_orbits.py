@@ -114,7 +114,7 @@ def test_people_get_the_facts_and_what_they_mean(name: str, capsys: pytest.Captu
         assert "Floquet multipliers: no period" in words
         assert "turning" not in words
     else:
-        assert "called an ellipse: the eccentricity is above 1e-12" in words
+        assert "called an ellipse: the eccentricity exceeds 1e-12" in words
         assert "In Lyapunov's sense the orbit is therefore unstable" in words
         assert "orbitally stable" in words
         assert ("Hill's equations" in words) == (name == "itb-earth")
@@ -131,8 +131,8 @@ def test_the_kind_is_coloured_by_whether_it_closes() -> None:
         ({"x": "0.0"}, "case.toml: [initial]: position is the centre itself; start somewhere else"),
         ({"mu": "0.0"}, "[parameters] mu: 0 is outside the domain of mu"),
         ({"mu": "-1.0"}, "[parameters] mu: -1 is outside the domain of mu"),
-        ({"x": "nan"}, "[initial] x: the number is nan"),
-        ({"v_y": "inf"}, "[initial] v_y: the number is inf"),
+        ({"x": "nan"}, "[initial] x: got a number that is nan"),
+        ({"v_y": "inf"}, "[initial] v_y: got a number that is inf"),
         ({"x": "1e300"}, "a result exceeds the range of floating-point numbers; check the units"),
         ({"x": "1e-300"}, "a result exceeds the range of floating-point numbers; check the units"),
     ],

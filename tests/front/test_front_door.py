@@ -190,5 +190,5 @@ def test_bad_input_is_one_line_that_says_what_to_do(refused: Callable[[], Any], 
 def test_a_name_that_no_module_can_have_is_refused_before_anything_is_solved() -> None:
     from dataclasses import replace
 
-    with pytest.raises(BadInput, match="the name of a model must be a small letter"):
+    with pytest.raises(BadInput, match="the name of a model must be a lower-case letter"):
         satsym.Instance.of(replace(PUSH, name="Sled"), initial={"q": 0, "v": 0}, tf=1)

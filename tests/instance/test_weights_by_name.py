@@ -55,7 +55,7 @@ def test_the_cross_weight_of_an_instance_is_that_of_scipy_and_is_paid(tmp_path: 
 @pytest.mark.parametrize(
     ("wrong", "complaint"),
     [
-        ("N = [[0.1], [0.2], [0.0]]", r"\[lqr\] N: its shape does not fit; write a row for each state \(4\)"),
+        ("N = [[0.1], [0.2], [0.0]]", r"\[lqr\] N: the matrix has the wrong shape; write a row for each state \(4\)"),
         ("N = [[0.1, 0], [0.2, 0], [0, 0], [0, 0]]", "a number for each active input \\(1\\)"),
     ],
 )
@@ -74,7 +74,7 @@ def test_weights_are_changed_by_name(tmp_path: Path) -> None:
     assert changed(instance.load("uny-lqr"), {"lqr.N.x1.u2": 0.5}).lqr.N == ((0.5,), (0.0,), (0.0,), (0.0,))
     with pytest.raises(BadInput, match=r"\[lqr\] R: not positive definite"):
         changed(given, {"lqr.R.u2": 0.0})
-    with pytest.raises(BadInput, match=r"lqr.R.u1: .* gives no number for it"):
+    with pytest.raises(BadInput, match=r"lqr.R.u1: .* gives no number for this key"):
         changed(given, {"lqr.R.u1": 1.0})
 
 

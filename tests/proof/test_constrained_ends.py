@@ -231,8 +231,8 @@ def test_a_body_is_soonest_in_a_disc_of_the_phase_plane_with_one_switch() -> Non
         ("lambda_x", "other than states"),
         ("nu_1", "other than states"),
         ("given_y*y", "other than states"),
-        ("(y if y > 0.0 else -y)", "by cases"),
-        ("math.fabs(y)", "by cases"),
+        ("(y if y > 0.0 else -y)", "defined piecewise or contains absolute values"),
+        ("math.fabs(y)", "defined piecewise or contains absolute values"),
     ],
 )
 def test_constraints_of_another_form_are_refused(said: str, feature: str) -> None:

@@ -61,7 +61,7 @@ def test_a_file_is_a_language(folder: Path) -> None:
 
 
 def test_what_it_does_not_say_yet_is_named(folder: Path, derivation: Derivation) -> None:
-    with pytest.raises(MissingText, match=r"nl\.toml: no text for \".+\" in \[\w+\]"):
+    with pytest.raises(MissingText, match=r"nl\.toml: there is no text for \".+\" in \[\w+\]"):
         render(derivation, "nl")
 
 

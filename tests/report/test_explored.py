@@ -218,7 +218,7 @@ def test_the_answers_of_a_study_are_chosen_by_what_it_varies(run: Run, returned:
     with pytest.raises(BadInput, match="contains no trajectories; run the study again with --trajectories"):
         explored(returned, tmp_path / "bare")
     assert run("solve", "return-to-orbit", "--out", str(tmp_path / "one"))[0] == 0
-    with pytest.raises(BadInput, match="contains no study of solutions"):
+    with pytest.raises(BadInput, match="contains no study made by `satsym study`"):
         explored(returned, tmp_path / "one")
 
 

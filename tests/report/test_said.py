@@ -88,13 +88,13 @@ def test_nothing_is_translated_that_is_nowhere_said() -> None:
     ] == []
 
 
-MET_AT_NONE = ("after the start", "<when> that is given")
+MET_AT_NONE = ("no final time after the start satisfies", "the given final time <when> does not satisfy")
 WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
-TOO_EARLY = ("not after", "too far from")
+MISPLACED = (("not after", "a later time"), ("too far from", "a time closer to t0"))
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
 MISSHAPEN = ("the number <n> of entries is wrong, or numbers and rows are mixed", "row <i> has <n> numbers")
 UNSUPPORTED = (
-    *("", ", an unevaluated derivative", ", which is not evaluated", ", an unknown function"),
+    *("", ", an unevaluated derivative", ", which has no closed form", ", an unknown function"),
     *(", a value at another time", ", whose conditions do not cover all times", ", whose derivatives jump"),
 )
 UNDECIDED = ("the value of <a>", "the norm of a vector")
@@ -130,9 +130,9 @@ COMPOSED = (
     "bounds are <lower> and <upper>",
     "[control] <name>: the cost has no term in the square of this control, so it needs both bounds; write "
     "<again> = [lower, upper]",
-    *(f"<place>: terminal inequality <name>: no final time {when} satisfies it" for when in MET_AT_NONE),
+    *(f"<place>: terminal inequality <name>: {when} it" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
-    *(f"[time] <key>: <value> is {why} t0 = <start>; write a later time that can be reached" for why in TOO_EARLY),
+    *(f"[time] <key>: <value> is {why} t0 = <start>; write {what}" for why, what in MISPLACED),
     *(
         f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
         for what in MISSHAPEN
@@ -170,7 +170,7 @@ def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None
 
 MADE_OF_PARTS = {
     "<>: there are no results <>in <>; write them with `satsym <> <> --plot`, or give their folder with --from",
-    "[time] <>: <> <> t0 = <>; write a later time that can be reached",
+    "[time] <>: <> <> t0 = <>; write <>",
 }
 """Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
 

@@ -91,7 +91,7 @@ def test_where_the_way_ends_is_said_with_the_reason() -> None:
     case = satsym.load("double-integrator-energy").with_(continuation={"tf": [3.0, 1.5]})
     found = satsym.solve(case)
     assert found.status.value == "infeasible"
-    assert "continuation ends at tf = 2.0" in found.message
+    assert "continuation stops at tf = 2.0" in found.message
     assert math.isnan(found.objective)
     assert len(found.found.intermediate) > 1
 

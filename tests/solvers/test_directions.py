@@ -129,14 +129,14 @@ def test_an_angle_may_be_measured_from_anywhere():
 @pytest.mark.parametrize(
     ("problem", "complaint"),
     [
-        (steered(beta**2, PUSHED), "is not a sum a cos(beta) + b sin(beta) + c"),
-        (steered(cos(beta) ** 2, PUSHED), "is not a sum a cos(beta) + b sin(beta) + c"),
+        (steered(beta**2, PUSHED), "H does not have the form a cos(beta) + b sin(beta) + c"),
+        (steered(cos(beta) ** 2, PUSHED), "H does not have the form a cos(beta) + b sin(beta) + c"),
         (steered(sympify(1), PUSHED, control_sets={"way": Angle("bet")}), "'bet' is not a control; there are beta"),
         (steered(sympify(1), PUSHED, control_sets={"way": Angle()}), 'name one control, as in Angle("beta")'),
         (steered(sympify(1), PUSHED, control_sets={"a": Angle("beta"), "b": Ball("beta")}), "'beta' is in several"),
         (
             steered(sympify(1), PUSHED, control_set="box"),
-            "control_set is given although control_sets already gives each set; leave it out",
+            "control_set: it is given although control_sets states each control set; leave it out",
         ),
         (steered(sympify(1), {**PUSHED, vx: a, vy: a}), "beta enters neither the motion nor the cost"),
     ],

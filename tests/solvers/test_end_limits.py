@@ -188,7 +188,7 @@ def test_a_latest_time_that_is_none_is_said():
     before = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": -1.0, "c": 0.5}, tf="free", **given))
     assert "late: no final time after the start satisfies it" in before.to_dict()["message"]
     past = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": 1.0}, tf=2.0, **given))
-    assert "late: it is met at no final time 2 that is given" in past.to_dict()["message"]
+    assert "late: the given final time 2 does not satisfy it" in past.to_dict()["message"]
     in_time = certified(BACK_BY, parameters={"k": 3.0}, tf=2.0, **given)
     assert ends(in_time) == {"late": None}
 

@@ -74,7 +74,7 @@ def test_that_longer_is_always_cheaper_is_said_over_decades(tmp_path: Path) -> N
     assert durations[-1] >= 50.0
     assert costs == pytest.approx([24.0 / duration**3 for duration in durations], rel=1e-3)
     with spoken("id"):
-        assert message(found.message).startswith("makin lama selalu makin murah:")
+        assert message(found.message).startswith("durasi yang lebih lama selalu lebih murah:")
 
 
 def test_the_scale_of_bounded_thrust_is_that_of_its_distance() -> None:

@@ -195,10 +195,10 @@ def test_a_beam_under_a_ceiling_has_twice_the_effort():
 @pytest.mark.parametrize(
     ("of", "given", "message"),
     [
-        (WALL, {"initial": {"x": 0.2, "v": 1.0}}, "initial: path constraint wall is 0.1 there"),
-        (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall is 0.1 there"),
-        (WALL, {"initial": {"x": 0.1, "v": 1.0}}, "violated right after the start"),
-        (WALL, {"final": {"x": 0.1, "v": -1.0}}, "violated right before the end"),
+        (WALL, {"initial": {"x": 0.2, "v": 1.0}}, "initial: path constraint wall has the value 0.1 there"),
+        (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall has the value 0.1 there"),
+        (WALL, {"initial": {"x": 0.1, "v": 1.0}}, "violated just after the start"),
+        (WALL, {"final": {"x": 0.1, "v": -1.0}}, "violated just before the end"),
         (WALL, {"parameters": {"l": "free"}}, "cannot be combined with path constraints"),
     ],
 )
@@ -227,7 +227,7 @@ def test_a_start_along_a_boundary_is_no_violation_by_rounding(angle: float):
         return round_discs(initial=dict(zip(("x", "y", "vx", "vy"), np.concatenate(start).tolist(), strict=True)))
 
     refuse(begun(0.0).case)
-    with pytest.raises(BadInput, match="violated right after the start"):
+    with pytest.raises(BadInput, match="violated just after the start"):
         refuse(begun(-1e-6).case)
 
 

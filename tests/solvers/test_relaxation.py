@@ -43,7 +43,9 @@ def advised(tf: float) -> float:
 def test_half_the_new_control_diverges_over_a_revolution_and_is_told_why():
     solution = solve(shipped("soft-return", steps=200, relaxation=0.5))
     assert solution.status is Status.NOT_CONVERGED
-    assert solution.message.startswith("relaxation 0.5 diverges; it is stable only below about 0.009")
+    assert solution.message.startswith(
+        "relaxation 0.5 diverges; here the iteration converges only if relaxation is below about 0.009"
+    )
     assert "leave out relaxation to use a method without this limit" in solution.message
     assert solution.iterations < 20, "it is given up early"
 

@@ -164,5 +164,5 @@ def test_the_law_within_bounds_is_typeset_and_described(side: str):
 
 @pytest.mark.slow
 def test_a_magnitude_beside_a_bounded_angle_is_not_negative():
-    with pytest.raises(BadInput, match="a vector that b rotates, so it must not be negative"):
+    with pytest.raises(BadInput, match="a vector with the direction b, so it must not be negative"):
         satsym.Instance.of(THRIFTY, initial=START, tf=1, control={"T": (-1, 1), "b": (-1, 1)})

@@ -161,7 +161,7 @@ BOTH = ((polar(), {"T": (0, 2.009328897)}), (cartesian(), {"max_norm": 2.0093288
 
 
 def test_a_magnitude_is_not_negative():
-    with pytest.raises(BadInput, match="a vector that b rotates, so it must not be negative"):
+    with pytest.raises(BadInput, match="a vector with the direction b, so it must not be negative"):
         satsym.Instance.of(polar(), initial=LAUNCH, tf=1, control={"T": (-1, 1)})
 
 

@@ -113,7 +113,7 @@ def test_a_rate_that_is_not_measured_stays_and_carries_the_position_off() -> Non
     simulation = simulate(of, "pulses")
     assert simulation.metrics["q_dot_residual"] == pytest.approx(0.05, rel=1e-9)
     assert simulation.metrics["q_residual"] == pytest.approx(0.05 * 2.0, rel=1e-9)
-    assert "not at rest" in simulation.message
+    assert "the motion did not start at rest" in simulation.message
     relay = simulate(of, "switching")  # which looks at the rate as well
     assert abs(relay.metrics["q_dot_residual"]) < 1e-9
 
@@ -142,7 +142,7 @@ def test_pulses_wait_where_the_error_is_allowed() -> None:
         (replace(LINE, deadband=None), "no [switching] table"),
         (replace(LINE, final={"q": 0.0}), "[final] q_dot: missing"),
         (replace(LINE, lower=(0.0,)), "with 0 between them"),
-        (replace(LINE, upper=(math.inf,)), "not finite numbers"),
+        (replace(LINE, upper=(math.inf,)), "the bounds -1 and inf must be finite"),
         (replace(LINE, initial=(5e-4, 0.0)), "within the deadband of its target already"),
         (instance.load("double-integrator-fuel"), "no switching curve in closed form"),
     ],

@@ -75,7 +75,7 @@ def test_without_a_check_of_its_own_it_is_refused(divergence: StepFunction) -> N
 
 def test_its_sentences_are_asked_for_and_typeset(divergence: StepFunction, monkeypatch: pytest.MonkeyPatch) -> None:
     found = derive(DAMPED)
-    with pytest.raises(MissingText, match=r'en\.toml: no text for "divergence" in \[titles\]'):
+    with pytest.raises(MissingText, match=r'en\.toml: there is no text for "divergence" in \[titles\]'):
         document.render(found)
     own = tomllib.loads(example("A step of a derivation", "toml"))
     monkeypatch.setattr(document, "load", lambda language: load(language).with_own(own))

@@ -77,12 +77,12 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "1.0, positive=True",
             "1.0, typical=(1.0, 0.1)",
-            "mine.py:6: variable 'c': typical is (1.0, 0.1); give two numbers, low < high",
+            "mine.py:6: variable 'c': got the typical range (1.0, 0.1); give two numbers, low < high",
         ),
         (
             "1.0, positive=True",
             "1.0, typical=(1.0, 2.0, 3.0)",
-            "mine.py:6: variable 'c': typical is (1.0, 2.0, 3.0); give two numbers, low < high",
+            "mine.py:6: variable 'c': got the typical range (1.0, 2.0, 3.0); give two numbers, low < high",
         ),
         (
             '"place", "s"',

@@ -59,13 +59,13 @@ def test_typical_ranges_are_where_points_lie_and_defaults_go_with_them() -> None
 
 @pytest.mark.parametrize("typical", [(2.0, 1.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (1.0, float("inf"))])
 def test_ranges_that_are_none_are_refused(typical: tuple[float, float]) -> None:
-    with pytest.raises(ValueError, match=r"variable 'h': typical is .*; give two numbers, 0 < low < high"):
+    with pytest.raises(ValueError, match=r"variable 'h': got the typical range .*; give two numbers, 0 < low < high"):
         replace(STATES[0], typical=typical)
 
 
 @pytest.mark.parametrize("default", ["1", float("nan"), (1.0,)])
 def test_defaults_that_are_no_numbers_are_refused(default: object) -> None:
-    with pytest.raises(ValueError, match=r"variable 'h': default is .*; give a finite number"):
+    with pytest.raises(ValueError, match=r"variable 'h': got the default .*; give a finite number"):
         replace(STATES[0], default=default)  # type: ignore[arg-type]
 
 
@@ -79,7 +79,7 @@ def test_what_is_not_finite_is_refused_where_it_is_stated(value: sp.Expr) -> Non
 
 @pytest.mark.parametrize("name", ["", "Climb", "a b", "9", "class "])
 def test_names_that_no_file_can_have_are_refused(name: str) -> None:
-    with pytest.raises(DerivationError, match="the name of a model must be a small letter"):
+    with pytest.raises(DerivationError, match="the name of a model must be a lower-case letter, followed by"):
         derive(replace(climb(v), name=name))
 
 

@@ -217,8 +217,8 @@ def _defaults(model: Kernels) -> tuple[float, ...]:
     missing = [v.symbol for v in model.spec.parameters if v.default is None]
     if missing:
         raise BadInput(
-            f"{model.spec.name}: {', '.join(missing)} has no default; write an instance with a value, and name the "
-            "instance"
+            f"{model.spec.name}: {', '.join(missing)} has no default; write an instance that gives a value, "
+            "and use that instance in place of the model"
         )
     return tuple(float(v.default) for v in model.spec.parameters if v.default is not None)
 

@@ -268,7 +268,7 @@ def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
         return Stability(UNSTABLE, reason, False)
     listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)
     reason = (
-        f"{listed} lie on the imaginary axis, in Jordan blocks of size 1 only, and no eigenvalue lies in the "
+        f"the imaginary axis contains {listed}, in Jordan blocks of size 1 only, and no eigenvalue lies in the "
         "right half-plane"
     )
     return Stability(MARGINAL, reason, False)

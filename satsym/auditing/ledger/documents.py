@@ -68,4 +68,4 @@ def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> Non
     """Refuse items that no ledger has."""
     known = dict.fromkeys(name for x in ledgers for row in x.rows for name in (row.table.item, row.key))
     for item in items:
-        refuse_unknown("no row", item, known)
+        refuse_unknown("there is no row", item, known)

@@ -175,7 +175,7 @@ class _Reader:
         key = f"{table.item} {table.part}".strip()
         row = Row(table, key, self._place("row", index))
         with self._telling("row", "scope", index, key):
-            refuse_unknown("no scope", table.scope, self._scopes)
+            refuse_unknown("there is no scope", table.scope, self._scopes)
         if not table.legible:
             return row
         scope = self._scopes[table.scope]

@@ -43,7 +43,7 @@ def check(tree: Formula, own: Collection[str]) -> None:
             if isinstance(part, Sym) and part.name not in own and part.name not in _shipped():
                 hint = suggestion(part.name, sorted(own))
                 raise BadInput(
-                    f"{shown(part.name)} is not a name of a derivation; {hint} (a symbol of your own: [symbols])"
+                    f"no derivation defines the name {shown(part.name)}; {hint} (a symbol of your own: [symbols])"
                 )
             if isinstance(part, Call) and part.function == "at":
                 (argument,) = part.arguments

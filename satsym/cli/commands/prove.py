@@ -28,7 +28,9 @@ Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved her
 @click.option(
     "--digits", type=click.IntRange(6, 60), default=20, metavar="N", help="Significant digits; 20 by default."
 )
-@place_option("--latex", "document", metavar="FILE", help="Also typeset it; a file of this name is replaced.")
+@place_option(
+    "--latex", "document", metavar="FILE", help="Also typeset it in this file, which is replaced if it exists."
+)
 @set_option
 @json_option
 @out_option

@@ -36,8 +36,8 @@ def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_
     """Draft a ledger of a document. It lists the displayed formulas, and what each is to be checked against.
 
     FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; a person
-    confirms a row by taking out its line `draft = true`. Reading again keeps what was confirmed. What cannot be read
-    is listed with its place.
+    confirms a row by taking out its line `draft = true`. If the document is read again, confirmed
+    rows are kept. What cannot be read is listed with its place.
     """
     from satsym.auditing.document import drafting
     from satsym.report.results.files import write_text

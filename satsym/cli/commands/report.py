@@ -31,7 +31,7 @@ Examples:
 
 @command(epilog=EXAMPLES)
 @subject_argument
-@place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
+@place_option("--html", "page", metavar="FILE", help="Write the page to this file, which is replaced if it exists.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
 @click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
 @place_option(

@@ -46,7 +46,7 @@ def _listed(choices: type[Choice]) -> str:
     "--vary",
     multiple=True,
     metavar="KEY=LOW:HIGH:N",
-    help="A grid of N values, evenly spaced; with KEY=log:LOW:HIGH:N, in equal ratios.",
+    help="A grid of N evenly spaced values; with KEY=log:LOW:HIGH:N, logarithmically spaced.",
 )
 @click.option("--sample", type=int, metavar="N", help="Draw a random sample of N rows instead of a grid.")
 @click.option("--normal", multiple=True, metavar="KEY=MEAN,SD", help="Draw from a normal distribution.")

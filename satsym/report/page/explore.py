@@ -145,8 +145,8 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
     said = json.loads(listing.result)
     if listing.command != STUDY or said.get("each") != "solve":
         raise BadInput(
-            f"--study: {place}: contains no study of solutions; write one with `satsym study X --trajectories "
-            "--out DIR`"
+            f"--study: {place} contains no study made by `satsym study`; write one with `satsym study X "
+            "--trajectories --out DIR`"
         )
     if (said["model"], said["instance"]) != (instance.model.spec.name, instance.name):
         raise BadInput(f"--study: {place}: belongs to {printable(said['instance'])}, not to {instance.name}")

@@ -269,7 +269,9 @@ def drafted_text(ledger: Path, found: Draft) -> str:
             rows=len(found.rows),
             kept=found.kept,
         ),
-        say("immediate verdicts: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]),
+        say(
+            "verdicts before confirmation: <right> right, <wrong> wrong", right=counted["right"], wrong=counted["wrong"]
+        ),
     ]
     lines += [say("<place>: not read: <said_why>", place=place, said_why=message(why)) for place, why in found.unread]
     lines += [

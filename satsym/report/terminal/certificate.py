@@ -24,7 +24,9 @@ _HOLDS = {
     "stated times of events": "events occur at the stated times",
     "stated switching times, to the spacing of the nodes": "controls switch between the nodes next to the stated times",
     "stated times of saturation": "controls meet their bounds at the stated times",
-    "the two minimisers of H at a jump remain equally good": "minimisers of H equally good at the jump only",
+    "the two minimisers of H at a jump are still equally good after it": (
+        "the two minimisers of H are equally good only at the jump itself"
+    ),
     "coinciding switching times": "switching times distinct",
     "conjugate points: none": "no conjugate points",
     "correction of the nodes": "nodes lie on the recomputed trajectory",
@@ -54,7 +56,7 @@ _HOLDS = {
     "path constraint violated": "path constraints satisfied",
     "distance from the points on the way": "points on the way passed",
     "derivative of the cost with respect to the times of the points on the way": (
-        "cost stationary in the times of the points on the way"
+        "cost stationary with respect to the times of the points on the way"
     ),
     "second variation in arc lengths and directions": "second variation positive in arc lengths and directions",
     "second variation in the switching times": "second variation positive in the switching times",
@@ -83,7 +85,7 @@ _FAILS = {
     "junction defect": "arcs joined with gaps",
     "kernels contradict each other": "generated kernels do not agree",
     "a limit at the end is violated": "limits at the end violated",
-    "the two minimisers of H at a jump remain equally good": (
+    "the two minimisers of H at a jump are still equally good after it": (
         "the minimisers of H on both sides of a jump are equally good"
     ),
     "the multiplier of a limit at the end vanishes": "a multiplier of the limits at the end is zero",

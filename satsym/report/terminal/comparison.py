@@ -127,7 +127,7 @@ def _range(case: Case, over: Range) -> list[str]:
                 )
             )
     return [
-        *wrapped(say("<name> for other dampings and commands", name=case.instance.name)),
+        *wrapped(say("<name> for other damping ratios and commands", name=case.instance.name)),
         *table([header, *rows], right=range(len(header) - 1)),
     ]
 

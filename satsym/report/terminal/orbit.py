@@ -143,9 +143,9 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         (say("second singular value of M - I"), figure(matrix.second_singular, 2), say("relative: its rank is one")),
         ("(M - I)^2", figure(matrix.square, 2), say("relative: it is nilpotent")),
         (
-            say("lag after a revolution"),
+            say("lag per revolution"),
             figure(found.lag or 0.0) + unit,
-            say("if the speed is <share> higher; equal in every revolution", share=f"{FASTER:g}"),
+            say("if the speed is <share> higher", share=f"{FASTER:g}"),
         ),
     ]
     return table([("", "", ""), *rows], right=(1,))[1:]

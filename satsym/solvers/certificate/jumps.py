@@ -30,7 +30,11 @@ def checks(solution: Solution) -> list[Check]:
         if unknown
         else []
     )
-    found += [Check("the two minimisers of H at a jump remain equally good", float(flat), 0.0)] if crossing else []
+    found += (
+        [Check("the two minimisers of H at a jump are still equally good after it", float(flat), 0.0)]
+        if crossing
+        else []
+    )
     return found + ([Check("another minimiser of H remains equally good", float(tied), 0.0)] if tied else [])
 
 

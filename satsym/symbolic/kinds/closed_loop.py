@@ -113,7 +113,7 @@ def critical_damping(so_far: Derivation) -> Step:
     wanted = sp.Poly(polynomial - (s + damping) ** 2, s).all_coeffs()
     found = sp.solve(wanted, gains, dict=True)
     if len(found) != 1 or set(found[0]) != set(gains):
-        raise DerivationError(f"{model.name}: no choice of the gains places both poles")
+        raise DerivationError(f"{model.name}: no choice of gains places both poles where they are required")
     equations = tuple(Equation(k.name, k, factored(found[0][k])) for k in gains)
     value = numeric([polynomial, sp.diff(polynomial, s)])
     gain = numeric([e.rhs for e in equations])

@@ -87,7 +87,7 @@ class Gyrostat(Model):
         if not named <= set(self.bodies):
             yield "torques and motors must act on the bodies that are stated"
         if set(self.drives) != set(symbols_of(self.controls)):
-            yield "the drives must define every control and nothing else"
+            yield "drives: every control must be defined, and nothing else"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
         """Bodies and torques by states, drives by their rates as well, quantities by those before them."""
