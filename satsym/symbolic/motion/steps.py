@@ -11,6 +11,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, gradient, simplified, simplify, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, agree, compare, first_order_at_zero, identity, numeric, partial
+from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Particle, symbols_of, t
 from satsym.symbolic.motion.central_force import inertial_velocity, uncontrolled_force
@@ -248,9 +249,11 @@ def _antiderivative(function: sp.Expr, by: sp.Symbol) -> sp.Expr | None:
         new = sp.Dummy("w", positive=True)
         quotient = simplify(function / sp.diff(w, by)).subs(w, new)
         if not quotient.has(by):
-            outer = sp.integrate(quotient, new)
+            outer = sp.integrate(as_fractions(quotient), new)  # of decimals sympy cannot tell which coefficients vanish
             # sympy answers by functions such as expint, of which nothing here makes numbers
-            return None if outer.has(sp.Integral) or unknown_functions(outer) else outer.xreplace({new: w})
+            if outer.has(sp.Integral) or unknown_functions(outer):
+                return None
+            return (as_decimals(outer) if quotient.has(sp.Float) else outer).xreplace({new: w})
     if function.is_Add:
         terms = [_antiderivative(term, by) for term in function.args]
         return None if None in terms else sp.Add(*terms)
