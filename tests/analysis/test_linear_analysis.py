@@ -54,6 +54,21 @@ def test_jordan_blocks_are_found_in_any_basis(blocks, seed):
     assert max(abs(e.value - round(e.value.real)) for e in found) < 1e-6
 
 
+@pytest.mark.parametrize(
+    ("A", "blocks"),
+    [
+        ([[1.0 + 2e-16, -1e-16], [0.0, 1.0 - 1e-16]], (1, 1)),
+        ([[1.0, 1e-16], [0.0, 1.0]], (1, 1)),
+        ([[0.0, 1.0, 1e-16, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]], (1, 1)),
+        ([[0.0, 1.0], [1e-16, 0.0]], (1,)),
+        ([[1.0, 1e-10], [0.0, 1.0]], (2,)),
+    ],
+)
+def test_what_rounding_may_have_left_is_told_from_small_entries(A, blocks):
+    """An entry next to others of its row and column may be rounding; a slow motion, or a small entry, is not."""
+    assert spectrum(np.array(A))[0].blocks == blocks
+
+
 def test_a_mode_out_of_reach_that_rests_is_exactly_zero():
     """The torque of a wheel moves satellite and wheel one against the other; together they turn on, or rest."""
     found = controllability(linearise(instance.load("lapan-classical")).system)

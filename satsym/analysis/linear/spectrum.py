@@ -26,8 +26,8 @@ ROUNDING, KNOWN = 2e-15, 1e-12
 """Relative changes of all entries together: below the first they come from rounding, above the second they do not."""
 
 SMALLEST_ENTRY = 1e-15
-"""An entry that is smaller than this, relative to the largest in suitable units, may be what rounding has left of
-zero."""
+"""An entry that is smaller than this may be what rounding has left of zero: relative to the largest in suitable units,
+or, in the units as given, to the largest of its row and to the largest of its column."""
 
 DISTANT = 1e-4
 """The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
@@ -86,13 +86,21 @@ def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, 
     with ctx.workprec(BITS):
         known = _Tried(A, np.maximum(size, errors / ROUNDING))
         possible = [one for change in (KNOWN, ROUNDING) for one in known.within(change, fitted.rate)]
-        faint = (size <= SMALLEST_ENTRY * size.max()) & (size > 0.0)
+        faint = (size > 0.0) & ((size <= SMALLEST_ENTRY * size.max()) | _faint_as_given(np.abs(given.A)))
         if faint.any():
             doubtful = _Tried(A, np.where(faint, size / (ROUNDING / 2), known.entries), known)
             more = [one for change in (KNOWN, ROUNDING) for one in doubtful.within(change, fitted.rate)]
             possible = more + possible
     told = [[(each.blocks, np.sign(each.value.real)) for each in one] for one in possible]
     return tuple(one for k, one in enumerate(possible) if told[k] not in told[:k])
+
+
+def _faint_as_given(size: Array) -> NDArray[np.bool_]:
+    """Entries that rounding may have left, by the units in which it happened: no others make it large.
+
+    In other units 1e-16 above the diagonal of a unit matrix is as large as any entry.
+    """
+    return size <= SMALLEST_ENTRY * np.minimum(size.max(axis=1)[:, None], size.max(axis=0))
 
 
 def of_roots(found: Sequence[rational.Root]) -> tuple[Eigenvalue, ...]:
