@@ -296,9 +296,13 @@ def test_no_expression_of_a_step_can_be_falsified(monkeypatch: pytest.MonkeyPatc
     assert caught > 2
 
 
-@pytest.mark.parametrize("field", ["singular", "slope", "derivatives"])
-def test_a_wrong_singular_arc_is_caught(monkeypatch: pytest.MonkeyPatch, field: str) -> None:
-    found = derived(ROCKET)
+@pytest.mark.parametrize(
+    ("problem", "field"),
+    [(ROCKET, "singular"), (ROCKET, "slope"), (ROCKET, "derivatives"), (CATALYST, "singular")],
+    ids=["singular", "slope", "derivatives", "where a condition is not solved"],
+)
+def test_a_wrong_singular_arc_is_caught(monkeypatch: pytest.MonkeyPatch, problem: Problem, field: str) -> None:
+    found = derived(problem)
     (search,) = singular.searches(found)
     right = getattr(search, field)
     wrong = (*right[:-1], 2 * right[-1]) if field == "derivatives" else 2 * right

@@ -19,7 +19,6 @@ from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import Check, Point, compare, numeric, partial
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
-from satsym.symbolic.factoring import factored
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.functions import along_extremals, directional, flow
@@ -46,7 +45,7 @@ def singular_arcs(so_far: Derivation) -> Step:
                 so_far, "numeric derivative along extremals", before, list(search.derivatives), search.magnitude
             )
         )
-        if search.outcome in ("order", "closed") and not search.surface.left:
+        if search.outcome == "order" or (search.outcome == "closed" and not search.surface.left):
             checks.append(_stays(so_far, search))
         conclusions += _conclusions(so_far, search)
     sources = ("switching_function", "switching_rate")
@@ -108,8 +107,8 @@ def chattering(so_far: Derivation) -> tuple[str, ...]:
 
 
 def _kelley(search: Search) -> sp.Expr:
-    """What the generalised Legendre-Clebsch condition is about, of an even order."""
-    return factored((-1) ** (search.order // 2) * search.slope)
+    """What the generalised Legendre-Clebsch condition is about, of an even order; factored, as the slope is."""
+    return (-1) ** (search.order // 2) * search.slope
 
 
 def _kept(search: Search) -> tuple[sp.Expr, ...]:
@@ -133,18 +132,26 @@ def _on_surface(search: Search) -> Any:
 
 
 def _stays(so_far: Derivation, search: Search) -> Check:
-    """Check that on the surface, with the singular control, the next derivatives vanish, by differences."""
+    """Check that on the surface, with the singular control, the next derivatives vanish, by differences.
+
+    Where some of the conditions are not solved, points do not meet these. The control is solved for without them, so
+    that the last derivative vanishes all the same.
+    """
     rates = {z: rate.xreplace(dict(search.magnitude)) for z, rate in flow(so_far).items()}
     conditions = [search.threshold, *(d.xreplace({search.control: sp.Integer(0)}) for d in search.derivatives)]
     conditions = conditions[:-1] if search.outcome == "order" else conditions
-    values, motion, move = numeric(conditions), numeric(list(rates.values())), _on_surface(search)
+    unsolved = bool(search.surface.left)
+    values, motion = numeric(conditions[-1:] if unsolved else conditions), numeric(list(rates.values()))
+    move = _on_surface(search)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = move(point)
-        found = [*values(here), *directional(values, motion, list(rates), here)]
+        changes = directional(values, motion, list(rates), here)
+        found = changes if unsolved else [*values(here), *changes]
         return found, [0] * len(found)
 
-    return compare("vanish on the arc", _symbols(so_far, conditions, rates), sides)
+    claim = "last derivative vanishes" if unsolved else "vanish on the arc"
+    return compare(claim, _symbols(so_far, conditions, rates), sides)
 
 
 def _slope_of_differences(so_far: Derivation, search: Search, suffix: str) -> Check:
