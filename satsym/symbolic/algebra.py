@@ -142,12 +142,14 @@ def shortened(expression: sp.Expr) -> sp.Expr:
 def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
     """Letters for functions of which nothing is known together with others: sympy would look for that for minutes.
 
-    Of sines and cosines those are such of which there are no powers, and all of them where none multiplies another.
+    Of sines and cosines those are such of which there are no powers, and all of them where none multiplies another. Of
+    hyperbolic functions those next to exponentials are such, too, unless the expression may be zero.
     """
-    hyperbolic, exponentials = expression.atoms(HyperbolicFunction), expression.atoms(sp.exp)
-    found = [f for f in hyperbolic if not _meets(f, (hyperbolic | exponentials) - {f})]
-    turning = expression.atoms(TrigonometricFunction)
-    if _degree(expression, turning) <= 1 and differs_from_zero(expression):
+    hyperbolic, turning = expression.atoms(HyperbolicFunction), expression.atoms(TrigonometricFunction)
+    nonzero = bool(hyperbolic or turning) and differs_from_zero(expression)
+    related = hyperbolic if nonzero else hyperbolic | expression.atoms(sp.exp)
+    found = [f for f in hyperbolic if not _meets(f, related - {f})]
+    if nonzero and _degree(expression, turning) <= 1:
         found += turning
     else:
         raised = {p.base for p in expression.atoms(sp.Pow)}

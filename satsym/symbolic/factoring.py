@@ -7,6 +7,7 @@ few take it minutes, depending on the random numbers that it draws for the evalu
 from __future__ import annotations
 
 import sympy as sp
+from sympy.polys.rings import sring
 
 from satsym.symbolic.decimals import with_letters
 
@@ -71,22 +72,21 @@ def factor_list(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, i
     """Content and irreducible factors with multiplicities; each has a positive leading coefficient, as in sympy."""
     from flint import Ordering, fmpz_mpoly_ctx
 
-    try:
-        poly = sp.Poly(polynomial)
-    except sp.GeneratorsNeeded:  # all but a number cancels
+    ring, poly = sring(polynomial)  # sparse: Poly has a place for each product of powers up to the highest ones
+    if not ring.ngens:  # all but a number cancels
         return sp.expand(polynomial), []
-    if max(poly.degree_list()) > HIGHEST_DEGREE and (exponentials := sorted(polynomial.atoms(sp.exp), key=str)):
+    if max(poly.degrees()) > HIGHEST_DEGREE and (exponentials := sorted(polynomial.atoms(sp.exp), key=str)):
         letters = {e: sp.Symbol(f"exponential_{k}", positive=True) for k, e in enumerate(exponentials)}
         back = {letter: e for e, letter in letters.items()}
         content, found = factor_list(polynomial.xreplace(letters))
         return content, [(factor.xreplace(back), times) for factor, times in found]
-    if not (poly.domain.is_ZZ or poly.domain.is_QQ):
+    if not (ring.domain.is_ZZ or ring.domain.is_QQ):
         content, found = sp.factor_list(polynomial)
         return content, found
-    denominator, whole = poly.clear_denoms(convert=True)
-    context = fmpz_mpoly_ctx.get([f"x{k}" for k in range(len(poly.gens))], Ordering.lex)
+    denominator, whole = poly.clear_denoms()
+    context = fmpz_mpoly_ctx.get([f"x{k}" for k in range(ring.ngens)], Ordering.lex)
     try:
-        number, found = context.from_dict({powers: int(c) for powers, c in whole.as_dict(native=True).items()}).factor()
+        number, found = context.from_dict({powers: int(c) for powers, c in whole.items()}).factor()
     except OverflowError:  # python-flint sorts the factors by coefficients, of which it takes none beyond 64 bits
         content, found = sp.factor_list(polynomial)
         return content, found
@@ -96,5 +96,5 @@ def factor_list(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, i
         sign = 1 if terms[max(terms)] > 0 else -1
         content *= sign**times
         own = {powers: sign * int(c) for powers, c in terms.items()}
-        factors.append((sp.Poly.from_dict(own, *poly.gens, domain=sp.ZZ).as_expr(), times))
+        factors.append((ring.from_dict(own, orig_domain=sp.ZZ).as_expr(), times))
     return content, factors

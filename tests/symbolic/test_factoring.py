@@ -50,6 +50,12 @@ def test_the_factors_of_a_long_product_are_found():
     assert factored(sp.together(sp.expand(product))) == product
 
 
+def test_high_powers_of_many_symbols_take_no_place_for_those_that_are_missing():
+    a, b, c, d = sp.symbols("a b c d", real=True)
+    factors = (a**150 + x, b**150 + y, c**150 + z, d**150 + k)
+    assert set(factored(sp.expand(sp.Mul(*factors))).args) == set(factors)
+
+
 def test_decimals_are_letters_in_what_is_factored(monkeypatch: pytest.MonkeyPatch):
     share = sp.Float("0.659605378721157", DIGITS) ** 2 / 11100
     asked, ask = [], sp.factor

@@ -190,6 +190,19 @@ def test_an_exponential_with_a_decimal_in_it_is_no_high_power_of_another(make: C
     assert simplified((steep - 2 * steep**2) / (1 - 2 * steep)) == steep
 
 
+def test_a_hyperbolic_function_next_to_exponentials_is_a_letter_to_sympy() -> None:
+    """Sympy takes minutes for the factors of what has both, in complex numbers."""
+    h, faded = sp.tanh(q / 80), sp.exp(-0.010000000000000002 * q)
+    k2, k4, v, l1, l2 = sp.symbols("k2 k4 v l1 l2", real=True)
+    slope = 30000.0 * k2 * v**2 + 20000.0 * k2 * v + 30000.0 * v**2 + 20000.0 * v
+    rate = (v + 1) * (-10000.0 * k2 * v**2 - 10000.0 * v**2) + sp.Rational(15525180, 97) * h + faded * 66 / 97
+    u = sp.Rational(3286969, 1000000) / k4
+    drift = sp.Rational(776259, 388) * (1 - h**2) - sp.Float("0.0068041237113402", DIGITS) * faded
+    given = v * drift - slope * (rate - u * l2) - u * (slope * l2 - l1)
+    at = {q: sp.Rational(1, 3), v: sp.Rational(1, 7), k2: sp.Rational(2, 5), k4: 3, l1: 5, l2: 7}
+    assert abs((simplified(given) / given).subs(at).evalf() - 1) < 1e-12
+
+
 def test_one_hyperbolic_function_is_a_letter_to_sympy() -> None:
     """Its search for identities takes minutes where there are none."""
     h = sp.tanh(q)

@@ -73,14 +73,14 @@ def _one_exponential(product: sp.Expr) -> sp.Expr:
 
 def _squared(total: sp.Expr) -> sp.Expr:
     """Every a x^2 + 2 a x y + a y^2 in it as a (x + y)^2."""
-    terms = list(total.args)
+    terms = dict.fromkeys(total.args)  # in order, and found by their hash
     for term, one, other in [(t, *pair) for t in total.args for pair in _pairs(t)]:
         for sign in (1, -1):
             a = sign * term / (2 * one * other)
-            squares = [a * one**2, a * other**2]
-            if all(t in terms for t in (term, *squares)):
-                terms = [t for t in terms if t not in (term, *squares)] + [a * (one + sign * other) ** 2]
-    return _sum(total, terms)
+            united = term, a * one**2, a * other**2
+            if all(t in terms for t in united):
+                terms = dict.fromkeys([t for t in terms if t not in united] + [a * (one + sign * other) ** 2])
+    return _sum(total, list(terms))
 
 
 def _sum(total: sp.Expr, terms: Sequence[sp.Expr]) -> sp.Expr:
