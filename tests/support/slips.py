@@ -316,7 +316,7 @@ def _iterated(function: ast.FunctionDef, statement: ast.stmt) -> bool:
 
 
 def _guards_only(function: ast.FunctionDef, statement: ast.stmt) -> bool:
-    """Whether what a statement assigns is used only in zero times a root, where nothing but its sign counts."""
+    """Whether what a statement outside loops assigns is used only in zero times a root, where its sign alone counts."""
     products = [node for node in ast.walk(function) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)]
     guards = [node for node in products if ast.unparse(node.left) == "0.0" and "sqrt(" in ast.unparse(node.right)]
     inside = {id(part) for guard in guards for part in ast.walk(guard)}
@@ -327,7 +327,9 @@ def _guards_only(function: ast.FunctionDef, statement: ast.stmt) -> bool:
             return False
         new = {ast.unparse(target) for target in one.targets} - names
         names |= new
-        for other in (node for node in ast.walk(function) if isinstance(node, ast.stmt) and node is not function):
+        for other in (node for node in ast.walk(function) if isinstance(node, ast.stmt)):
+            if other.lineno <= statement.lineno:  # whatever has these names there
+                continue
             used = {n.id for n in ast.walk(other) if isinstance(n, ast.Name) and id(n) not in inside} & new
             if used and other is not one and other not in waiting:
                 waiting.append(other)
