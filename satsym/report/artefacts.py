@@ -15,12 +15,16 @@ from satsym.kernels.digest import sealed
 from satsym.records import record
 from satsym.report import stamps
 from satsym.report.results.files import write_text
+from satsym.status import BadInput
 
 if TYPE_CHECKING:
     from satsym.kernels import Kernels
     from satsym.symbolic import Derivation, Model, Problem
 
 SUFFIXES = (".py", ".tex", record.SUFFIX)
+SIGNATURE = "Written by satsym from "
+"""What the machine writes says so; no other file is ever overwritten or removed."""
+
 KEPT = "__init__.py"
 """The one file of the generated folder that people write."""
 
@@ -92,12 +96,13 @@ def renew(
     Raises
     ------
     BadInput
-        As there.
+        As there; also if a file that would be overwritten was not written by satsym.
     """
     engine = stamps.engine()
     known = {path: None if fresh else stamps.read(path, engine) for path in paths}
     done = {path for path, stamp in known.items() if stamp and stamps.holds(stamp, folder)}
     stated = {path: _stated(path, max_seconds) for path in paths if path not in done}
+    _refuse_others((f"{name}{suffix}" for names in stated.values() for name in names for suffix in SUFFIXES), folder)
     jobs = [
         (path, name, folder, max_seconds)
         for path, identities in stated.items()
@@ -267,12 +272,27 @@ def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[
 
 
 def write(rendered: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write what was rendered, each file whole or not at all; the paths."""
+    """Write what was rendered, each file whole or not at all; the paths.
+
+    Raises
+    ------
+    BadInput
+        If a file of such a name was not written by satsym.
+    """
+    _refuse_others(rendered, folder)
     written = []
     for name, text in rendered.items():
         write_text(folder / name, text)
         written.append(folder / name)
     return written
+
+
+def _refuse_others(names: Iterable[str], folder: Path) -> None:
+    for path in (folder / name for name in names):
+        if path.is_file() and SIGNATURE not in path.read_text("utf-8", "replace"):
+            raise BadInput(
+                f"{path}: this file exists and was not written by satsym; give another folder, or rename the problem"
+            )
 
 
 def source_of(path: Path) -> str:

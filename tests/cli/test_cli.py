@@ -484,6 +484,18 @@ def test_missing_files_are_stale_and_check_writes_nothing(run: Run, derivation: 
     assert not (tmp_path / "none").exists()
 
 
+def test_no_file_of_others_is_overwritten(run: Run, derivation: Path, tmp_path: Path) -> None:
+    """Not the model itself, either, where the problem has its name."""
+    model = derivation.rename(tmp_path / "short_walk.py")
+    text = model.read_text(encoding="utf-8")
+    code, out, err = run("derive", model, "--out", tmp_path)
+    assert (code, out) == (3, "")
+    assert one_line(err)
+    assert "short_walk.py: this file exists and was not written by satsym; give another folder" in err
+    assert [path.name for path in tmp_path.glob("short_walk*")] == ["short_walk.py"]
+    assert model.read_text(encoding="utf-8") == text
+
+
 def test_own_derivation_needs_a_folder(run: Run, derivation: Path) -> None:
     code, out, err = run("derive", derivation)
     assert (code, out) == (2, "")

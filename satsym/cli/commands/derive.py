@@ -28,10 +28,6 @@ A derivation file is Python and is executed: derive only files that you trust.""
 MAX_SECONDS = 900.0
 """Time limit of :mod:`satsym.report.artefacts`, stated once more because ``--help`` does not load that module."""
 
-SIGNATURE = "Written by satsym from "
-"""What the machine writes says so, and nothing else is ever removed."""
-
-
 @command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
@@ -113,7 +109,7 @@ def _holds(path: Path, text: str) -> bool:
 
 def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
     """Remove what satsym once wrote and would not write now; a line for each file that no derivation leads to."""
-    from satsym.report.artefacts import KEPT, SUFFIXES
+    from satsym.report.artefacts import KEPT, SIGNATURE, SUFFIXES
 
     lines = []
     for path in sorted(folder.iterdir()):
