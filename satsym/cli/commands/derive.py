@@ -28,6 +28,7 @@ A derivation file is Python and is executed: derive only files that you trust.""
 MAX_SECONDS = 900.0
 """Time limit of :mod:`satsym.report.artefacts`, stated once more because ``--help`` does not load that module."""
 
+
 @command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
