@@ -20,8 +20,9 @@ from satsym.kernels.many_digits import NO_NUMBERS, exactly
 
 MOVED_ARGUMENTS = ("lam", "bounds", "x")
 """Arguments of which one number is moved to a threshold: first costates, which decide about controls."""
-MOST_STEPS = 12
-"""Most steps of the secant method; the conditions of laws are polynomials of low degree in one number."""
+MOST_STEPS, TRUSTED_STEPS = 12, 4
+"""Most steps of the secant method, as the conditions of laws are polynomials of low degree in one number; and steps
+after which a difference must be less than at first, as it is near a threshold."""
 FIRST_STEP = 1e-3
 """First step of the secant method, relative to the number that is moved."""
 TOLERANCE = 1e-40
@@ -109,11 +110,11 @@ class _Search:
 def _root(value: Callable[[Any], Any], one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
     """Where a function of one number vanishes, by the secant method; ``None`` where that finds nothing."""
     (a, f), (b, g) = one, other
-    scale = abs(a)
-    for _ in range(MOST_STEPS):
+    scale, begin = abs(a), abs(f)
+    for step in range(MOST_STEPS):
         if g == 0:
             return b
-        if not mp.isfinite(g) or not mp.isfinite(f) or g == f:
+        if not mp.isfinite(g) or not mp.isfinite(f) or g == f or (step >= TRUSTED_STEPS and abs(g) >= begin):
             return None
         a, f, b = b, g, b - g * (b - a) / (g - f)
         if abs(b - a) <= TOLERANCE * max(scale, abs(b)):
