@@ -27,7 +27,7 @@ ROUNDING, KNOWN = 2e-15, 1e-12
 
 SMALLEST_ENTRY = 1e-15
 """An entry that is smaller than this may be what rounding has left of zero: relative to the largest in suitable units,
-or, in the units as given, to the largest of its row and to the largest of its column."""
+or, in the units as given, to both entries of the diagonal beside it."""
 
 DISTANT = 1e-4
 """The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
@@ -100,7 +100,8 @@ def _faint_as_given(size: Array) -> NDArray[np.bool_]:
 
     In other units 1e-16 above the diagonal of a unit matrix is as large as any entry.
     """
-    return size <= SMALLEST_ENTRY * np.minimum(size.max(axis=1)[:, None], size.max(axis=0))
+    diagonal = size.diagonal()
+    return size <= SMALLEST_ENTRY * np.minimum(diagonal[:, None], diagonal)
 
 
 def of_roots(found: Sequence[rational.Root]) -> tuple[Eigenvalue, ...]:
