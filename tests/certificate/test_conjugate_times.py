@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
 from satsym.solvers import linear
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.competitors.accessory import along
+from satsym.solvers.certificate.competitors.saddle import along
 from satsym.solvers.certificate.jacobi import NOT_STRICT, Conjugate, conjugate
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.spec import ControlSetKind, Variable

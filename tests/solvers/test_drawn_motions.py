@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from satsym import instance
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.drawn_motions import Bundle, simulated
+from satsym.solvers.drawn_beside import Bundle, simulated
 
 STEPS = 200
 """Of each motion."""

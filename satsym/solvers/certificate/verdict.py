@@ -4,31 +4,37 @@ from __future__ import annotations
 
 import numpy as np
 
+from satsym.arrays import distinct
 from satsym.instance.unknowns import Unknown
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
-from satsym.solvers.certificate import conditions, free_start, jumps
+from satsym.solvers.certificate import conditions, free_start
 from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import Comparison
-from satsym.solvers.certificate.conclusion import (
-    OF_NODES,
-    OF_SEGMENTS,
-    concluded,
-    unmeasured,
-)
+from satsym.solvers.certificate.conclusion import OF_NODES, OF_SEGMENTS, concluded, unmeasured
 from satsym.solvers.certificate.conditions import DEFECT, RESIDUAL, correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.reintegration.closed_flow import closed_flow
-from satsym.solvers.certificate.reintegration.flow import TOLERANCE, flow
+from satsym.solvers.certificate.reintegration.flow import TOLERANCE, flow, unit_sizes
 from satsym.solvers.certificate.reintegration.node_defect import node_defect
+from satsym.solvers.certificate.reintegration.passages import passages
 from satsym.solvers.certificate.reintegration.segments import Segments, segments
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of
+
+CROSSED = 1e-9
+"""Least rate at which one minimiser of H overtakes another, in units of what the jump changes of the rates."""
+
+LOOKED_AT, GRID = 9, 201
+"""Times within a solution and values of a control at which other minimisers of H are looked for."""
+
+EQUAL, OTHER_CONTROL = 1e-9, 1e-3
+"""Share of H's range by which one may be worse that is as good, and of the control's by which it is another one."""
 
 
 def certify(solution: Solution, compared: bool = True) -> Certificate | None:
@@ -151,6 +157,69 @@ def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[C
     """Each is a deficit that must not be positive."""
     return [
         Check("legendre-clebsch", float(not legendre > 0.0), 0.0),
-        *jumps.checks(solution),
+        *_jump_checks(solution),
         *field.checks,
     ]
+
+
+def _jump_checks(solution: Solution) -> list[Check]:
+    """What jumps between minimisers of H must keep for the second variation to be known.
+
+    Each check is a deficit that must not be positive.
+    """
+    every, tied = passages(solution), _ties(solution)
+    unknown, unit = sum(not one.located for one in every), unit_sizes(solution)
+    crossing = [one.saltation(solution, unit) for one in every if one.located]
+    flat = sum(not -one.speed > CROSSED * float(np.abs(one.leap).max()) for one in crossing)
+    found = (
+        [Check("second variation unknown: the control jumps between minimisers", float(unknown), 0.0)]
+        if unknown
+        else []
+    )
+    found += (
+        [Check("the two minimisers of H at a jump are still equally good after it", float(flat), 0.0)]
+        if crossing
+        else []
+    )
+    return found + ([Check("another minimiser of H remains equally good", float(tied), 0.0)] if tied else [])
+
+
+def _ties(solution: Solution) -> int:
+    """How often, from one of the times looked at to the next, another value of a control stays as good for H.
+
+    Where that is so for a while, no control is the best one: any two may take turns. At single instants it may be so.
+    """
+    if not solution.instance.model.spec.stationary:
+        return 0
+    nodes = distinct(np.linspace(0, solution.times.size - 1, LOOKED_AT + 2).astype(int)[1:-1])
+    tied = np.array([_tied(solution, int(node)) for node in nodes])
+    return int((tied[1:] & tied[:-1]).sum())
+
+
+def _tied(solution: Solution, node: int) -> bool:
+    """Whether H has another minimiser at a node, one control being changed at a time."""
+    from scipy.optimize import minimize_scalar
+
+    instance, model = solution.instance, solution.instance.model
+    t, x, u, lam = solution.times[node], solution.x[:, node], solution.u[:, node], solution.lam[:, node]
+    wide = 1.0 + 2.0 * float(np.abs(solution.u).max())
+    for k, variable in enumerate(model.spec.controls):
+        low, high = max(instance.lower[k], -wide), min(instance.upper[k], wide)
+
+        def h(value: float, k: int = k) -> float:
+            return float(model.hamiltonian(t, x, (*u[:k], value, *u[k + 1 :]), lam, instance.parameters))
+
+        grid = np.linspace(low, high, GRID)
+        values = np.array([h(value) for value in grid])
+        padded = np.pad(values, 1, constant_values=np.inf)
+        lowest = np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]))
+        for at in map(int, lowest):
+            ends = grid[max(at - 1, 0)], grid[min(at + 1, GRID - 1)]
+            other = minimize_scalar(h, bounds=ends, method="bounded", options={"xatol": 1e-10 * (high - low)})
+            distance = abs(other.x - u[k])
+            if variable.kind == "angle":
+                distance = abs(np.remainder(other.x - u[k] + np.pi, 2.0 * np.pi) - np.pi)
+            best = min(other.fun, values[at])
+            if distance > OTHER_CONTROL * (high - low) and best - h(u[k]) <= EQUAL * np.ptp(values):
+                return True
+    return False

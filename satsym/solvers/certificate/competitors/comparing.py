@@ -17,18 +17,21 @@ from satsym.solution import Check, Kind, Solution
 from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
 from satsym.solvers.certificate.competitors.searched import kinds, searched
-from satsym.solvers.certificate.competitors.shorter import shorter
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
+from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows
 
 COARSE = {Kind.DURATIONS: 1e-6}
 """Relative difference of costs that is none between motions whose controls switch, where it is not ``SAME_COST``."""
 
 WORK = 1_000_000
 """Unknowns times iterations that the search may take from a control that was drawn."""
+
+SEED, DURATIONS = 20012, 12
+"""Seed of the shorter durations that are drawn, and how many there are."""
 
 
 def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()) -> Comparison:
@@ -52,7 +55,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
     unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
     with np.errstate(all="ignore"):
         costs, exact = searched(solution, limits, seed, free)
-        if unhindered and not limits.late and (quicker := shorter(solution, limits)) and not limits.late:
+        if unhindered and not limits.late and (quicker := _shorter_costs(solution, limits)) and not limits.late:
             costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
     found = dict[Kind, Compared]()
     for kind, own in costs.items():
@@ -134,3 +137,28 @@ def none_conceivable(solution: Solution) -> bool:
     ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
     smallest = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
     return not np.any(slopes) and not np.any(ends) and bool(np.all(smallest))
+
+
+def _shorter_costs(solution: Solution, limits: Limits) -> list[float]:
+    """Least costs of a linear motion in shorter durations, NaN where one is too short to arrive.
+
+    All controls of these durations are covered. There are no costs where the motion is not linear, or where its time is
+    given or costs nothing.
+    """
+    instance, rng = solution.instance, np.random.default_rng(SEED)
+    motion = None if instance.model.spec.multipliers or instance.tf is not None else linear_motion(instance)
+    if motion is None or not motion.priced or not motion.rate > 0.0 or not len(given_rows(instance)):
+        return []
+    lasting = float(solution.times[-1]) - instance.t0
+    edges = np.linspace(0.0, 1.0, DURATIONS + 1)
+    fractions = np.append(rng.uniform(edges[:-1], edges[1:])[:-1], 1.0 - 10.0 ** rng.uniform(-3.0, -2.0))
+    costs = list[float]()
+    for fraction in fractions.tolist():
+        reach = Reach(instance, motion, fraction * lasting)
+        limits.spend(reach.count)
+        if reach.separation()[0] > THERE:
+            costs.append(float("nan"))
+            continue
+        priced = reach.minimum_cost() if motion.weight.any() or motion.slope.any() else None
+        costs.append(motion.rate * reach.duration + (priced.cost if priced is not None else 0.0))
+    return costs
