@@ -18,7 +18,7 @@ from sympy import Expr, Integer, sin
 from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers.switching.refusals import refuse
+from satsym.solvers.switching.solving import refuse
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build

@@ -22,8 +22,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import attempt
 from satsym.solvers.switching.linear.linear_motion import exponential, linear_motion
-from satsym.solvers.switching.linear.nearest_point import nearest_point
-from satsym.solvers.switching.linear.reach import Reach
+from satsym.solvers.switching.linear.reach import Reach, nearest_point
 from satsym.solvers.switching.linear.separation import separates
 from satsym.solvers.switching.structure import LOWER, UPPER, Guess, Structure
 from satsym.status import Status

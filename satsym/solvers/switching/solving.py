@@ -8,25 +8,36 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
+from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.by_smoothing import smoothed
-from satsym.solvers.switching.chattering import at_rest, chattered
+from satsym.solvers.switching.chattering import NARROW, Look, at_rest, chattered, look, shows
 from satsym.solvers.switching.cold_start import homotopy
+from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.magnitudes import costs, moving
 from satsym.solvers.switching.minimum_time import minimum_time
-from satsym.solvers.switching.refusals import refuse
 from satsym.solvers.switching.structure import REST, Course, Guess, Structure
-from satsym.status import Status
+from satsym.status import BadInput, Status
 
 NOT_FOUND = "no extremal found: no start of the search leads to one"
 """What is said where that is all that is known."""
+
+SHORTFALL = 1e-9
+"""By this share of it a given time may fall short of the least."""
+
+LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
+"""Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
+motion where none was."""
+
+STEADY = 0.5
+"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
 @dataclass(frozen=True)
@@ -46,14 +57,6 @@ class Search:
     arcs: Callable[[Instance, Limits], Exact | None]
     motion: Callable[[Instance, Limits], Course | None]
     why: Callable[[Instance, Limits], tuple[Status, str]]
-
-
-SHORTFALL = 1e-9
-"""By this share of it a given time may fall short of the least."""
-
-LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
-"""Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
-motion where none was."""
 
 
 def solve(instance: Instance, progress: Progress | None, search: Search) -> Solution:
@@ -121,7 +124,7 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
         duration = known.refined.at.end - instance.t0
     for factor in UNKNOWN if known is None else LONGER:
         given = replace(instance, tf=instance.t0 + factor * duration, tf_guess=None)
-        near = None if limits.expired else smoothed(given, search.motion(given, limits), limits)
+        near = None if limits.expired else _smoothed(given, search.motion(given, limits), limits)
         if isinstance(near, homotopy.Stopped) and near.chattering:
             endless = chattered(instance, near.chattering, limits)
             if endless is None or not at_rest(endless):
@@ -193,7 +196,7 @@ def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homoto
     found = None if instance.model.spec.chattering else search.arcs(instance, limits)
     if found is None and linear_motion(instance) is not None and not instance.model.spec.chattering:
         return homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
-    return found or smoothed(instance, search.motion(instance, limits), limits)
+    return found or _smoothed(instance, search.motion(instance, limits), limits)
 
 
 def _resting(instance: Instance) -> Guess | None:
@@ -225,3 +228,138 @@ def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
             times += own.tolist()
     factor = float(np.mean(rates)) if rates else 1.0
     return Guess(Structure(tuple(levels)), np.array(times), factor * at.costates, instance.tf)
+
+
+def refuse(instance: Instance) -> None:
+    """Refuse an instance that is no switching problem which could be solved, before anything is solved.
+
+    Raises
+    ------
+    BadInput
+        If a bound is missing, if no control is left to choose, if nothing costs anything, or if the motion starts
+        where it is to end.
+    """
+    names = instance.model.spec.control_names
+    for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
+        if not np.isfinite([low, high]).all():
+            raise BadInput(
+                f"{instance.called}: [control] {name}: the cost has no term in the square of this control, so "
+                f"it needs both bounds; write {name} = [lower, upper]"
+            )
+    if instance.lower == instance.upper:
+        raise BadInput(
+            f"{instance.called}: [control]: the lower and upper bounds of every control are equal, so there is "
+            "nothing to choose; widen the bounds of one control"
+        )
+    if instance.tf is not None and _free_of_charge(instance):
+        raise BadInput(
+            f'{instance.called}: [time] tf: with a given final time, all controls have the same cost; write tf = "free"'
+        )
+    if instance.tf is None and instance.final and _there(instance):
+        raise BadInput(
+            f"{instance.called}: [initial]: the initial state satisfies the final conditions, so the best "
+            "final time is zero; change the initial state, or give a final time"
+        )
+
+
+def _free_of_charge(instance: Instance) -> bool:
+    """Whether neither control nor state cost anything, as far as random states show."""
+    model, p, n = instance.model, instance.parameters, len(instance.initial)
+    rng = np.random.default_rng(0)
+    assert instance.tf is not None
+    x = np.array([value or 1.0 for value in instance.initial])[:, None] * rng.uniform(0.5, 2.0, (n, 20))
+    t = rng.uniform(instance.t0, instance.tf, 20)
+    none, u = np.zeros((n, 20)), np.array(instance.upper)[:, None] * rng.uniform(0.0, 1.0, (len(instance.upper), 20))
+    ends = [model.terminal_gradient(instance.tf, tuple(column), p) for column in x.T]
+    costs = (
+        model.switching_function_batch(t, x, none, p),
+        model.magnitude_weight_batch(t, x, none, p),
+        model.costate_rate_batch(t, x, u, none, p),
+        ends,
+    )
+    return not any(np.any(cost) for cost in costs)
+
+
+def _there(instance: Instance) -> bool:
+    """Whether every given final state is the initial one."""
+    for name, x in zip(instance.model.spec.state_names, instance.initial, strict=True):
+        wanted = instance.final.get(name)
+        if isinstance(wanted, str) or (wanted is not None and abs(wanted - x) > 1e-12 * max(abs(wanted), abs(x))):
+            return False
+    return True
+
+
+def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exact | homotopy.Stopped:
+    """Exact arcs whose structure is recognised in regularised extremals, less and less smoothed, or why there are none.
+
+    Structures without an arc that seems to be singular seldom lead anywhere, so they are tried once all smoothed
+    extremals show no better one.
+
+    Parameters
+    ----------
+    course
+        A motion near which the first smoothed extremal is looked for.
+    """
+    if course is None:
+        return homotopy.Stopped(Status.NOT_CONVERGED, "")
+    before: Sample | None = None
+    levels: list[homotopy.Smoothed] = []
+    unlikely: list[tuple[Guess, float]] = []
+    looks: list[Look] = []
+    endless = bool(instance.model.spec.chattering)
+    most = homotopy.LEVELS * (2 if endless else 1)
+    try:
+        for level, near in enumerate(homotopy.path(instance, course, limits, most)):
+            seen = sample(near.problem, near.curve)
+            levels.append(near)
+            smoothing = near.problem.control_set.smoothing
+            if endless:
+                looks.append(look(instance, near, seen))
+                if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
+                    break
+            likeliest, *plainer = _candidates(instance, seen, before)
+            exact = attempt(instance, likeliest, limits) if level <= homotopy.LEVELS else None
+            if exact is not None:
+                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
+            unlikely += [(one, smoothing) for one in plainer]
+            before = seen
+            if limits.expired:
+                break
+    except homotopy.Stopped as stopped:
+        last_seen = stopped
+    except FAILURES as error:
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
+    else:
+        message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
+    if shows(looks) and not limits.expired:
+        return replace(last_seen, chattering=tuple(levels))
+    for one, smoothing in unlikely:
+        if limits.expired:
+            break
+        if exact := attempt(instance, one, limits):
+            return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
+    if limits.expired:
+        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
+    return last_seen
+
+
+def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
+    """Structures of a smoothed extremal, the likeliest first."""
+    plain = guess(instance, seen)
+    free = inside(instance, seen)
+    if before is None or not free.any():
+        return [plain]
+    was = inside(instance, before)
+    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
+    spec = instance.model.spec
+    joined = [name not in spec.chattering for name in spec.control_names]
+    singular = free & np.array(steady)[:, None] & np.array(joined)[:, None]
+    if not singular.any():
+        return [plain]
+    return [guess(instance, seen, singular), plain]
+
+
+def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
+    """How long a condition holds along a regularised extremal that was sampled."""
+    return float(np.trapezoid(where.astype(float), seen.times))

@@ -1,6 +1,6 @@
 """The first arrival of linear motions under saturated controls, one motion after the other: text that is compiled.
 
-As :mod:`satsym.solvers.switching.linear.first_arrival` has it: as long as a plane tells the given end from all that is
+As :mod:`satsym.solvers.switching.linear.by_reach` has it: as long as a plane tells the given end from all that is
 reached nothing arrives, and there another plane is looked for (Neustadt; Eaton). Newton's method makes switching times
 and costates exact; an arrival counts if its own plane shows that nothing arrives between the known bound and it.
 Motions are stated as in :mod:`satsym.solvers.batch.switching.planes`.

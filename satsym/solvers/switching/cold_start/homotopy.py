@@ -6,7 +6,7 @@ step starting from the last solution.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -18,7 +18,6 @@ from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve, Path
-from satsym.solvers.collocation.following import MOST_INTERVALS, ROUGHLY, follow
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -33,9 +32,8 @@ from satsym.status import Status
 MOST_SMOOTHED = 4.0**6
 """Multiple of the smoothing that costs as much as all else, with which it begins: controls then hardly meet bounds."""
 
-LEVELS = 12
-TIGHTER = 4.0
-"""By so much less is smoothed at each level."""
+LEVELS, TIGHTER = 12, 4.0
+"""Levels of smoothing, and the factor by which less is smoothed at each of them."""
 
 FINER = 1e-6
 """Error that is left where the next level is not reached from what is solved roughly."""
@@ -48,6 +46,18 @@ SPLIT = 2, 4
 
 MOST_SPLIT = 500
 """Most intervals of such a mesh."""
+
+FOLLOWED = 5
+"""Corrections that a step of the continuation usually takes, as its work is counted."""
+
+ROUGHLY = 1e-5
+"""Accuracy of solutions on the way."""
+
+SHORTEST = 1.0 / 256.0
+"""Shortest step of the continuation, as a share of the way."""
+
+MOST_INTERVALS = 60
+"""Intervals of the mesh on the way, about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +107,7 @@ def _near(instance: Instance, course: Course, limits: Limits) -> Smoothed:
         problem = two_point(regularised(instance, smoothing, 1.0), lasting)
         z = course.z / problem.scale.both
         curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
-        found, reached = follow(partial(_itself, problem), curve, limits, shortest=1.0)
+        found, reached = _follow(partial(_itself, problem), curve, limits, shortest=1.0)
         if reached:
             return Smoothed(problem, found)
         if limits.expired:
@@ -149,7 +159,7 @@ def _sharper(
     def sharper(fraction: float) -> TwoPoint:
         return replace(near.problem, instance=regularised(instance, begun * (wanted / begun) ** fraction, 1.0))
 
-    curve, reached = follow(sharper, near.curve, limits, most=most)
+    curve, reached = _follow(sharper, near.curve, limits, most=most)
     return Smoothed(sharper(reached), curve) if reached > 0.0 else None
 
 
@@ -186,3 +196,46 @@ def _mean_cost(instance: Instance, course: Course) -> float:
     running = instance.model.running_cost_batch(course.times, course.z[:n], idle, instance.parameters)
     found = abs(float(np.mean(np.broadcast_to(running, count))))
     return found if np.isfinite(found) else 0.0
+
+
+def _follow(
+    problem: Callable[[float], TwoPoint],
+    curve: Curve,
+    limits: Limits,
+    shortest: float = SHORTEST,
+    most: int = MOST_INTERVALS,
+) -> tuple[Curve, float]:
+    """Follow the solutions of a family of problems from its start to its end, as far as that goes.
+
+    Each solution is the guess of the next; steps are halved where Newton's method fails.
+
+    Parameters
+    ----------
+    problem
+        The one at a share of the way.
+    curve
+        A solution at the start.
+    shortest
+        Step below which it is given up, as a share of the way.
+    most
+        Intervals of the mesh, about.
+
+    Returns
+    -------
+    curve, reached
+        The last one, and the share of the way at which it is.
+    """
+    at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, most))
+    while at < 1.0 and move >= shortest and not limits.expired:
+        there = problem(min(at + move, 1.0))
+        mesh = through(corners(there, curve, ROUGHLY), count)
+        limits.spend(FOLLOWED * STAGES * len(mesh))
+        outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
+        if outcome is None or not outcome.solved or not outcome.curve.in_domain(there.positive):
+            move /= 2.0
+            continue
+        at, curve = min(at + move, 1.0), outcome.curve
+        move *= 2.0
+        if limits.watch:
+            limits.watch(System(there, mesh, STAGES).cost(curve) * there.scale.cost, max(1.0 - at, ROUGHLY))
+    return curve, at

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,10 +11,9 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt
-from satsym.solvers.switching.linear.first_arrival import arrivals
 from satsym.solvers.switching.linear.from_costates import guessed
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
-from satsym.solvers.switching.linear.reach import THERE, Priced, Reach, given_rows
+from satsym.solvers.switching.linear.reach import THERE, Priced, Reach, given_rows, goal, steps
 from satsym.solvers.switching.linear.separation import Plane, plane, separates
 from satsym.solvers.switching.structure import Guess
 
@@ -32,6 +31,22 @@ HALVINGS = 12
 
 FINER = (1, 5)
 """How many times more steps than usual show a structure, one after the other."""
+
+PLANES = 200
+"""Planes that are looked for until an arrival is found."""
+
+HORIZON = 2**17
+"""Steps after which a plane that still tells them apart does so for ever, as far as anyone will wait."""
+
+BEFORE = (3e-3, 3e-4, 3e-2)
+"""Shares of the least time before it at which its costate is looked for: at it there is hardly any distance left."""
+
+PRECISE = 1e-8
+"""Share of its distance by which that hyperplane may be nearer than the set; its direction is as good as the root."""
+
+BEYOND_ARRIVAL, FARTHER, TIRED = 1e-3, 1.5, 16
+"""Share of an arrival's time by which the search goes on beyond it where nothing exact came of it; the factor by which
+it goes farther each time after; and how often it does."""
 
 
 def optimum(instance: Instance, limits: Limits) -> Exact | None:
@@ -89,7 +104,7 @@ def separating(instance: Instance) -> Plane | None:
 def _soonest(instance: Instance, motion: LinearMotion, limits: Limits) -> Exact | None:
     """The first arrival; a later one where nothing exact comes of that."""
     best: Exact | None = None
-    for arrival in arrivals(instance, motion, limits):
+    for arrival in _arrivals(instance, motion, limits):
         if best is not None and arrival.duration >= _duration(instance, best):
             break
         for costate in arrival.costates:
@@ -117,7 +132,7 @@ def _factor(motion: LinearMotion, reach: Reach, costate: Array) -> float:
 
 def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list[tuple[Reach, Priced | None]]:
     """Durations of about the least cost, the cheapest first: local minima of what ends in them cost at least."""
-    first = next(arrivals(instance, motion, limits), None)
+    first = next(_arrivals(instance, motion, limits), None)
     if first is None:
         return []
     found: list[tuple[float, Reach, Priced | None]] = []
@@ -184,3 +199,88 @@ def _guesses(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced
         priced = known or (reach.minimum_cost() if reach.separation()[0] <= THERE else None)
         if priced is not None:
             yield guessed(instance, reach, priced.costate)
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A time in which the end may be reached first, and costates there that say how."""
+
+    duration: float
+    """From the start; nothing arrives in less than the first of them."""
+    costates: tuple[Array, ...]
+    """Costates of all states at the end, shape (n,), without a scale, one for each way to look for them."""
+
+
+def _arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
+    """Times in which a linear motion may reach its end first, the shortest first: no shorter one is left out.
+
+    A costate at the end is a hyperplane; as long as the set of ends that are reached lies on one side of it and the
+    given end on the other, the time is too short. From one such time to the first at which the plane no longer tells
+    them apart nothing can arrive; there another plane is looked for (Neustadt, Synthesizing time optimal control
+    systems, Journal of Mathematical Analysis and Applications 1, 1960; Eaton, An iterative solution to time-optimal
+    control, ibid. 5, 1962). Nothing is given where no time is found.
+    """
+    rows, n = given_rows(instance), len(instance.initial)
+    apart = np.array(instance.initial)[rows] - goal(instance, rows, instance.t0)
+    size = np.maximum(np.abs(np.array(instance.initial)[rows]), np.abs(goal(instance, rows, instance.t0)))
+    costate: Array = np.zeros(n)
+    costate[rows] = apart / np.where(size > 0.0, size, 1.0) ** 2
+    duration = _beyond(instance, motion, costate, 0.0, _scale(instance, motion))
+    further, tired = BEYOND_ARRIVAL, 0
+    for _ in range(PLANES):
+        if duration is None or limits.expired or tired > TIRED:
+            return
+        reach = Reach(instance, motion, duration)
+        limits.spend(reach.count)
+        distance, costate = reach.separation()
+        later = _beyond(instance, motion, costate, duration, duration) if distance > THERE else duration
+        if later is not None and later <= duration * (1.0 + THERE):
+            before = (Reach(instance, motion, duration * (1.0 - fraction)).separation(PRECISE) for fraction in BEFORE)
+            yield Arrival(duration, tuple(costate for distance, costate in before if distance > 0.0))
+            later, further, tired = duration * (1.0 + further), further * FARTHER, tired + 1
+        duration = later
+
+
+def _scale(instance: Instance, motion: LinearMotion) -> float:
+    """A duration to begin with: that in which full controls change the state as much as it is to be changed."""
+    rates = motion.states @ np.array(instance.initial) + motion.drift
+    rates = np.abs(rates) + np.abs(motion.controls) @ np.maximum(np.abs(instance.lower), np.abs(instance.upper))
+    rows = given_rows(instance)
+    apart = np.abs(np.array(instance.initial)[rows] - goal(instance, rows, instance.t0))
+    found = [float(a / b) for a, b in zip(apart, rates[rows], strict=True) if a > 0.0 and b > 0.0]
+    quickest = float(np.abs(np.linalg.eigvals(motion.states)).max(initial=0.0))
+    return max(found, default=1.0 / quickest if quickest > 0.0 else 1.0)
+
+
+def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
+    """The first duration after one at which a plane no longer tells the end from what is reached."""
+    length = scale / steps(motion, scale)
+    rows = given_rows(instance)
+    low, high = np.array(instance.lower), np.array(instance.upper)
+    count = max(2 * int(np.ceil(after / length)), 512)
+    first = int(np.round(after / length))
+    while count <= HORIZON:
+        _, acting, drift = motion.step(length)
+        sides = costate @ motion.powers(length, count)
+        pushed = sides[:-1] @ acting
+        gained = sides[:-1] @ drift + np.minimum(pushed * low, pushed * high).sum(axis=1)
+        values = sides @ np.array(instance.initial) + np.append(0.0, np.cumsum(gained))
+        if "reference" in instance.final.values():
+            goals = np.array([goal(instance, rows, instance.t0 + length * k) for k in range(first, count + 1)])
+            values[first:] -= goals @ costate[rows]
+        else:
+            values -= float(costate[rows] @ goal(instance, rows, instance.t0))
+        past = np.flatnonzero(~(values[first:] > 0.0))
+        if len(past):
+            k = first + int(past[0])
+            if not np.isfinite(values[k]):
+                return None
+            if k == first:
+                return after
+            fraction = values[k - 1] / (values[k - 1] - values[k])
+            found = length * (k - 1 + float(fraction))
+            if k < 20 and after == 0.0 and found < scale:
+                return _beyond(instance, motion, costate, 0.0, found)
+            return found
+        first, count = count, 2 * count
+    return None
