@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+
+import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
+from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.by_newton import from_guess
-from satsym.solvers.cold_start.first_minimum import cold_start
+from satsym.solvers.cold_start.from_path import STRAIGHT_THROUGH, from_path
 from satsym.solvers.cold_start.origin import Origin, Start
+from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.cold_start.swept import from_control, loose
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Attempt, Reason
@@ -17,10 +22,12 @@ from satsym.solvers.collocation.continuation import tighten
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.extremal import nothing, solved
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
@@ -147,3 +154,50 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
         return replace(unfinished(problem, refined.curve, message, steps, limits), obeys=True)
     message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
     return Extremal(problem, refined.curve, refined.cost * problem.scale.cost, Status.CONVERGED, message, steps)
+
+
+def cold_start(problem: TwoPoint, limits: Limits) -> Start:
+    """Find a minimum of a problem without bounds, or an extremal that is none.
+
+    Newton's method begins from a straight line in the state space: that between the ends or, where nothing is asked of
+    the end, the uncontrolled motion; or else from what is guessed. Where it fails, a minimisation follows. What this
+    does not solve is left to the direct search.
+
+    Parameters
+    ----------
+    problem
+        Bounds are ignored.
+
+    Raises
+    ------
+    ArithmeticError
+        If the equations at the start are singular.
+    """
+    free = problem.relaxed(float("inf"))
+    path = paths.first(free)
+    line = paths.start(free, path)
+    with np.errstate(all="ignore"):
+        found = tried(partial(_minimum, free, line, limits))
+    if found is None:
+        raise ArithmeticError("the equations of the cold start are singular")
+    if found.minimum and found.curve.in_domain(free.positive):
+        origin = Origin.GUESS if problem.instance.guess else Origin.STRAIGHT_LINE
+        return Start(found, origin, found.iterations)
+    saddle = None if limits.expired else _extremal(free, line)
+    if found.minimum:
+        found = replace(found, reason=Reason.OUT_OF_DOMAIN)
+    return Start(found, Origin.NO_MINIMUM, found.iterations, saddle=saddle)
+
+
+def _minimum(problem: TwoPoint, line: Curve, limits: Limits) -> Attempt:
+    """The minimum to which the straight line leads as a first guess, or why it leads to none."""
+    return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits)
+
+
+def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
+    """What Newton's method finds from a curve, whether a minimum or not."""
+    system = System(problem, start.mesh, STAGES)
+    outcome = newton(system, start, most=STRAIGHT_THROUGH)
+    if outcome is None or not outcome.solved or not outcome.curve.in_domain(problem.positive):
+        return None
+    return Attempt(outcome.curve, Reason.SADDLE, outcome.iterations, system.cost(outcome.curve))

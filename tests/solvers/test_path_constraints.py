@@ -19,7 +19,7 @@ from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.iteration import watched
-from satsym.solvers.search.feasibility import contradiction
+from satsym.solvers.search.failing import contradiction
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t

@@ -13,7 +13,6 @@ from satsym.solvers.certificate import certify, conditions
 from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.certificate.reintegration.segments import segments
-from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.arclength import extremals
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -21,6 +20,7 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.collocation.scaling import two_point as to_scaled
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.iteration import Limits, computed
+from satsym.solvers.two_point import cold_start
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 

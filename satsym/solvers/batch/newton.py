@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array, distinct
+from satsym.solvers.batch.condensing import Condensing
+from satsym.solvers.batch.corners import inverses
 from satsym.solvers.batch.many import Many
-from satsym.solvers.batch.matching import Matching, corrected
 from satsym.solvers.collocation.curve import SMALL_COSTATE
 from satsym.solvers.shooting.runge_kutta import ORDER
 
@@ -66,7 +67,7 @@ class Nodes:
         return np.asarray(self.outcome == Outcome.SOLVED)
 
     def only(self, chosen: NDArray[np.intp]) -> Nodes:
-        """Some of them."""
+        """The equations of some of the problems."""
         z, cost, error = (rows[..., chosen] for rows in (self.z, self.cost, self.error))
         return Nodes(z, cost, error, self.outcome[chosen])
 
@@ -87,7 +88,7 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
         own, at = many.only(on), _columns(on, many.count)
         now = z[:, :, at]
         reached, transition = _rough(own, now, 1)
-        step = corrected(transition, many.units, many.condense, *_missing(own, now, reached))
+        step = _corrected(transition, many.units, many.condense, *_missing(own, now, reached))
         now = z[:, :, at] = now + step
         size, positive = _size(many, step, now), _positive(many, now)
         outcome[on[~positive]] = Outcome.LEFT_DOMAIN
@@ -116,7 +117,7 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
     cost, error = np.full(many.count, np.nan), np.full(many.count, np.inf)
     before, shown = np.full(many.count, np.inf), np.full(many.count, np.inf)
     parts, on = np.full(many.count, FEWEST_PARTS), np.flatnonzero(outcome == Outcome.SOLVED)
-    matching = Matching.of(transitions(many, z), many.units, many.condense)
+    matching = _Matching.of(transitions(many, z), many.units, many.condense)
     for _ in range(MOST_ACCURATE):
         for count in distinct(parts[on]).tolist():
             own = on[parts[on] == count]
@@ -180,3 +181,80 @@ def _size(many: Many, step: Array, z: Array) -> Array:
 def _positive(many: Many, z: Array) -> NDArray[np.bool_]:
     """Whether states that must be positive are so, shape (M,)."""
     return np.asarray((z[list(many.problem.positive)] > 0.0).all(axis=(0, 1)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Matching:
+    """The linearised equations of M shooting problems: segments meet, and ends are as given.
+
+    All nodes follow from the initial costates (condensing), so that a system as small as the boundary is left (Bock and
+    Plitt, A Multiple Shooting Algorithm for Direct Solution of Optimal Control Problems, 1984).
+    """
+
+    transition: Array
+    """Ends of segments by their beginnings, shape (2n, 2n, N, M)."""
+    field: Array
+    """Nodes by initial costates in their units, and perhaps by something else, shape (2n, n or more, N+1, M)."""
+    inverse: Array
+    """Initial costates by what is missing at the end, in units, shape (n, n, M); not finite where nothing decides."""
+    units: Array
+    """Units of states and costates, shape (2n,)."""
+    condense: Condensing
+
+    @classmethod
+    def of(cls, transition: Array, units: Array, condense: Condensing) -> _Matching:
+        """The equations with these transitions."""
+        field = condense(transition, _unity(units, transition.shape[3]), None)
+        return cls(transition, field, _inverse(field, units), units, condense)
+
+    def only(self, chosen: NDArray[np.intp]) -> _Matching:
+        """The equations of some of the problems."""
+        if len(chosen) == self.inverse.shape[2]:
+            return self
+        transition, field, inverse = (rows[..., chosen] for rows in (self.transition, self.field, self.inverse))
+        return _Matching(transition, field, inverse, self.units, self.condense)
+
+    def correction(self, start: Array, gaps: Array, missing: Array) -> Array:
+        """By how much nodes move for segments to meet and end as they should, shape (2n, N+1, M).
+
+        Parameters
+        ----------
+        start
+            Where the first should be, less where it is, shape (n, M).
+        gaps
+            Where each segment ends, less where the next one begins, shape (2n, N, M).
+        missing
+            Where the last should end, less the last node, shape (n, M).
+        """
+        begun = np.concatenate([start, np.zeros_like(start)])
+        return self._closed(self.condense(self.transition, begun[:, None], gaps)[:, 0], missing)
+
+    def _closed(self, found: Array, missing: Array) -> Array:
+        """Corrections without initial costates, with those that are missing for the end, in place."""
+        wanted = (missing - found[: len(missing), -1]) / self.units[: len(missing), None]
+        self.condense.combine(self.field, (self.inverse * wanted).sum(axis=1), found)
+        return found
+
+
+def _corrected(
+    transition: Array, units: Array, condense: Condensing, start: Array, gaps: Array, missing: Array
+) -> Array:
+    """Corrections as by :meth:`_Matching.correction`, asked for once, with one look at the transitions."""
+    begun = np.concatenate([start, np.zeros_like(start)])
+    found = condense(transition, np.concatenate([_unity(units, transition.shape[3]), begun[:, None]], axis=1), gaps)
+    inverse = _inverse(found[:, :-1], units)
+    return _Matching(transition, found, inverse, units, condense)._closed(found[:, -1].copy(), missing)
+
+
+def _unity(units: Array, count: int) -> Array:
+    """Each initial costate in its unit, shape (2n, n, M)."""
+    rows, n = len(units), len(units) // 2
+    found = np.zeros((rows, n, count))
+    found[np.arange(n, rows), np.arange(n)] = units[n:, None]
+    return found
+
+
+def _inverse(field: Array, units: Array) -> Array:
+    n = field.shape[1]
+    reached = (field[:n, :, -1] / units[:n, None, None]).transpose(2, 0, 1)
+    return np.asarray(inverses(reached).transpose(1, 2, 0))

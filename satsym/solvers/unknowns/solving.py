@@ -13,15 +13,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Progress, Solution
 from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
 from satsym.solvers.failures import tried
 from satsym.solvers.improving import starting_from
-from satsym.solvers.iteration import deadline_of, unsolved
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of, unsolved
+from satsym.solvers.search import nearest
 from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
-from satsym.solvers.unknowns.reaching import reaching
 from satsym.solvers.unknowns.trials import Late, Solver, Trial, Trials, unit_of
 from satsym.status import Status
 from satsym.wording import counted
@@ -31,6 +32,12 @@ ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
 
 EQUAL_COST = 1e-9
 """Relative margin by which another choice may seem cheaper: its own error."""
+
+SLACK = 0.7
+"""Share of the room between its bounds that a control is given: what is just reached has no answer nearby."""
+
+WORK = 400_000
+"""Unknowns times iterations that the searches may take."""
 
 
 def solve(instance: Instance, progress: Progress | None, solver: Solver, certified: Solver) -> Solution:
@@ -103,7 +110,7 @@ def _begin(trials: Trials) -> Trial | Solution:
     """The first trial that has an answer, with units that fit it."""
     count = len(trials.unknowns)
     here = trials(np.zeros(count))
-    if here is None and (arriving := tried(lambda: reaching(trials))) is not None:
+    if here is None and (arriving := tried(lambda: _reaching(trials))) is not None:
         here = trials(arriving)
     for step in ELSEWHERE:
         for axis in np.eye(count):
@@ -120,3 +127,31 @@ def _unanswered(trials: Trials, status: Status, message: str) -> Solution:
     last = trials.last or unsolved(trials.instance, trials.instance.solver.method, 0.0)
     reason = "" if last.status.answered or last.status is status else f": {last.message}"
     return replace(last, status=status, message=message + reason, objective=float("nan"), certificate=None)
+
+
+def _reaching(trials: Trials) -> Array | None:
+    """A choice with which the end can be reached, in units; ``None`` where none was found, or no end is given."""
+    instance = trials.instance
+    if not instance.final or any(isinstance(value, str) for value in instance.final.values()):
+        return None
+    found = nearest.reaching(_with_slack(instance), Limits(MOST_ITERATIONS, trials.deadline, work=WORK))
+    if found is None:
+        return None
+    return np.array([one.of(found) - one.of(instance) for one in trials.unknowns]) / trials.unit
+
+
+def _with_slack(instance: Instance) -> Instance:
+    """An instance with less room for its controls."""
+
+    def nearer(bounds: tuple[float, ...]) -> tuple[float, ...]:
+        rest = (min(max(0.0, a), b) for a, b in zip(instance.lower, instance.upper, strict=True))
+        return tuple(r + SLACK * (v - r) if np.isfinite(v) else v for v, r in zip(bounds, rest, strict=True))
+
+    norms = {name: (low, max(low, SLACK * high)) for name, (low, high) in instance.norms.items()}
+    return replace(
+        instance,
+        lower=nearer(instance.lower),
+        upper=nearer(instance.upper),
+        max_norm=SLACK * instance.max_norm,
+        norms=norms,
+    )
