@@ -14,28 +14,36 @@ from flint import arb, ctx
 
 from satsym.instance import Instance
 from satsym.proof import claims, enclosures, mixed, structure, walls
-from satsym.proof.balls.arithmetic import BeyondProof, NotProved
-from satsym.proof.balls.taylor import Order
+from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved
+from satsym.proof.balls.taylor import Order, column, rates, unit
 from satsym.proof.convexity import convex, waiting
 from satsym.proof.field import regular_field
 from satsym.proof.identities import verify
-from satsym.proof.inclusion import Inclusion, krawczyk
+from satsym.proof.inclusion import Inclusion, inverse, krawczyk
+from satsym.proof.laws import Law
 from satsym.proof.lifting import Lifted, with_more_states
-from satsym.proof.locating import Place, located
 from satsym.proof.record import Hypothesis, Outcome, Proof
 from satsym.proof.rest import costs_nothing, final_state
-from satsym.proof.shooting import Box, Junction, Shooting
+from satsym.proof.shooting import Box, Junction, Rows, Segment, Shooting
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated, walled
+from satsym.proof.structure import REMAINDER, TERMS, leap
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
 """How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
 NEAR_ANSWER = 1e-3
 """How far the extremal may be from what was found, in its costates at t0 and its duration, relative to the sizes."""
+
 COARSE = Order(18, 1e-16)
 SPARE = 8
 """Digits more than asked for, with which steps and boxes are computed."""
+
+TRIES = 12
+"""Corrections of the midpoint that are tried."""
+
+SETTLED_CORRECTION = 1e-8
+"""A correction smaller than this, relative to the sizes, is followed by one to all digits; a second such ends."""
 
 
 def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Proof:
@@ -159,7 +167,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     return replace(record, status=Outcome.PROVED, theorem=theorem, scope=claims.scope(statement))
 
 
-def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, Place]:
+def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, _Place]:
     """The equations of the arcs that were found, and a point at which they nearly hold."""
     path = structure.Path(found, not statement.spec.autonomous)
     jumps: list[float] = []
@@ -180,7 +188,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
         nodes[0][-1] = statement.t0
     if not shooting.lengths_unknown:
         lengths = [statement.tf - statement.t0]
-    place = located(shooting, nodes, [*lengths, *map(arb, jumps), *nu], digits)
+    place = _located(shooting, nodes, [*lengths, *map(arb, jumps), *nu], digits)
     moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
     moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
@@ -189,7 +197,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     return shooting, place
 
 
-def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
+def _enclosed(shooting: Shooting, place: _Place, digits: int) -> Located:
     """Show that an extremal exists and is the only one nearby; then find out where it is to the last digit."""
     inclusion: Inclusion | None = None
     for radius in RADII:
@@ -218,7 +226,7 @@ def _enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
     return Located(shooting, box, last, radius)
 
 
-def _box(shooting: Shooting, place: Place, radius: float) -> Box:
+def _box(shooting: Shooting, place: _Place, radius: float) -> Box:
     zero = [[arb(0)] * len(node) for node in place.nodes]
     box = Box(_exact(shooting, place.nodes), zero, place.lengths, [arb(0)] * len(place.lengths))
     around = [arb(0, radius * s) for s in (*shooting.scales, *shooting.scales_of_lengths(box.lengths))]
@@ -241,3 +249,67 @@ def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:
     zero = [[arb(0)] * len(node) for node in box.nodes]
     around, lengths = shooting.placed(values, zero, [arb(0)] * len(box.lengths))
     return Box(box.nodes, around, box.lengths, lengths)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Nodes near an extremal, and lengths with what is listed with them."""
+
+    nodes: list[list[Ball]]
+    lengths: list[Ball]
+
+
+def _located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], digits: int) -> _Place:
+    """The midpoint about which a proof is tried: a zero of the equations of shooting, to more digits than asked for.
+
+    Newton's method finds it without enclosures.
+
+    Raises
+    ------
+    NotProved
+        If Newton's method does not settle.
+    """
+    size, fine = float("inf"), False
+    for _ in range(TRIES):
+        terms, rest = (int(1.2 * digits) + 12, 10.0 ** -(digits + 12)) if fine else (TERMS, REMAINDER)
+        residuals, jacobian = _equations(shooting, nodes, lengths, terms, rest)
+        move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
+        scales = [*shooting.scales, *shooting.scales_of_lengths(lengths)]
+        before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=True))
+        here = shooting.unknowns(nodes, lengths)
+        nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
+        if fine and size < SETTLED_CORRECTION:
+            return _Place(nodes, lengths)
+        if not size < 1e6 or (before < SETTLED_CORRECTION and not fine and size > 0.5 * before):
+            break
+        fine = fine or size < SETTLED_CORRECTION
+    raise NotProved("Newton's method finds no extremal near the answer; the extremal might have another structure")
+
+
+def _equations(
+    shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], terms: int, rest: float
+) -> tuple[Any, Any]:
+    m = shooting.arcs[0].law.m
+    zero = [[arb(0)] * m for _ in nodes]
+    box = Box([[v.mid() for v in node] for node in nodes], zero, lengths, [arb(0)] * len(lengths))
+    rows, k = Rows(shooting, box), 0
+    for j, arc in enumerate(shooting.arcs):
+        for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
+            span = (box.lengths[j] * (arb(b) - arb(a))).mid()
+            one = _led(arc.law, box.nodes[k], span, shooting.sizes, terms, rest)
+            rows.matched(one, k, j, arb(b) - arb(a), b == 1.0)
+            k += 1
+        if j + 1 < len(shooting.arcs):
+            rows.met(j, k)
+    rows.ended(k)
+    return column(rows.residuals).mid(), rows.jacobian().mid()
+
+
+def _led(law: Law, node: list[Ball], span: Ball, sizes: tuple[float, ...], terms: int, rest: float) -> Segment:
+    z, flow, left = node, unit(law.m), span
+    while True:
+        z, v, h, last = leap(law, z, left, sizes, terms, rest)
+        flow = (v * flow).mid()
+        if last:
+            return Segment(z, flow, [r.mid() for r in rates(law, z)], [], [], [])
+        left = (left - h).mid()

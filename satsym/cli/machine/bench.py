@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import click
 
 from satsym.cli import names
 from satsym.cli.help import command
 from satsym.cli.options import json_option
 from satsym.cli.output import answer, live
-from satsym.status import ExitCode
+from satsym.report.said import say
+from satsym.status import ExitCode, Status
+
+if TYPE_CHECKING:
+    from satsym.analysis.speed import Solved, Speed
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
 
 QUICK_SECONDS, THOROUGH_SECONDS = 0.5, 5.0
 """Seconds for which each kind of step is measured."""
+
+BACKENDS = {"numpy": "NumPy", "numba": "numba"}
+"""What computes, as it calls itself."""
 
 EXAMPLES = """\b
 Examples:
@@ -35,20 +47,75 @@ def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
     from satsym.analysis.speed import solved, speeds
     from satsym.analysis.subject import find
     from satsym.kernels import Kernels
-    from satsym.report.said import say
-    from satsym.report.terminal.speed import backend_name, speed_object, speed_text
 
     given, found = find(subject), []
     model = given if isinstance(given, Kernels) else given.model
     with live() as line:
-        line.show(say("measuring <what> ...", what=backend_name("numpy")))
+        line.show(say("measuring <what> ...", what=BACKENDS["numpy"]))
         for one in speeds(given, QUICK_SECONDS if quick else THOROUGH_SECONDS):
             found.append(one)
-            line.show(say("measuring <what> ...", what=backend_name("numba")))
+            line.show(say("measuring <what> ...", what=BACKENDS["numba"]))
         solution = None
         if not isinstance(given, Kernels) and model.spec.has_cost:
             line.show(say("measuring <what> ...", what=say("one solution")))
             solution = solved(given)
-    result = speed_object(given, found, solution)
-    answer(as_json, result, lambda: speed_text(result))
+    result = _object(given, found, solution)
+    answer(as_json, result, lambda: _text(result))
     return ExitCode.DONE if solution is None or solution.status.answered else ExitCode.NO_ANSWER
+
+
+def _text(found: Mapping[str, Any]) -> str:
+    """Summary of what ``satsym bench`` measured, from its object."""
+    from satsym.report.terminal.table import figure, table, wrapped
+
+    machine, steps, solve = found["machine"], found["steps"], found["solve"]
+    first = steps[0]["per_second"]
+    rows = [(say("what"), say("cores"), say("a second"), say("of the first"))]
+    for one in steps:
+        name = say("steps of one motion, <backend>", backend=BACKENDS[one["backend"]])
+        rows.append((name, str(one["cores"]), figure(one["per_second"], 3), f"{one['per_second'] / first:.3g}"))
+    if solve is not None:
+        name = say("solutions, <method>", method=solve["method"])
+        rows.append((name, "1", figure(1.0 / solve["solve_s"], 3), ""))
+        if solve["certificate_s"] is not None:
+            rows.append((say("certificates"), "1", figure(1.0 / solve["certificate_s"], 3), ""))
+    lines = [
+        f"{found['instance'] or found['model']}, {machine['system']} {machine['processor']}, "
+        f"Python {machine['python']}, numpy {machine['numpy']}",
+        "",
+        *table(rows, right=(1, 2, 3)),
+    ]
+    if solve is not None and solve["certificate_s"] is None:
+        lines += ["", *wrapped(say("the instance has no answer: <said_status>", said_status=found["status"]))]
+    if all(one["backend"] == "numpy" for one in steps):
+        lines += ["", *wrapped(say("numba is not installed: pip install 'satsym[fast]'"))]
+    return "\n".join(lines)
+
+
+def _object(given: Instance | Kernels, speeds: Sequence[Speed], solved: Solved | None) -> dict[str, Any]:
+    """The machine, steps a second by each means, and the times of one solution; ``solve`` is ``None`` without one."""
+    import platform
+
+    import numpy as np
+
+    from satsym.analysis.speed import cores
+    from satsym.report.results.objects import head_about
+
+    solution = None
+    if solved is not None:
+        solution = {
+            "method": solved.method,
+            "solve_s": solved.seconds,
+            "certificate_s": solved.certificate_seconds,
+        }
+    return head_about("bench", given, Status.CONVERGED if solved is None else solved.status) | {
+        "machine": {
+            "system": platform.system(),
+            "processor": platform.machine(),
+            "cores": cores(),
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+        },
+        "steps": [{"backend": one.backend, "cores": one.cores, "per_second": one.steps} for one in speeds],
+        "solve": solution,
+    }
