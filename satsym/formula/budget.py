@@ -16,12 +16,11 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from types import FrameType
-from typing import Any, TypeAlias, TypeVar
+from typing import TypeVar
 
 from satsym.status import BadInput
 
 T = TypeVar("T")
-Profile: TypeAlias = Callable[[FrameType, str, Any], object]
 
 
 @dataclass(frozen=True)

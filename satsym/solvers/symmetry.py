@@ -8,10 +8,7 @@ as the oblateness of a planet, just keeps from being symmetries still tell how t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +17,6 @@ from satsym.arrays import Array
 from satsym.control_set import Row
 from satsym.instance import Instance
 from satsym.kernels import Kernels
-
-States = Callable[[Array], Array]
-"""Scaled states, shape (n, M), at M times tau in [0, 1]."""
 
 DRAWN = 12
 """States at which the equations are looked at, for each state variable."""
@@ -34,60 +28,16 @@ PERTURBED = 1e-2
 """Relative size of what a perturbation leaves of equations that a symmetry would meet: that of oblateness is 4e-4 to
 1.1e-3."""
 
-TURN = 2.0 * np.pi
-
-CORRECTIONS, CLOSE_ROTATION = 20, 1e-6
-"""Corrections of a state until it rotates steadily, and how nearly it does then."""
-
 ALIKE_AXES = 0.88
 """Cosine of half a radian: rotations whose axes lie nearer to each other are one."""
 
-ANGLES = 720
-"""Angles by which the end is turned to see which fits best."""
 
+def symmetric(instance: Instance) -> bool:
+    """Whether the motion without control looks the same after rotations that follow it.
 
-@dataclass(frozen=True, eq=False)
-class Rotation:
-    """A rotation exp(phi G) that leaves the free motion as it is, by the angle phi in the sense of the motion."""
-
-    axes: NDArray[np.complexfloating[Any, Any]]
-    angular: NDArray[np.complexfloating[Any, Any]]
-    """Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more."""
-    inverse: NDArray[np.complexfloating[Any, Any]]
-    """Inverse of the eigenvectors."""
-    vectors: NDArray[np.bool_]
-    """Which states such rotations mix, about whatever axis, shape (n, n): components of one vector."""
-
-    @property
-    def moved(self) -> NDArray[np.bool_]:
-        """Which states such rotations move, shape (n,): a mass or a temperature they leave as it is."""
-        return _moved(self.vectors)
-
-    def turned(self, states: Array, angle: Array | float) -> Array:
-        """States (n, M), each by its angle (M,)."""
-        phases = np.exp(np.multiply.outer(self.angular, np.atleast_1d(angle)))
-        return np.asarray((self.axes @ (phases * (self.inverse @ states))).real)
-
-    @property
-    def matrix(self) -> Array:
-        """G, shape (n, n)."""
-        return np.asarray(((self.axes * self.angular) @ self.inverse).real)
-
-    def generator(self, states: Array) -> Array:
-        """G applied to states (n, M)."""
-        return np.asarray((self.axes @ (self.angular[:, None] * (self.inverse @ states))).real)
-
-
-def rotation(instance: Instance) -> Rotation | None:
-    """The first of :func:`rotations`; ``None`` where there is none."""
-    return next(rotations(instance), None)
-
-
-def rotations(instance: Instance) -> Iterator[Rotation]:
-    """Rotations that follow the motion: at all ends that are given, and at either of them where they differ from that.
-
-    In space the first is about an axis between those of the momenta at start and end, whatever the coordinates. An end
-    is given where every state is that rotations move.
+    Looked at are the rotation that follows the motion best at all ends that are given, and those at either of them. In
+    space the first is about an axis between those of the momenta at start and end, whatever the coordinates. An end is
+    given where every state is that rotations move.
     """
     model, (end, given) = instance.model, _end(instance)
     ends = np.array([instance.initial, end]).T
@@ -96,7 +46,7 @@ def rotations(instance: Instance) -> Iterator[Rotation]:
     about = _about(model, ends[:, 0], rounded)
     found = _generators(model, instance.t0, about, tuple(rounded.tolist()), instance.parameters)
     if found is None:
-        return
+        return False
     vectors = _vectors(found / sizes * sizes.T)
     if not given[_moved(vectors)].all():
         ends = ends[:, :1]
@@ -110,19 +60,18 @@ def rotations(instance: Instance) -> Iterator[Rotation]:
         unit /= max(float(np.linalg.norm(unit)), 1e-300)
         if all(float((unit * other).sum()) < ALIKE_AXES for other in known):
             known.append(unit)
-            around = _about_its_axis(matrix, vectors)
-            yield from () if around is None else (around,)
+            # rounding that mixes what is not mixed leaves states that stand still without axes of their own
+            if _comes_back(np.where(vectors, matrix, 0.0)):
+                return True
+    return False
 
 
-def _about_its_axis(matrix: Array, vectors: NDArray[np.bool_]) -> Rotation | None:
-    """The rotation that a matrix generates, if it is one that comes back."""
-    # rounding that mixes what is not mixed leaves states that stand still without axes of their own
-    angular, axes = np.linalg.eig(np.where(vectors, matrix, 0.0))
+def _comes_back(matrix: Array) -> bool:
+    """Whether a matrix generates a rotation, which comes back to where it began."""
+    angular, axes = np.linalg.eig(matrix)
     fastest = float(np.abs(angular).max())
-    if fastest == 0.0 or (np.abs(angular.real) > PERTURBED * fastest).any() or np.linalg.cond(axes) > 1e6:
-        return None
-    multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > PERTURBED * fastest]).min())
-    return Rotation(axes, 1j * multiples, np.linalg.inv(axes), vectors)
+    turning = fastest > 0.0 and not (np.abs(angular.real) > PERTURBED * fastest).any()
+    return turning and not np.linalg.cond(axes) > 1e6
 
 
 def _vectors(found: Array) -> NDArray[np.bool_]:

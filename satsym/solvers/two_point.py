@@ -34,9 +34,6 @@ from satsym.status import Status
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
 
-FEWEST_INTERVALS = 10
-"""Intervals of a mesh on which a guess is followed."""
-
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
 

@@ -11,9 +11,8 @@ from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import kind, minimise
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits, Meter
 
@@ -26,13 +25,6 @@ ROUGHLY, TOLERANCE = 3e-2, 1e-7
 
 FEWER = 3
 """Stages with which it is looked at first whether a path leads to what is known: that need not be found accurately."""
-
-UNFINISHED = (Reason.NO_CONVERGENCE, Reason.NO_DESCENT, Reason.TIME_UP)
-"""Ends of minimisations that may be next to a minimum: a penalty function takes ever shorter steps along narrow
-valleys, as motions that are unstable and pass close to a centre of attraction have them."""
-
-FINISHING, MESHES = 25, 3
-"""Newton steps to the extremal, and meshes on which they are made."""
 
 
 def from_path(
@@ -86,25 +78,3 @@ def _minimised(
             return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
         tolerance = TOLERANCE if extremal else ROUGHLY
         curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), order)
-
-
-def finished(problem: TwoPoint, attempt: Attempt, limits: Limits) -> Attempt:
-    """An attempt whose minimisation did not end, made the extremal to which Newton's method leads from there.
-
-    The attempt as it is where that leads nowhere.
-    """
-    if attempt.reason not in UNFINISHED or limits.late:
-        return attempt
-    curve, steps = attempt.curve, attempt.iterations
-    for _ in range(MESHES):
-        system = System(problem, curve.mesh, curve.order)
-        found = newton(system, curve, TOLERANCE, FINISHING)
-        if found is None or not found.solved:
-            break
-        curve, steps = found.curve, steps + found.iterations
-        limits.spend(found.iterations * curve.flat.shape[1])
-        if system.largest_turn(curve, system.jacobian(curve)) <= meshes.COARSEST:
-            reason, known = kind(system, curve)
-            return Attempt(curve, reason, steps, system.cost(curve), linearised=known)
-        curve = curve.on(meshes.laid(problem, curve), STAGES)
-    return attempt

@@ -21,9 +21,6 @@ States = Callable[[Array], Array]
 POINTS = 41
 """Points of a path at which the mesh is laid."""
 
-WAVES = 4
-"""Waves of a path that is drawn."""
-
 STEPS = 4000
 """RK4 steps of a motion under a control that is guessed, and at most of one without control."""
 

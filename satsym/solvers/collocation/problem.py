@@ -102,10 +102,6 @@ class TwoPoint:
         """The initial state, scaled."""
         return np.array(self.instance.initial) / self.scale.state
 
-    def starting_at(self, initial: Array) -> TwoPoint:
-        """This problem from another initial state, scaled."""
-        return replace(self, instance=replace(self.instance, initial=tuple((initial * self.scale.state).tolist())))
-
     @cached_property
     def positive(self) -> tuple[int, ...]:
         """Indices of the states that must stay positive."""

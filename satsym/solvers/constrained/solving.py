@@ -38,9 +38,6 @@ class Stopped:
     message: str
 
 
-LATE = Stopped(Status.TIME_LIMIT, "time was up before an extremal was found")
-
-
 def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: Limits) -> Arcs | Stopped:
     """Exact arcs, the structure revised until nothing is wrong with it.
 

@@ -84,9 +84,9 @@ class Comparison:
 
 def going_round(instance: Instance) -> list[Kind]:
     """Revolutions, where the uncontrolled motion looks the same when it is turned: then other numbers may do."""
-    from satsym.solvers.symmetry import rotation
+    from satsym.solvers.symmetry import symmetric
 
-    return [Kind.REVOLUTIONS] if rotation(instance) else []
+    return [Kind.REVOLUTIONS] if symmetric(instance) else []
 
 
 def summed(

@@ -25,9 +25,6 @@ from satsym.solvers.switching.magnitudes import moving
 from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs, switched
 
-WORK = 4_000_000
-"""Unknowns times iterations that all starts together may take."""
-
 POINTS, NEAR_END, FAINT_COSTATE = 401, 1e-3, 1e-9
 """Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
 of ends that it meets, relative to sizes."""
