@@ -8,14 +8,15 @@ from functools import partial
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.by_newton import from_guess
-from satsym.solvers.cold_start.from_path import STRAIGHT_THROUGH, from_path
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.cold_start.swept import from_control, loose
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import tighten
@@ -25,6 +26,7 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.extremal import nothing, solved
 from satsym.solvers.failures import tried
@@ -33,6 +35,13 @@ from satsym.status import Status
 
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
+
+STRAIGHT_THROUGH = 15
+"""Steps within which the straight line leads to a minimum if it does so easily."""
+
+ROUGHLY, TOLERANCE = 3e-2, 1e-7
+"""Sizes of the last step: after the first the mesh is laid anew if the way was hard, the other ends the minimisation.
+"""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -188,7 +197,7 @@ def cold_start(problem: TwoPoint, limits: Limits) -> Start:
 
 def _minimum(problem: TwoPoint, line: Curve, limits: Limits) -> Attempt:
     """The minimum to which the straight line leads as a first guess, or why it leads to none."""
-    return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits)
+    return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits, STRAIGHT_THROUGH)
 
 
 def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
@@ -198,3 +207,30 @@ def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
     if outcome is None or not outcome.solved or not outcome.curve.in_domain(problem.positive):
         return None
     return Attempt(outcome.curve, Reason.SADDLE, outcome.iterations, system.cost(outcome.curve))
+
+
+def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int) -> Attempt:
+    """Minimise from a path of states; the mesh is laid anew as the curve takes shape.
+
+    Parameters
+    ----------
+    path
+        Shape (n, M) for M times.
+    most
+        Steps of the minimisation.
+    """
+    curve = paths.curve(problem, path)
+    steps, hard, tolerance = 0, False, ROUGHLY
+    while True:
+        found = minimise(System(problem, curve.mesh, STAGES), curve, limits, tolerance, max(most - steps, 1))
+        steps, hard = steps + found.iterations, hard or found.hard
+        found = replace(found, iterations=steps, hard=hard)
+        extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)
+        if not (extremal or found.reason is Reason.OUTGROWN) or not found.curve.in_domain(problem.positive):
+            return found
+        if extremal and tolerance == TOLERANCE:
+            return found
+        if steps >= most or limits.expired:
+            return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
+        tolerance = TOLERANCE if extremal else ROUGHLY
+        curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), STAGES)

@@ -32,10 +32,10 @@ from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits, computed
+from satsym.solvers.two_point import from_path
 
 POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
 WORKERS = min(2, os.cpu_count() or 1)

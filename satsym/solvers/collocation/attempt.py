@@ -16,7 +16,6 @@ class Reason(Enum):
     SADDLE = "saddle"
     EXTREMAL = "extremal"
     """Nobody asked whether it is a minimum."""
-    KNOWN = "led to what is known"
     OUTGROWN = "the solution needs more mesh intervals than are allowed"
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"
@@ -24,15 +23,12 @@ class Reason(Enum):
     NO_DESCENT = "no descent"
     NO_CONVERGENCE = "no convergence in {} steps"
     OUT_OF_DOMAIN = "the minimum lies outside the domain of the model"
-    PATH_ENDS = "the {} ends after {:.0%}"
-    DURATION_ENDS = "the duration could be extended only to {:.4g} of {:.4g}"
     BLOCKED = "the relaxed bounds could be tightened only by {:.0%}"
     UNSETTLED = (
         "the times at which bounds become active do not converge: try wider bounds, another tf, or --continue "
         "from an easier problem"
     )
     INACCURATE = "the estimated error stays at {:.0e} on {} intervals"
-    COSTLY = "the cost grows without limit as the bounds are enforced"
 
 
 @dataclass(frozen=True, eq=False)

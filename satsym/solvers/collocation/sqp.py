@@ -12,12 +12,12 @@ refusing good steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import Linearised, linearise
@@ -45,16 +45,11 @@ PROBE = 1e-6
 """Step with which the slope of the cost along a direction is measured."""
 
 
-def minimise(
-    system: System,
-    start: Curve,
-    limits: Limits,
-    tolerance: float = 1e-7,
-    most: int = 80,
-    coarsest: float = float("inf"),
-    arrived: Callable[[Curve], bool] | None = None,
-) -> Attempt:
+def minimise(system: System, start: Curve, limits: Limits, tolerance: float, most: int) -> Attempt:
     """Minimise the cost from a curve without costates, over all curves that solve the problem.
+
+    A mesh that is too coarse has minima that the problem does not have, so the minimisation stops where the motion
+    turns by more than ``mesh.COARSEST`` in one interval.
 
     Parameters
     ----------
@@ -67,11 +62,6 @@ def minimise(
         Size of the last step.
     most
         Steps.
-    coarsest
-        Largest angle by which the motion may turn in one interval. A mesh that is too coarse has minima that the
-        problem does not have, so the minimisation stops when its curve outgrows the mesh.
-    arrived
-        Whether a curve leads to what is known, where it stops too.
     """
     n, problem, curve = system.problem.states, system.problem, start
     residual, cost = system.residual(curve), system.cost(curve)
@@ -82,7 +72,7 @@ def minimise(
         first = not curve.stages[n:].any()
         jacobian = system.jacobian(curve)
         limits.spend(curve.flat.shape[1])
-        if iteration and coarsest < float("inf") and system.largest_turn(curve, jacobian) > coarsest:
+        if iteration and system.largest_turn(curve, jacobian) > meshes.COARSEST:
             return Attempt(curve, Reason.OUTGROWN, iteration, cost)
         avoid = newton and fraction < CUT
         linearised, newton = _direction(system, curve, residual, jacobian, avoid, trusted=close)
@@ -98,7 +88,7 @@ def minimise(
         limits.tell(cost * problem.scale.cost, size)
         if size < tolerance:
             curve, known = curve.moved(step, 1.0), linearised if newton else None
-            reason, known = kind(system, curve, known, sure=newton and not close)
+            reason, known = _kind(system, curve, known, sure=newton and not close)
             return Attempt(curve, reason, iteration + 1, system.cost(curve), hard, known)
         close = newton and size < CLOSE_STEP and fraction == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
@@ -108,8 +98,6 @@ def minimise(
         if found is None:
             return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
         curve, residual, cost, violated = found.curve, found.residual, found.cost, found.violated
-        if arrived and arrived(curve):
-            return Attempt(curve, Reason.KNOWN, iteration + 1, cost)
         fraction, halved = found.fraction, found.halved
         limits.spend(int(curve.flat.shape[1] * -np.log2(fraction)) if halved else 0)
         hard = hard or halved
@@ -166,8 +154,8 @@ def _searched(at: _Merit, fraction: float, whole: bool) -> _Trial | None:
 
     Parameters
     ----------
-    share
-        To begin with.
+    fraction
+        Share of the step to begin with.
     whole
         Whether that is taken as it is.
     """
@@ -241,9 +229,7 @@ def _convex(hessians: Array) -> Array:
     return found
 
 
-def kind(
-    system: System, curve: Curve, near: Linearised | None = None, sure: bool = False
-) -> tuple[Reason, Linearised | None]:
+def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:
     """Whether an extremal is a minimum, and the equations by which that is judged: those next to it, if at hand.
 
     Parameters

@@ -51,7 +51,6 @@ class Origin(Enum):
     STRUCTURE = "a given structure"
     REST = "rest"
     REACH = "the reachable set"
-    DRAWN = "randomly drawn switching times"
     SMOOTHED = "the regularised problem with the weight {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
     SEARCH = "a direct search"
