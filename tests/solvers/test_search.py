@@ -24,7 +24,7 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import answer, motion, nlp, order, solving, starts
+from satsym.solvers.search import motion, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
@@ -141,7 +141,7 @@ def test_extremals_are_those_of_collocation(name: str, error: float) -> None:
     found = order.searched(case, LIMITS, partial(extremals.exact, case))
     assert found is not None
     assert found.cost == pytest.approx(known.objective, rel=error, abs=1e-15)
-    assert answer.answered(case, found).lam[:, 0] == pytest.approx(known.lam[:, 0], rel=1e-7, abs=1e-10)
+    assert solving.answered(case, found).lam[:, 0] == pytest.approx(known.lam[:, 0], rel=1e-7, abs=1e-10)
 
 
 def pendulum() -> Problem:
@@ -282,7 +282,7 @@ def test_the_smallest_engine_that_arrives_is_found_with_its_parameter() -> None:
     case = satsym.Instance.of(relative(), initial=start, final=end, tf=800.0, **given).case
     found = order.searched(case, LIMITS, partial(extremals.exact, case))
     assert found is not None
-    solution = answer.answered(case, found)
+    solution = solving.answered(case, found)
     assert solution.objective == pytest.approx(8.1526e-4, rel=1e-4)
     assert solution.instance.parameters[0] == pytest.approx(solution.objective, rel=1e-12)
 
