@@ -12,7 +12,7 @@ import pytest
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solvers import solve
-from satsym.solvers.sweep.relaxation import largest_stable
+from satsym.solvers.sweep.solving import largest_stable
 from satsym.solvers.sweep.sweeps import SweepProblem, forward
 from satsym.status import Status
 from tests.support.cases import shipped

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from satsym.solvers.unknowns.descent import _step, _updated
+from satsym.solvers.unknowns.solving import _step, _updated
 
 MODELS = {
     "inside": ([[2.0, 0.3], [0.3, 0.5]], [0.2, -0.1]),
