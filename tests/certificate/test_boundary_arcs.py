@@ -20,13 +20,12 @@ from satsym.solution import Event, Solution
 from satsym.solvers import by_search
 from satsym.solvers.by_search import boundary_arcs
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.competitors.saddle import fall
 from satsym.solvers.certificate.constrained.conditions import _defect
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.second_variation import Quadratic
 from satsym.solvers.constrained.structure import stated_arcs
-from satsym.solvers.improving import bottomless
+from satsym.solvers.improving import bottomless, fall
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 

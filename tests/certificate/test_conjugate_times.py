@@ -15,9 +15,9 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
 from satsym.solvers import linear
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.competitors.saddle import along
 from satsym.solvers.certificate.jacobi import NOT_STRICT, Conjugate, conjugate
 from satsym.solvers.certificate.reintegration.segments import segments
+from satsym.solvers.improving import along
 from satsym.spec import ControlSetKind, Variable
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, symbols_of
