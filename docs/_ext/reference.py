@@ -13,7 +13,7 @@ GROUPS = {
         "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve export"
     ),
     "What a solution is worth": "solution.Certificate solution.Check solution.Competitors prove",
-    "Many instances": "study front.studies.Study solvers.repeated.repeated.Repeated",
+    "Many instances": "study front.studies.Study solvers.repeated.Repeated",
     "Linear systems and orbits": "analyse lqr front.analysing.Analysis front.analysing.Regulator",
     "Derivations": "derive front.derivation.Derivation front.derivation.Equation check audit front.auditing.Audit",
     "Stating a model": "Variable FirstOrder Newton Problem Free Box Ball Annulus Angle",

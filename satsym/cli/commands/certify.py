@@ -35,7 +35,7 @@ def certify(folder: Path, as_json: bool) -> ExitCode:
     from satsym.report.results.certificate import certificate_object
     from satsym.report.results.examination import examine
     from satsym.report.results.objects import head
-    from satsym.report.terminal.examination import examination_text
+    from satsym.report.terminal.solution import examination_text
 
     instance = problem.read(folder)
     with live() as line:

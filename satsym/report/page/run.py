@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import shlex
 from collections.abc import Sequence
@@ -10,9 +11,12 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
+from satsym.control_set import stated_constraints
+from satsym.instance import Instance
+from satsym.instance.files import text as text_of
 from satsym.proof.record import Proof
 from satsym.report import plots
-from satsym.report.display import raised
+from satsym.report.display import raised, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.look import Look
 from satsym.report.page import answer
@@ -20,10 +24,11 @@ from satsym.report.page.answer import proof as section
 from satsym.report.page.explore import explore, scripts
 from satsym.report.page.explored import Answer
 from satsym.report.page.motion import motion
-from satsym.report.page.problem import problem
 from satsym.report.plots import style
 from satsym.report.plots.scene import Scene
-from satsym.report.said import message, say, spoken
+from satsym.report.results.objects import file_of, time_unit
+from satsym.report.said import decimal, message, say, spoken
+from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution
 from satsym.version import __version__
@@ -32,8 +37,12 @@ if TYPE_CHECKING:
     from satsym.report.page.derived import Derived
     from satsym.symbolic import Derivation
 
+
 WITHOUT_SCRIPTS = Markup('#explore, [href="#explore"] { display: none; }')
 """Hides what scripts alone can show."""
+
+DIGITS = 10
+"""Significant digits of given numbers."""
 
 
 @dataclass(frozen=True)
@@ -197,8 +206,11 @@ def _file(room: str, name: str) -> Markup:
 
 
 _NAMED = re.compile(r'(\bid="|href="#|url\(#)')
+
 _BEFORE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
+
 _ABOUT = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
+
 _COLOURS = {
     **dict.fromkeys((style.INK.lower(), "#000000"), "ink"),
     **dict.fromkeys((style.SOFT.lower(), style.GREY.lower(), "#777777", "#9a9a9a"), "faint"),
@@ -210,7 +222,9 @@ _COLOURS = {
     },
 }
 """What each colour of a picture is on a page, where it depends on whether that is light or dark."""
+
 _COLOUR = re.compile("|".join(_COLOURS))
+
 OVERVIEW = "overview"
 """Shows what the others show, too."""
 
@@ -240,3 +254,83 @@ def _inline(svg: str, name: str, said: str) -> Markup:
     """The element alone, with names of its own, and with words for those who do not see it."""
     body = _NAMED.sub(rf"\g<1>{name}-", themed(svg))
     return Markup(body.replace("<svg ", str(tag("svg", role="img", aria_label=said))[: -len("></svg>")] + " ", 1))
+
+
+def problem(instance: Instance, statement: Derived | None, values: Sequence[str], texts: Texts) -> Markup:
+    """The section on the problem: what is minimised, where the motion begins and ends, and what bounds the controls.
+
+    Parameters
+    ----------
+    statement
+        The derivation of the model.
+    values
+        What stands in place of numbers of the file, each as ``KEY=VALUE``.
+    """
+    return joined(
+        statement.statement() if statement else "",
+        tag("h3", texts.get("page", "instance")),
+        answer.table(texts.get("page", "conditions"), _conditions(instance, texts)),
+        answer.table(texts.get("page", "admissible"), rows) if len(rows := _admissible(instance)) > 1 else "",
+        tag("p", _times(instance, texts)),
+        _instance_file(instance, values, texts),
+    )
+
+
+def _conditions(instance: Instance, texts: Texts) -> list[tuple[str, ...]]:
+    """Below a header, a row for each state: where it begins and where it is to end."""
+    rows: list[tuple[str, ...]] = [
+        (say("state"), say("initial"), say("final"), say("unit"), texts.get("words", "meaning").lower())
+    ]
+    free = {unknown.name for unknown in instance.free}
+    for variable, initial in zip(instance.model.spec.states, instance.initial, strict=True):
+        name = variable.symbol
+        begin = say("free") if name in free else figure(initial, DIGITS)
+        rows.append((name, begin, _final(instance, name), variable.unit, say(variable.meaning)))
+    return rows
+
+
+def _final(instance: Instance, name: str) -> str:
+    """What is asked of a state at the end."""
+    if name in instance.ranges:
+        lower, upper = (figure(end, DIGITS) if math.isfinite(end) else say("free") for end in instance.ranges[name])
+        return f"[{lower}, {upper}]"
+    value = instance.final.get(name)
+    if value is None:
+        return say("free")
+    return message(value) if isinstance(value, str) else figure(value, DIGITS)
+
+
+def _admissible(instance: Instance) -> list[tuple[str, ...]]:
+    """Below a header, a row for each bound of controls and each path constraint."""
+    spec = instance.model.spec
+    rows: list[tuple[str, ...]] = [(say("control"), say("lower bound"), say("upper bound"), say("unit"))]
+    for variable, *bounds in zip(spec.controls, instance.lower, instance.upper, strict=True):
+        if any(map(math.isfinite, bounds)):
+            rows.append((variable.symbol, *(figure(b) if math.isfinite(b) else "" for b in bounds), variable.unit))
+    for norm in instance.bounded_norms:
+        lower = figure(norm.lower) if norm.lower else ""
+        rows.append((f"|{norm.name or 'u'}|", lower, figure(norm.upper), norm.unit))
+    rows += [(name.replace("_", " "), "", "0", "1") for name in stated_constraints(spec)]
+    return rows
+
+
+def _times(instance: Instance, texts: Texts) -> str:
+    unit = unit_text(time_unit(instance.model.spec) or "1")
+
+    def said(time: float) -> str:
+        return f"{decimal(figure(time, DIGITS))} {unit}".rstrip()
+
+    if instance.tf is None:
+        return texts.get("page", "until_free", begin=said(instance.t0))
+    return texts.get("page", "between", begin=said(instance.t0), end=said(instance.tf))
+
+
+def _instance_file(instance: Instance, values: Sequence[str], texts: Texts) -> Markup:
+    """The file as it was read, and what stood in place of its numbers."""
+    file = file_of(instance)
+    if file is None:
+        return Markup()
+    about = texts.get("page", "file", name=file["name"], digest=file["digest"])
+    text = tag("pre", tag("code", text_of(instance.path)), tabindex="0")
+    instead = texts.get("page", "instead", values=", ".join(values))
+    return joined(tag("details", tag("summary", about), text), tag("p", instead) if values else Markup())

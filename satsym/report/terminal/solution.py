@@ -1,10 +1,11 @@
-"""What a solution or a simulation says to people, as plain text."""
+"""What a solution, a simulation or a saved result that was examined again says to people, as plain text."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from satsym.report.terminal.certificate import certificate_lines
 from satsym.report.terminal.table import WIDEST, figure, joined, room, table, wrapped
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.status import Status
+
+if TYPE_CHECKING:
+    from satsym.report.results.examination import Examination
 
 ROUNDING = 1e-10
 """Share of the largest value along the way at which nothing is shown."""
@@ -298,3 +302,25 @@ def _first(row: Array) -> float:
 
 def _last(row: Array) -> float:
     return float(row[-1]) if len(row) else math.nan
+
+
+def examination_text(found: Examination, colour: bool) -> str:
+    """What a saved result states, what differs from its files, and the certificate that was computed anew."""
+    instance, spec = found.solution.instance, found.solution.instance.model.spec
+    stated = message(found.stated.value) if found.stated else say("no certificate")
+    heading = say("<name>, model <model>", name=instance.name, model=spec.name)
+    rows = [(one.key, str(one.stated), str(one.found)) for one in found.differences]
+    agreement = say("result.json agrees with the other files")
+    if len(rows) == 1:
+        agreement = say("one number in result.json does not agree with the other files")
+    elif rows:
+        agreement = say("<number> numbers in result.json do not agree with the other files", number=len(rows))
+    title = instance.title or spec.title
+    return joined(
+        [
+            [f"\x1b[1m{title}\x1b[0m" if colour else title, f"{heading}: {say('stated as <verdict>', verdict=stated)}"],
+            wrapped(agreement),
+            table([each("key", "stated", "found"), *rows]) if rows else [],
+            certificate_lines(found.certificate, spec) if found.certificate else [],
+        ]
+    )

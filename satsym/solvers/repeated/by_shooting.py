@@ -44,7 +44,7 @@ CLOSE_CORRECTION = 3e-5
 
 
 class ByShooting:
-    """See :class:`satsym.solvers.repeated.repeated.Means`; for instances whose model is compiled."""
+    """See :class:`satsym.solvers.repeated.Means`; for instances whose model is compiled."""
 
     name = "shooting"
 
