@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -40,6 +40,8 @@ _MACRO = re.compile(
     r"\s*(?P<default>\[)?|\\def\s*\\(?P<def>[A-Za-z]+)(?P<args>(?:#[0-9])*)\s*(?=\{)"
     r"|\\DeclareMathOperator\*?\s*\{\\(?P<operator>[A-Za-z]+)\}"
 )
+_PACKAGES = re.compile(r"\\usepackage\s*(?:\[[^\]\n]{0,200}\])?\s*\{([^{}\n]{1,300})\}")
+_SET = re.compile(r"\\(?:text|textrm|mathrm)\s*\{([^{}]*)\}")
 _LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
 _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100})[}`]")
 _OPTION = re.compile(r":(?:label|name):[ \t]*(\S{1,100})")
@@ -99,9 +101,14 @@ def read(path: Path) -> Source:
         If it is not text, too large, or a PDF.
     """
     source = Source(path)
-    _include(source, path, path.parent.resolve(), ())
+    home = path.parent.resolve()
+    _include(source, path, home, ())
     _blank_out(source)
-    _enter_macros(source)
+    for package in sorted({name.strip() for names in _PACKAGES.findall(source.text) for name in names.split(",")}):
+        file = home / f"{package}.sty"
+        if file.resolve().is_relative_to(home) and file.is_file():
+            _enter_macros(source, _COMMENT.sub("", _content(file)), None)
+    source.text = _enter_macros(source, source.text, source.place)
     return source
 
 
@@ -247,23 +254,26 @@ def _blank(match: re.Match[str]) -> str:
     return match[0] if match.groupdict().get("kept") else re.sub(r"[^\n]", " ", match[0])
 
 
-def _enter_macros(source: Source) -> None:
-    """Macros with arguments by number; what has an optional one stays unknown."""
-    for match in _MACRO.finditer(source.text):
+def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None) -> str:
+    """Enter the macros of a text, and give the text without them; what has an optional argument stays unknown."""
+    for match in _MACRO.finditer(text):
         name = match["name"] or match["def"] or match["operator"]
-        opening = source.text.find("{", match.end())
-        if match["default"] or opening < 0 or source.text[match.end() : opening].strip():
+        opening = text.find("{", match.end())
+        if match["default"] or opening < 0 or text[match.end() : opening].strip():
             continue
-        closing = _closing(source.text, opening)
-        body = source.text[opening + 1 : closing]
+        closing = _closing(text, opening)
+        body = text[opening + 1 : closing]
         if match["operator"]:
-            body = rf"\operatorname{{{body}}}"
+            word = _SET.sub(lambda upright: upright[1], body)
+            body = rf"\operatorname{{{word}}}"
         count = int(match["count"] or len(match["args"] or "") // 2)
         try:
             source.macros[name] = Macro(count, tuple(tokens(body, None, opening + 1)))
         except Unread as error:
-            source.unread.append((source.place(match.start()), f"the macro \\{name}: {error.message}"))
-        source.text = source.text[:opening] + " " * (closing + 1 - opening) + source.text[closing + 1 :]
+            if place:  # a package of the document's own may hold anything
+                source.unread.append((place(match.start()), f"the macro \\{name}: {error.message}"))
+        text = text[:opening] + " " * (closing + 1 - opening) + text[closing + 1 :]
+    return text
 
 
 def _closing(text: str, opening: int) -> int:

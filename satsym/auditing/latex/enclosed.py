@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -12,7 +13,7 @@ from satsym.auditing.latex.refusals import RefusalCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import FUNCTIONS
-from satsym.formula.tree import Add, Call, Grid, Node, Sym, symbols
+from satsym.formula.tree import Add, Call, Grid, Node, Sym, Text, constant, symbols
 
 
 class EnclosedCursor(RefusalCursor):
@@ -59,15 +60,36 @@ class EnclosedCursor(RefusalCursor):
             self._i += 1
         return Call(word, tuple(arguments))
 
+    def _unit(self, last: Node) -> Node | None:
+        """The unit behind a number, which is set upright; ``None``, with nothing taken, where none is next."""
+        begin, said = self._i, ""
+        numeric = constant(last) is not None or (isinstance(last, Call) and last.function == "power")
+        while numeric and (token := self._peek()) is not None:
+            if token.kind == "macro" and token.text in words.UPRIGHT:
+                self._i += 1
+                said += "".join(t.text for t in self._group())
+            elif said and (self._is("^") or (self._is("/") or self._is("cdot", kind="macro"))):
+                said += {"cdot": " "}.get(token.text, token.text)
+                self._i += 1
+                said += "".join(t.text for t in self._script()) if token.text == "^" else ""
+            else:
+                break
+        parts = re.findall(r"[A-Za-z]+", said)
+        behind = self._peek()
+        if said and all(part in words.UNITS for part in parts) and (behind is None or not self._begins_factor(behind)):
+            return Text(said)
+        self._i = begin
+        return None
+
     def _braces(self, token: Token) -> Node:
-        """What stands in printed braces."""
+        """What stands in printed braces, or in angular brackets: a mean, or an inner product."""
         begin, depth = self._i, 1
         while depth:
             inside = self._take()
-            depth += (inside.text in ("{", "lbrace", "lbrack") and inside.kind == "macro") - (
-                inside.text in ("}", "rbrace", "rbrack") and inside.kind == "macro"
-            )
+            depth += inside.kind == "macro" and (inside.text in words.OPENING) - (inside.text in words.CLOSING)
         parts = split(self._found[begin : self._i - 1], lambda t: t.kind == "sign" and t.text in ",;")
+        if token.text == "langle":
+            return Call("angled", tuple(self._inner(part, token.at) for part in parts))
         if len(parts) > 1:
             return Call("braces", tuple(self._inner(part, token.at) for part in parts))
         return self._inner(parts[0], token.at)
@@ -108,9 +130,14 @@ class EnclosedCursor(RefusalCursor):
             if groups == 0 and inside.text == closing and inside.kind == token.kind:
                 break
         inner = self._inner(self._found[begin : self._i - 1], token.at)
-        if isinstance(inner, Sym) and (letter := self._reading.letters.get(inner.name)) and letter.style == "vector":
-            return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        if (
+            isinstance(inner, Sym)
+            and (letter := self._reading.letters.get(inner.name))
+            and letter.bold
+            and not self._is("_")
+        ):
+            return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
             return Call("det", (inner,))
         if single and isinstance(inner, Add) and "I" in symbols(inner):
@@ -119,6 +146,7 @@ class EnclosedCursor(RefusalCursor):
             return Call("det", (inner,))
         if not single and self._is("_"):
             self._i += 1
-            if [t.text for t in self._script()] != ["2"]:
-                raise Unread("a norm of this kind is not read", token.at)
+            script = self._script()
+            if [t.text for t in script] != ["2"]:
+                return Call("indexed_norm", (inner, self._inner(script, token.at)))
         return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))

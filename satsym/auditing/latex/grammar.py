@@ -14,17 +14,29 @@ from math import factorial
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading
-from satsym.auditing.latex.enclosed import EnclosedCursor
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines, split
+from satsym.auditing.latex.sums import SumCursor
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
-from satsym.formula.reading import MAX_DEPTH
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.formula.tree import (
+    Call,
+    Div,
+    Equality,
+    Grid,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    children,
+    constant,
+)
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -65,14 +77,28 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         sides = [Parser(part, reading, start).side() for part in line.sides]
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
+            if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
+                raise Unread("a bracket with a comma, which may be one of operators, is not read", line.sides[0][0].at)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
                 raise Unread("what may be a set is no product", line.sides[0][0].at)
+            if Sym("nabla") in (one, other):
+                raise Unread("a sign of derivatives by itself is no quantity", line.sides[0][0].at)
+            taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
+            if sign == "=" and taken and _stands_in(one, other):
+                raise Unread("this letter is taken at a place, and stands without one", line.sides[0][0].at)
             reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
     return reading
 
 
-class Parser(EnclosedCursor):
+def _stands_in(name: Node, tree: Node) -> bool:
+    """Whether a name is a factor or a term of a tree; what a derivative is of, or by, is another matter."""
+    if isinstance(tree, Call) and tree.function in ("diff", "d", "value", *words.NOT_COMPARED):
+        return False
+    return tree == name or any(_stands_in(name, part) for part in children(tree))
+
+
+class Parser(SumCursor):
     """Reads one side of an equation."""
 
     def side(self) -> Node:
@@ -91,24 +117,6 @@ class Parser(EnclosedCursor):
             self._refuse()
         return tree
 
-    def _sum(self) -> Node:
-        self._depth += 1
-        if self._depth > MAX_DEPTH:
-            raise Unread(
-                f"brackets are nested more than {MAX_DEPTH} deep", self._found[min(self._i, len(self._found) - 1)].at
-            )
-        terms: list[Node] = []
-        while True:
-            negative = False
-            while self._is("+") or self._is("-"):
-                negative ^= self._take().text == "-"
-            term = self._product()
-            terms.append(Neg(term) if negative else term)
-            if not (self._is("+") or self._is("-")):
-                break
-        self._depth -= 1
-        return terms[0] if len(terms) == 1 else Add(tuple(terms))
-
     def _product(self, argument: bool = False) -> Node:
         """A term; of a function without brackets, what it is taken of."""
         chain, crossed = [self._signed_factor()], ""
@@ -120,11 +128,13 @@ class Parser(EnclosedCursor):
                 break
             if times:
                 crossed = self._times(token, chain, crossed)
+            elif (unit := self._unit(chain[-1])) is not None:
+                return Call("in_unit", (product_of(chain), unit))
             elif over:
                 chain = [self._over(token, chain)]
-            elif macro and text == "otimes":
+            elif macro and text in words.BETWEEN:
                 self._i += 1
-                chain[-1] = Call("tensor", (chain[-1], self._signed_factor()))
+                chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
             elif self._begins_factor(token):
                 self._refuse_behind(chain[-1], token)
                 if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
@@ -139,7 +149,8 @@ class Parser(EnclosedCursor):
         self._i += 1
         before, product = chain[-1], words.OF_VECTORS.get(sign.text)
         if product and self._is_vector(before):
-            if crossed and "cross" in (product, crossed):
+            field = isinstance(before, Call) and before.function in ("curl", "divergence")
+            if (crossed and "cross" in (product, crossed)) or field:
                 raise Unread("products of vectors one after the other, without brackets", sign.at)
             chain[-1] = self._of_vectors(product, before, sign)
             return product
@@ -180,7 +191,7 @@ class Parser(EnclosedCursor):
             return False
         if token.text in ("lvert", "lVert") or (token.text in ("|", "Vert", "vert")):
             return True
-        known = (GREEK, FUNCTIONS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS)
+        known = (GREEK, FUNCTIONS, words.RECIPROCALS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS)
         return any(token.text in names for names in known) or token.text in ATOMS
 
     def _factor(self) -> Node:
@@ -207,10 +218,13 @@ class Parser(EnclosedCursor):
                 known = isinstance(base, Sym) and base.name in self._reading.letters
                 base = self._raised(base, self._script(), at)
                 if known and self._is("(") and isinstance(base, Pow | Call):
-                    self._timed_behind_power()
+                    base = self._timed_behind_power(base)
             elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
                 self._i += 2
                 base = self._taken(base, self._script(), bar.at)
+            elif self._is("_") and not isinstance(base, Num):
+                at = self._take().at
+                base = Call("indexed", (base, self._inner(self._script(), at)))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
             elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
@@ -256,16 +270,20 @@ class Parser(EnclosedCursor):
         if token.kind == "macro":
             return self._macro(token)
         if token.kind == "letter":
-            if self._spells("const"):
+            if any(map(self._spells, words.CONSTANT)):
                 self._reading.constants = True
                 return Sym(CONSTANT)
-            self._refuse_spelled_function(token)
+            if (called := self._spelled_function(token)) is not None:
+                return called
             twice = self._peek()
             if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
                 raise Unread("twice the same letter in front of an index may be one name", token.at)
             after = self._peek()
-            beside = after is not None and after.at == token.at + 1
-            if token.text == "d" and beside and after is not None and (after.kind == "letter" or after.text in GREEK):
+            beside = after is not None and after.at <= token.at + 2
+            differs = after is not None and (
+                after.kind == "letter" or after.text in GREEK or after.text in words.STYLES
+            )
+            if token.text == "d" and beside and differs:
                 raise Unread("a differential is not read", token.at)
             self._i -= 1
             letter = self._letter()
@@ -293,16 +311,22 @@ class Parser(EnclosedCursor):
             return inner
         if name in words.STYLES and (zero := self._peek_number()) is not None:
             return zero
-        if name in ("}", "rbrace", "langle", "rangle", "rbrack"):
+        if name in words.CLOSING:
             raise Unread(f'"\\{name}" is not read here', token.at)
         if name in _READERS:
             return _READERS[name](self, token)
         if name in FUNCTIONS:
             return self._function(FUNCTIONS[name], token)
+        if name in words.RECIPROCALS:
+            return Div(Num(Fraction(1)), self._function(words.RECIPROCALS[name], token))
         self._i -= 1
         if name in words.UPRIGHT and (found := self._upright(token)) is not None:
             return found
         letter = self._letter()
+        if letter is None and (name in MARKS or name in ACCENTS):
+            self._i += 1
+            inner = self._inner(self._group(), token.at)
+            return Call("over", (inner, Sym(MARKS[name]))) if name in MARKS else self._dotted(inner, ACCENTS[name])
         if letter is None:
             self._refuse()
         assert letter is not None
@@ -313,6 +337,10 @@ class Parser(EnclosedCursor):
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
+
+    def _dotted(self, inner: Node, times: int) -> Node:
+        """A derivative by time, of what dots stand over."""
+        return inner if times == 0 else self._along(self._dotted(inner, times - 1))
 
     def _upright(self, token: Token) -> Node | None:
         """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
@@ -339,8 +367,8 @@ class Parser(EnclosedCursor):
 _READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
     "sqrt": lambda parser, _: parser._root(),
     "nabla": Parser._gradient,
-    "sum": Parser._sum_over,
-    "int": Parser._integral,
-    **dict.fromkeys(("{", "lbrace", "lbrack"), Parser._braces),
+    **dict.fromkeys(("sum", "prod"), Parser._sum_over),
+    **dict.fromkeys(("int", "oint"), Parser._integral),
+    **dict.fromkeys(words.OPENING, Parser._braces),
 }
 """Macros that begin something, and what reads it."""

@@ -10,6 +10,7 @@ from satsym.formula.reading import MAX_NAME, NAME
 _DOTS = ("", "dot", "ddot", "dddot", "ddddot")
 _ACCENTS = frozenset(("hat", "bar", "tilde", "check", "breve"))
 _RAISED = {"star": "*", "prime": r"{\prime}", "plus": "+", "minus": "-", "max": r"{\max}", "min": r"{\min}"}
+_STYLES = {"vector": "mathbf", "cal": "mathcal", "tt": "mathtt"}
 GREEK = frozenset(
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho varrho sigma "
     "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell hbar "
@@ -53,8 +54,8 @@ class Letter:
     def latex(self) -> str:
         """How it is typeset."""
         found = _in_tex(self.base)
-        if self.style:
-            found = rf"\mathcal{{{found}}}" if self.style == "cal" else rf"\mathbf{{{found}}}"
+        for style in filter(None, self.style.split("_")):
+            found = rf"\{_STYLES[style]}{{{found}}}"
         for mark in self.marks:
             if mark in _ACCENTS:
                 found = rf"\{mark}{{{found}}}"
@@ -74,6 +75,11 @@ class Letter:
     def still(self) -> Letter:
         """The letter without its dots."""
         return replace(self, dots=0)
+
+    @property
+    def bold(self) -> bool:
+        """Whether it is set as a vector."""
+        return "vector" in self.style
 
     def dotted(self, times: int = 1) -> Letter | None:
         """Its derivative by time; ``None`` beyond the fourth."""

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import SAID
+from satsym.auditing.latex.words import CONSTANT, SAID
 from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
@@ -59,12 +59,22 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
             if name in SAID and len(name) == len(part):
                 raise Unread("words between formulas are not read", part[first].at)
-            if len(name) >= _LONG_WORD and not grouped and sum(letter in "aeiou" for letter in name) > 1:
+            if (
+                len(name) >= _LONG_WORD
+                and name not in CONSTANT
+                and not grouped
+                and sum(letter in "aeiou" for letter in name) > 1
+            ):
                 raise Unread("words between formulas are not read", part[first].at)
+            called = len(name) > 2 and name[0].isupper() and name[-2:].islower() and bool(set("aeiou") & set(name))
+            called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
+            if called and behind and behind[0].text == "(":
+                raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
             numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
             beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
             multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
-            if name.isupper() and (numbered or multiplied or _is_ratio(part, first, last)):
+            barred = beside == {"|"} and len(name) == 2
+            if name.isupper() and (barred or numbered or multiplied or _is_ratio(part, first, last)):
                 raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)

@@ -13,7 +13,7 @@ from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
-from satsym.formula.tree import Add, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
+from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
 from satsym.wording import printable
 
 
@@ -41,9 +41,15 @@ class OperatorCursor(QuotientCursor):
         if self._is("_"):
             self._i += 1
             by = [self._inner(self._script(), token.at)]
-        following = self._peek()
-        if following is None or self._is("^") or following.text in ("cdot", "times"):
-            raise Unread("a divergence, a curl or a second gradient is not read", token.at)
+        if self._is("^") and self._is("2", 1, "number"):
+            self._i += 2
+            return Call("laplacian", (self._factor(), *by))
+        for sign, name in (("cdot", "divergence"), ("times", "curl")):
+            if self._is(sign, kind="macro"):
+                self._i += 1
+                return Call(name, (self._factor(), *by))
+        if self._peek() is None:
+            return Sym("nabla")
         return Call("gradient", (self._factor(), *by))
 
     def _optimum(self, token: Token) -> Node:
@@ -84,7 +90,7 @@ class OperatorCursor(QuotientCursor):
                 parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
         if "^" in limits:
             parts.append(self._limit(limits["^"], token.at))
-        return Call("sum", tuple(parts))
+        return Call("sum" if token.text == "sum" else "product", tuple(parts))
 
     def _limits(self) -> dict[str, list[Token]]:
         limits: dict[str, list[Token]] = {}
@@ -115,10 +121,12 @@ class OperatorCursor(QuotientCursor):
                 letter = self._letter()
                 behind = self._peek()
                 if letter is not None and (behind is None or behind.text in ("+", "-", ")", "]")):
-                    tree = self._inner(self._found[begin:here], token.at)
+                    along = self._found[here - 1].text == "cdot"
+                    tree = self._inner(self._found[begin : here - along], token.at)
                     parts = [tree, self._symbol(letter, now.at)]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
-                    return Call("integral", tuple(parts))
+                    name = "line_integral" if along else "integral"
+                    return Call("circulation" if token.text == "oint" else name, tuple(parts))
             self._i = here + 1
         raise Unread("an integral without a differential at its end is not read", token.at)
 
@@ -151,7 +159,11 @@ class OperatorCursor(QuotientCursor):
                 name, power = f"a{name}", None
         if name == "atan" and self._is("2", kind="number") and self._is("(", 1):
             self._i, name = self._i + 1, "atan2"
-        if self._is("_") and name in ("log", "min", "max"):
+        if self._is("_") and name == "log":
+            at = self._take().at
+            base = self._inner(self._script(), at)
+            return Div(self._function(name, token), Call("log", (base,)))
+        if self._is("_") and name in ("min", "max"):
             raise Unread(f"an index of {name} is not read", self._take().at)
         if self._is("(") or self._is("["):
             arguments = self._arguments()
@@ -188,6 +200,12 @@ class OperatorCursor(QuotientCursor):
         begin = self._i
         arguments = self._arguments()
         inner = arguments[0] if len(arguments) == 1 else None
+        if len(arguments) == 1 and (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
+            script = self._peek_group() if crossed.kind == "open" else [crossed]
+            if [t.text for t in script] == ["times"]:
+                self._i += 1
+                self._script()
+                return Call("skew", (arguments[0],))
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets, which may be one name, are not read", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
@@ -195,7 +213,7 @@ class OperatorCursor(QuotientCursor):
             raise Unread("a bracket with a comma, which may be one of fields, is not read", at)
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
-            if before.kind in ("letter", "close") or (before.kind == "macro" and before.text in GREEK):
+            if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
                 raise Unread("what something is taken at, in brackets behind it, is not read", at)
         if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
@@ -204,12 +222,6 @@ class OperatorCursor(QuotientCursor):
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
             raise Unread("an empty bracket", at)
-        if (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
-            script = self._peek_group() if crossed.kind == "open" else [crossed]
-            if [t.text for t in script] == ["times"]:
-                self._i += 1
-                self._script()
-                return Call("skew", (arguments[0],))
         return arguments[0]
 
     def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
@@ -222,13 +234,15 @@ class OperatorCursor(QuotientCursor):
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Whether a bracket holds one letter or function, and a letter stands in front of it, as in an expectation."""
         inside = self._found[begin + 1 : self._i - 1]
+        before = self._found[begin - 1] if begin else None
+        behind = before is not None and (before.kind in ("letter", "close") or before.text in GREEK)
         if self._is_taken(inside):
-            return begin > 0 and self._found[begin - 1].kind in ("letter", "close")
+            return behind
         letter = self._letter_in(inside)
         alone = letter is not None and letter == letter.plain and not letter.dots
         called = len(inside) > 1 and inside[0].kind == "macro" and inside[0].text in FUNCTIONS
         called = called and len(split(inside, lambda token: token.kind == "sign" and token.text in "+-")) == 1
-        return (alone or called) and begin > 0 and self._found[begin - 1].kind in ("letter", "close")
+        return (alone or called) and behind
 
     def _may_be_a_name(self, inner: Node | None) -> bool:
         if not isinstance(inner, Mul):
@@ -241,6 +255,9 @@ class OperatorCursor(QuotientCursor):
             raise Unread(f"the environment {printable(token.text)} is not read here", token.at)
         if token.text == "array" and self._is("{", kind="open"):
             self._group()
+        option = self._peek(1)
+        if self._is("[") and self._is("]", 2) and option and (option.kind == "number" or option.text in "clr"):
+            self._i += 3  # how far lines stand apart
         begin, depth = self._i, 1
         while depth:
             inside = self._take()
@@ -253,6 +270,8 @@ class OperatorCursor(QuotientCursor):
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
             cells = cells[:-1] if len(cells) > 1 and not cells[-1] else cells
+            if len(cells) > 1:  # commas between columns
+                cells = [cell[: len(cell) - (cell[-1:] != [] and cell[-1].text == ",")] for cell in cells]
             if len(cells) == 1:  # a row may be printed with commas
                 cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
             entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
@@ -262,17 +281,21 @@ class OperatorCursor(QuotientCursor):
             return Call("det", (Grid(tuple(entries)),))
         return Grid(tuple(entries))
 
-    def _timed_behind_power(self) -> None:
-        """Go past ``(t)`` behind the power of a letter; other places of a function are not read there."""
+    def _timed_behind_power(self, base: Node) -> Node:
+        """Go past ``(t)`` behind the power of a letter; other places are read behind an index above alone."""
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
         words_inside = "".join(t.text for t in inside)
         if words_inside in words.TIMES_OF_ANGLES:
-            return
+            return base
+        places = split(inside, lambda token: token.text == ",")
+        if isinstance(base, Call) and base.function == "raised" and all(map(self._place, places)):
+            return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if words_inside in words.AT_A_TIME or self._place(inside) is not None or self._is_taken(inside):
             raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
         self._i = begin
+        return base
 
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
         if not script:
@@ -284,19 +307,25 @@ class OperatorCursor(QuotientCursor):
             return Call("skew", (base,))
         if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
             return Call("transpose", (base,))
+        if len(script) == 1 and script[0].text in ("dagger", "dag", *words.STARS):
+            return Call("raised", (base, Sym("star" if script[0].text in words.STARS else "dagger")))
         exponent = self._inner(script, at)
         value = constant(exponent)
-        number = isinstance(base, Num | Add | Mul | Div | Neg) or base == Sym("pi")
-        if value is None and number:
+        if value is None and (constant(base) is not None or base == Sym("pi")):
             return Call("power", (base, exponent))
         if base == Sym("e") and len(script) == 1 and script[0].text in "ijklmn":
             raise Unread("a power of e may be one of a number, or an exponential", at)
         if isinstance(base, Sym) and base.name == "e" and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
-        if value is None:
-            raise Unread("an exponent that is not a number is not read", at)
+        if value is None:  # a power, or an index above
+            letters = [t.kind == "letter" or t.text in GREEK for t in script]
+            if (len(letters) > 1 and all(letters)) or (isinstance(exponent, Call) and exponent.function != "transpose"):
+                raise Unread("an exponent of several letters is not read", at)
+            return Call("raised", (base, exponent))
         if value == 0:
             raise Unread("a power of zero may be an index", at)
+        if base == Num(Fraction(10)):  # an order of magnitude
+            return Pow(base, exponent) if abs(value) <= MAX_EXPONENT else Call("power", (base, exponent))
         if abs(value) > MAX_EXPONENT:
             raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
         return Pow(base, exponent)
@@ -317,14 +346,15 @@ class OperatorCursor(QuotientCursor):
 
     def _is_vector(self, node: Node) -> bool:
         """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
-        if isinstance(node, Call) and node.function in ("d", "diff", "value"):
+        if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised"):
             return self._is_vector(node.arguments[0])
         if isinstance(node, Call):
-            return node.function in ("cross", "transpose", "gradient")
+            return node.function in ("cross", "transpose", "gradient", "curl")
         letters = self._reading.letters
         return any(
             isinstance(part, Grid)
-            or (isinstance(part, Sym) and part.name in letters and letters[part.name].style == "vector")
+            or part == Sym("nabla")
+            or (isinstance(part, Sym) and part.name in letters and letters[part.name].bold)
             for _, part in walk(node)
         )
 

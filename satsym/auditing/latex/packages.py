@@ -8,8 +8,17 @@ from dataclasses import replace
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
 
-_OTHER_NAMES = {"cross": "times", "vdot": "cdot", "dotproduct": "cdot", "crossproduct": "times", "grad": "nabla"}
+_OTHER_NAMES = {
+    "cross": "times",
+    "vdot": "cdot",
+    "dotproduct": "cdot",
+    "crossproduct": "times",
+    "grad": "nabla",
+    "bigcdot": "cdot",
+    "centerdot": "cdot",
+}
 _OTHER_NAMES |= {"vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
+_OTHER_NAMES |= {name.capitalize(): name for name in ("dot", "ddot", "hat", "bar", "tilde", "check", "breve", "vec")}
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
 _DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
 

@@ -23,6 +23,9 @@ from satsym.auditing.latex.words import (
 )
 from satsym.formula.tree import Call, Node, Sym
 
+_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime"}
+"""Signs in an index, and what they are called."""
+
 
 class LetterCursor(Cursor):
     """Reads letters."""
@@ -87,12 +90,13 @@ class LetterCursor(Cursor):
             return letter.dotted(ACCENTS[accent])
         if accent in MARKS:
             return replace(letter, marks=(*letter.marks, MARKS[accent]))
-        return replace(letter, style=STYLES[accent])
+        return replace(letter, style="_".join(sorted({*filter(None, letter.style.split("_")), STYLES[accent]})))
 
     def _scripts(self, letter: Letter) -> Letter:
         """The letter with its index, stars and primes; a power is left where it is."""
         while True:
             if self._is("^"):
+                self._part_transposition(letter)
                 self._index_first()
             if self._is("_"):
                 at = self._take().at
@@ -122,6 +126,24 @@ class LetterCursor(Cursor):
             return self._mark()
         finally:
             self._bold = False
+
+    def _part_transposition(self, letter: Letter) -> None:
+        """Put a sign of transposition that is printed behind something else above in an exponent of its own."""
+        script = self._peek_group()
+        upright = [
+            k for k in (-4, -2) if len(script) >= -k and script[k].text in UPRIGHT and script[k:][-k // 2].text == "T"
+        ]
+        rest, sign = script[: upright[0] if upright else -1], script[upright[0] if upright else -1 :]
+        if not rest or letter.base == "e" or not (upright or sign[0].text in TRANSPOSED):
+            return
+        if sign[0].text == "T" and not all(t.kind == "number" or t.text in ("-", "prime", "'", *STARS) for t in rest):
+            raise Unread("a T in an exponent of several letters", sign[0].at)
+        at = self._found[self._i].at
+        rest += [Token("number", "1", at)] if [t.text for t in rest] == ["-"] else []
+        end = group_end(self._found, self._i + 1)
+        caret, opening, closing = Token("sign", "^", at), Token("open", "{", at), Token("close", "}", at)
+        apart = [caret, opening, *rest, closing, caret, opening, *sign, closing]
+        self._found = [*self._found[: self._i], *apart, *self._found[end:]]
 
     def _index_first(self) -> None:
         """Put an index that is printed behind a power in front of it."""
@@ -163,11 +185,17 @@ class LetterCursor(Cursor):
             return "_".join(["prime"] * len(word.replace("prime", "'")))
         if len(script) == 1 and script[0].kind == "sign" and script[0].text in "+-":
             return "plus" if script[0].text == "+" else "minus"
-        if word in ("max", "min", "opt", "ref") or (upright and word not in ("T", "d") and cleaned(word)):
+        spelled = len(script) > 2 and word.isalpha() and all(t.kind == "letter" for t in script)
+        if (
+            word in ("max", "min")
+            or (spelled and self._may_have_index)
+            or (upright and word not in ("T", "d") and cleaned(word))
+        ):
             return cleaned(word)
         if word.startswith("(") and word.endswith(")") and cleaned(word):
-            return f"upper_{cleaned(word)}"
-        if self._bold and not word.isdigit() and word not in TRANSPOSED and (said := cleaned(self._said(script))):
+            return f"upper_{cleaned(self._said(script))}"
+        number = script[:1] != [] and all(t.kind == "number" or t.text in ("-", "/", "frac", "{", "}") for t in script)
+        if self._bold and not number and word not in TRANSPOSED and (said := cleaned(self._said(script))):
             return said  # a vector, or a set, has no powers
         self._i, self._found = begin, found
         return ""
@@ -189,8 +217,10 @@ class LetterCursor(Cursor):
                 said.append(token.text)
             elif token.text in ("times", ","):
                 said.append(" by " if token.text == "times" else " ")
-            elif token.kind == "sign" and token.text in "+-*":
-                said.append({"+": " plus ", "-": " minus ", "*": " star "}[token.text])
+            elif token.kind == "sign" and token.text == "/" and script[i - 2].kind == "number":
+                said.append(" over ")
+            elif token.kind == "sign" and token.text in _SAID:
+                said.append(f" {_SAID[token.text]} ")
         return "".join(said)
 
     def _symbol(self, letter: Letter, at: int) -> Node:
@@ -225,8 +255,14 @@ class LetterCursor(Cursor):
             return ()
         places = split(inside, lambda t: t.text in ",;")
         letters = [self._place(place) for place in places]
-        bare = [at for at in letters if at and (len(places) > 1 or not (at.dots or "prime" in at.marks))]
-        fixed = words in AT_A_TIME or (len(places) == 1 and bool(bare) and bool(bare[0].index))
+        bare = [at for at in letters if at and (len(places) > 1 or not at.dots)]
+        primed = [at for at in bare if "prime" in at.marks and len(places) == 1]
+        bare = [at for at in bare if at not in primed or letter.base.isupper()]
+        fixed = (
+            words in AT_A_TIME
+            or (bool(primed) and bool(bare))
+            or (len(places) == 1 and bool(bare) and bool(bare[0].index))
+        )
         number = len(inside) == 1 and inside[0].kind == "number"
         known = self._reading.known.get(letter.name, set())
         sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
@@ -236,8 +272,11 @@ class LetterCursor(Cursor):
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
+            varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
+            shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
+            step = letter == Letter("H") and any(t.kind == "sign" and t.text in "+-" for t in inside)
             next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
-            a_place = barred or turned or taken or order or transposed or next_state
+            a_place = barred or turned or taken or order or transposed or next_state or shifted or step
             if a_place or letter.style == "cal":
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
@@ -260,8 +299,9 @@ class LetterCursor(Cursor):
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
-        counts = all(t.kind == "number" or t.text in COUNTERS or t.text in "+-" for t in inside)
-        if inside and counts and letter.base not in ("E", "P"):
+        simple = all(t.kind in ("number", "letter", "open", "close") or t.text in "+-_" for t in inside)
+        counts = inside[:1] != [] and (inside[0].kind == "number" or inside[0].text in COUNTERS)
+        if simple and counts and letter.base not in ("E", "P"):
             return (self._inner(inside, self._found[begin].at),)
         self._i = begin
         return ()
@@ -287,7 +327,10 @@ class LetterCursor(Cursor):
         """Whether what stands in brackets is a letter that is taken somewhere itself: f(x(T))."""
         inner = self._of(part)
         letter = inner._letter()
-        return letter is not None and inner._is("(") and inner._bracket_end() == len(part) - 1
+        called = letter is not None and (inner._is("(") or (inner._is("[") and bool(inner._member(letter))))
+        if called and inner._i < len(part):
+            inner._bracket_end()
+        return called and inner._i == len(part)
 
     def _is_factor(self, letter: Letter, part: Sequence[Token]) -> bool:
         """Whether a product in brackets behind a letter is a factor: of a matrix, products of matrices or vectors."""
@@ -296,7 +339,7 @@ class LetterCursor(Cursor):
         plain = [
             t for k, t in enumerate(part) if t.kind == "letter" and not (k and part[k - 1].kind in ("open", "macro"))
         ]
-        return crossed or (letter.style == "vector" and letter.base.isupper() and bool(bold) and not plain)
+        return crossed or (letter.bold and letter.base.isupper() and bool(bold) and not plain)
 
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""

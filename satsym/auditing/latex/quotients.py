@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from satsym.auditing.latex.letters import Letter, is_name
+from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.formula.tree import Call, Mul, Node, Sym, constant
@@ -20,6 +21,9 @@ class QuotientCursor(LetterCursor):
         if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
             self._i += 1
             parts = self._group(), self._group()
+        elif token.text == "partial" and self._is("_", 1):
+            self._i += 2
+            return self._by_index(token)
         elif is_differential(token):
             parts = self._slashed()
         if parts is not None and (tree := self._quotient(*parts)) is not None:
@@ -27,6 +31,23 @@ class QuotientCursor(LetterCursor):
             return tree
         self._i, self._found = begin, found
         return None
+
+    def _by_index(self, sign: Token) -> Node:
+        """A partial derivative that is printed with an index."""
+        by = self._letter_in(self._script())
+        if by is None:
+            raise Unread("a derivative by this index is not read", sign.at)
+        times = 1
+        if self._is("^"):
+            self._i += 1
+            digits = "".join(t.text for t in self._script())
+            if digits not in ("1", "2", "3", "4"):
+                raise Unread("a derivative of this order is not read", sign.at)
+            times = int(digits)
+        what = self._factor()
+        for _ in range(times):
+            what = Call("diff", (what, self._symbol_of(by, [sign])))
+        return what
 
     def _pass_time(self) -> None:
         """Go past ``(t)`` behind a derivative; another letter there is what it is taken at, or a factor."""
@@ -134,10 +155,14 @@ class QuotientCursor(LetterCursor):
                 raise Unread("a derivative by what is taken at a time is not read", below[inner._i].at)
             if inner._is("^"):
                 inner._i += 1
-                digits = "".join(t.text for t in inner._script() if t.kind == "number")
-                if not digits or int(digits) > 4:
+                script = inner._script()
+                digits = "".join(t.text for t in script if t.kind == "number")
+                if len(script) == 1 and not digits and (raised := cleaned(inner._said(script))):  # an index above
+                    letter = replace(letter, marks=(*letter.marks, f"upper_{raised}"))
+                elif not digits or int(digits) > 4:
                     return None
-                times = int(digits)
+                else:
+                    times = int(digits)
             found += [letter] * times
         return found or None
 

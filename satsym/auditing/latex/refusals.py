@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 from satsym.auditing.latex import words
@@ -10,7 +12,7 @@ from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.operators import OperatorCursor, product_of
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
-from satsym.formula.tree import Node, Num, Pow, Sym, constant
+from satsym.formula.tree import Call, Node, Num, Pow, Sym, children, constant
 from satsym.wording import printable
 
 
@@ -57,6 +59,9 @@ class RefusalCursor(OperatorCursor):
             power = self._peek(2) if after is not None and after.text in "+-" else after
             if power is not None and power.kind == "number" and power.at <= token.at + 2:
                 raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
+        raised = isinstance(last, Pow) or (isinstance(last, Call) and last.function == "power")
+        if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
+            raise Unread("a unit, or a factor, behind a power of ten", token.at)
         stem = last.base if isinstance(last, Pow) else last
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         if letter is not None and letter.base == "L" and letter.index in FIELDS:
@@ -78,13 +83,17 @@ class RefusalCursor(OperatorCursor):
         self._i = begin + len(word)
         return True
 
-    def _refuse_spelled_function(self, token: Token) -> None:
-        """Refuse letters that are the name of a function without its backslash."""
-        begin = self._i
+    def _spelled_function(self, token: Token) -> Node | None:
+        """A function whose backslash is lost, in front of a bracket or a Greek letter; elsewhere it is refused."""
+        before = self._found[self._i - 2] if self._i > 1 else None
+        alone = before is None or before.kind != "letter" or before.at != token.at - 1
         for word in words.SPELLED:
             if self._spells(word):
-                self._i = begin
+                after = self._peek()
+                if alone and word in FUNCTIONS and after is not None and (after.text == "(" or after.text in GREEK):
+                    return self._function(FUNCTIONS[word], replace(token, kind="macro", text=word))
                 raise Unread(f"{word} without a backslash; write \\{word}, or put spaces between letters", token.at)
+        return None
 
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
         """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
@@ -98,7 +107,7 @@ class RefusalCursor(OperatorCursor):
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
         """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
         behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
-        taken = behind is not None and self._begins_factor(behind)
+        taken = behind is not None and (self._begins_factor(behind) or behind.text == "^")
         places = [t.at for t in self._peek_group() if t.kind == "letter"]
         space = 1 if macro.startswith(("text", "mbox")) else 2  # elsewhere a space has to be set: "\\ "
         parted = any(b > a + space for a, b in pairwise(places)) and word.isalpha()

@@ -13,6 +13,9 @@ from satsym.auditing.latex.words import CONNECTIVES, OPTIMA, SAID, SIGNS, SKIPPE
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 REMARK = "remark"
 """The macro that stands for words between formulas."""
+_JOINED = {("|", "|"): "|", ("<", "<"): "ll", (">", ">"): "gg", (":", "="): "coloneq", ("=", ":"): "equiv"}
+_JOINED |= {("<", "="): "le", (">", "="): "ge", ("=", ">"): REMARK}
+"""Two signs that are printed for another one."""
 
 
 def without_remarks(found: Sequence[Token]) -> list[Token]:
@@ -26,6 +29,8 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             end = group_end(found, i)
             found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
             i -= 1
+        elif token.kind == "macro" and token.text == "textcolor" and i < len(found) and found[i].kind == "open":
+            i = group_end(found, i)
         elif token.kind == "macro" and token.text == "underset" and (under := _underset(found, i)):
             found = [*found[: i - 1], *under, *found[group_end(found, group_end(found, i)) :]]
             i -= 1
@@ -67,19 +72,14 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             kept.append(replace(token, text=REMARK))
         elif token.kind == "macro" and token.text in CONNECTIVES and not depth:
             kept.append(replace(token, text=REMARK))
-        elif token.kind == "sign" and kept and _is_doubled(kept[-1], token):
-            kept[-1] = Token("macro", {"|": "|", "<": "ll", ">": "gg"}[token.text], kept[-1].at)
+        elif kept and kept[-1].at == token.at - 1 and (joined := _JOINED.get((kept[-1].text, token.text))):
+            kept[-1] = Token("macro", joined, kept[-1].at)
         elif token.kind == "macro" and token.text == "_":
             kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
         else:
             depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
             kept.append(token)
     return kept
-
-
-def _is_doubled(before: Token, token: Token) -> bool:
-    """Whether a sign is printed twice for another one: bars of a norm, much less, much greater."""
-    return before.kind == "sign" and before.text == token.text in "|<>" and before.at == token.at - 1
 
 
 def _is_bracket(found: Sequence[Token], i: int) -> bool:

@@ -9,16 +9,16 @@ from itertools import pairwise
 from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import (
+    CLOSING,
     ELLIPSES,
     EQUALS,
+    OPENING,
     OPTIMA,
     RELATIONS,
     SYSTEMS,
     TIMES,
     UPRIGHT,
 )
-
-_OPENING, _CLOSING = ("{", "lbrace"), ("}", "rbrace")
 
 
 @dataclass
@@ -248,7 +248,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     for place, part in enumerate(kept):
         if _has_relation(part):
             first = next(name for token in part if (name := _sign(token)))
-            if pending and first != "element":
+            if pending and first == "=":
                 raise Unread("a comma has no meaning here", _between(found, kept))
             done.append([*pending, *part])
             pending = []
@@ -331,8 +331,6 @@ def _sides(found: Sequence[Token]) -> Line:
         return bool(sign)
 
     sides = split(found, divides)
-    for k, part in enumerate(sides):  # := and =:
-        sides[k] = part[part[:1] != [] and part[0].text == ":" : len(part) - (part[-1:] != [] and part[-1].text == ":")]
     for k in range(len(signs) - 1, 0, -1):  # a sign at the end of a line that is printed again in the next one
         if not sides[k] and signs[k] == signs[k - 1]:
             del sides[k], signs[k]
@@ -348,13 +346,13 @@ def split(found: Sequence[Token], divides: Callable[[Token], bool]) -> list[list
     """The tokens between those that divide, outside of all brackets and environments."""
     parts: list[list[Token]] = [[]]
     depth = 0
-    closing = max((k for k, token in enumerate(found) if token.kind == "macro" and token.text in _CLOSING), default=-1)
+    closing = max((k for k, token in enumerate(found) if token.kind == "macro" and token.text in CLOSING), default=-1)
     for k, token in enumerate(found):
         brace = k <= closing and token.kind == "macro"
         depth += token.kind in ("open", "begin") or (token.kind == "sign" and token.text in "([")
-        depth += brace and token.text in _OPENING
+        depth += brace and token.text in OPENING
         depth -= token.kind in ("close", "end") or (token.kind == "sign" and token.text in ")]")
-        depth -= brace and token.text in _CLOSING
+        depth -= brace and token.text in CLOSING
         if depth == 0 and divides(token):
             parts.append([])
         else:

@@ -21,23 +21,28 @@ FUNCTIONS = {
     "d": "d",
     "det": "det",
 }
+RECIPROCALS = {"sec": "cos", "csc": "sin", "cot": "tan", "sech": "cosh", "csch": "sinh", "coth": "tanh"}
 ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
 MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
 MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
-STYLES = dict.fromkeys("mathbf boldsymbol bm vec pmb overrightarrow bf textbf".split(), "vector")
-STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb".split(), "cal")
+STYLES = dict.fromkeys("mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf".split(), "vector")
+STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
 UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
 SPACES = frozenset(
     ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
     "allowbreak nobreak negthinspace > space hline vphantom boldmath unboldmath noindent medspace thickspace "
-    "vcentcolon IEEEyessubnumber IEEEyesnumber".split()
+    "tiny scriptsize footnotesize small normalsize large Large displaylimits "
+    "vcentcolon IEEEyessubnumber IEEEyesnumber IEEEnonumber IEEEeqnarraynumspace".split()
 ) | {" "}
 SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom color eqno cite".split())
 KEPT_GROUPS = frozenset("boxed underbrace overbrace underbracket overbracket mathord mathop mathrel smash".split())
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
-SIGNS = TIMES | frozenset(("+", "-", "=", "otimes"))
+DOUBLE_SIGNS = {"pm": "either_sign", "mp": "other_sign"}
+BETWEEN = {"otimes": "tensor", "circ": "composed", "wedge": "wedge"}
+"""Signs between two factors that are no multiplication, and what these are called."""
+SIGNS = TIMES | frozenset(("+", "-", "=", *DOUBLE_SIGNS, *BETWEEN))
 OF_VECTORS = {"times": "cross", "cdot": "dot", "bullet": "dot"}
 """Signs that are products of another kind between vectors, and what these are called."""
 RELATIONS = {
@@ -77,18 +82,20 @@ OPTIMA = {
 }
 """What is sought over what stands below, and what it is called."""
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
-NOT_COMPARED |= frozenset("value cases list braces power limit gradient sum integral cross dot tensor skew".split())
+NOT_COMPARED |= frozenset(
+    "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
+    "skew".split()
+)
+NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit".split()) | frozenset(
+    (*BETWEEN.values(), *DOUBLE_SIGNS.values())
+)
 """Functions in a tree that are read, and held against nothing."""
-NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise"))
+NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise", "nabla", "star", "dagger"))
 """Names in a tree that stand for no number."""
 REFUSED = {
     "iint": "an integral",
-    "oint": "an integral",
     "iiint": "an integral",
     "not": "a negation",
-    "prod": "a product over an index",
-    "pm": "two signs at once",
-    "mp": "two signs at once",
     "exists": "a quantifier",
 }
 MATRICES = frozenset(
@@ -98,7 +105,10 @@ SYSTEMS = frozenset(
     "aligned split gathered alignedat cases dcases rcases align align* gather gather* alignat alignat* flalign "
     "flalign* eqnarray eqnarray* IEEEeqnarray equation equation* multline multline*".split()
 )
-STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf", "dagger"))
+OPENING = frozenset(("{", "lbrace", "lbrack", "langle"))
+CLOSING = frozenset(("}", "rbrace", "rbrack", "rangle"))
+"""Brackets that are macros."""
+STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf"))
 NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
 FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
@@ -106,18 +116,23 @@ FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
 """Macros that are read as words where they stand in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
-ATOMS = (
-    frozenset("sum int frac tfrac dfrac cfrac sqrt lvert lVert partial { lbrace lbrack lim nabla infty".split())
-    | ELLIPSES
-)
+ATOMS = frozenset("sum prod int oint frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
+ATOMS |= ELLIPSES | OPENING
+CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that are misread as products of letters where their backslash is lost, longer names first."""
 UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf arg sup inf grad div rot curl cov var mod".split())
 """Functions that are printed upright and are not in the grammar."""
 SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
 SAID |= frozenset(("subject to", "such that", "s.t.", "s.t", "i.e.", "i.e", "since", "while", "as", "etc"))
+SAID |= frozenset(
+    "et ou si avec où pour quand donc soit lorsque und oder mit für wenn dove per con para cuando".split()
+)
 """Words between formulas."""
-UNITS = frozenset("m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s Nm".split())
+UNITS = frozenset(
+    "m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s "
+    "Nm Pa kPa MPa GHz kHz MHz mol C T AU kWh rpm F L".split()
+)
 COUNTERS = frozenset("i j k l m n N M K".split())
 """Letters of which the number of a member of a sequence is made."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())

@@ -20,6 +20,8 @@ from satsym.formula.tree import (
     Num,
     Pow,
     Sym,
+    Text,
+    calls_in,
     cells,
     constant,
     each,
@@ -32,7 +34,9 @@ Writer = Callable[["Node | Equality"], str]
 _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
 _WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty", "ellipsis": r"\ldots"}
-_WORDS |= {"otherwise": r"\text{otherwise}"}
+_WORDS |= {"otherwise": r"\text{otherwise}", "nabla": r"\nabla", "star": "*", "dagger": r"\dagger"}
+_DOUBLE_SIGNS = {"either_sign": r"\pm", "other_sign": r"\mp"}
+_FIELDS = {"divergence": r"\nabla \cdot ", "curl": r"\nabla \times ", "laplacian": r"\nabla^2 "}
 _SIGNS = {"less": "<", "greater": ">", "at_most": r"\le", "at_least": r"\ge", "unequal": r"\ne", "near": r"\approx"}
 _SIGNS |= {"tends": r"\to", "subset": r"\subset", "precedes": r"\prec", "follows": r"\succ", "much_less": r"\ll"}
 _SIGNS |= {"much_greater": r"\gg", "similar": r"\sim", "proportional": r"\propto", "element": r"\in", "equal": "="}
@@ -42,8 +46,14 @@ _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argma
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
 _ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
 _ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
-_ENCLOSED |= {"braces": (r"\left\{", r"\right\}")}
-_BETWEEN = {"cross": r" \times ", "dot": r" \cdot ", "tensor": r" \otimes "}
+_ENCLOSED |= {"braces": (r"\left\{", r"\right\}"), "angled": (r"\langle ", r" \rangle")}
+_BETWEEN = {
+    "cross": r" \times ",
+    "dot": r" \cdot ",
+    "tensor": r" \otimes ",
+    "composed": r" \circ ",
+    "wedge": r" \wedge ",
+}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
 _RUNS_ON = re.compile(
@@ -106,7 +116,9 @@ class _Tex:
         said = self._bound(node.terms[0], _SUM)
         for term in node.terms[1:]:
             inner = term.operand if isinstance(term, Neg) else term
-            said += f" {'-' if isinstance(term, Neg) else '+'} {self._bound(inner, _PRODUCT)}"
+            double = isinstance(term, Call) and term.function in _DOUBLE_SIGNS
+            said += " " if double else f" {'-' if isinstance(term, Neg) else '+'} "
+            said += self._whole(inner) if double else self._bound(inner, _PRODUCT)
         return said
 
     def _product(self, node: Mul) -> str:
@@ -142,7 +154,12 @@ class _Tex:
             below = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
             return rf"{_OPTIMA[name]}{below} \left({self._whole(arguments[0])}\right)", _SUM
         if name in _BETWEEN:
-            return _BETWEEN[name].join(self._bound(argument, _ATOM) for argument in arguments), _PRODUCT
+            said = _BETWEEN[name].join(self._bound(argument, _ATOM) for argument in arguments)
+            return (rf"\left({said}\right)", _ATOM) if arguments[-1] == Sym("nabla") else (said, _PRODUCT)
+        if name in _DOUBLE_SIGNS:
+            return f"{_DOUBLE_SIGNS[name]} {self._bound(arguments[0], _PRODUCT)}", _SUM
+        if name in _FIELDS:
+            return f"{_FIELDS[name]}{self._bound(arguments[0], _ATOM)}", _PRODUCT
         if name in _WRITERS:
             return _WRITERS[name](self, arguments)
         known = _NAMES.get(name) or (rf"\{name}" if name in _KNOWN else rf"\operatorname{{{name}}}")
@@ -157,19 +174,19 @@ class _Tex:
         of, by = self._bound(arguments[0], _PRODUCT), self._whole(arguments[1])
         return rf"\frac{{\partial {of}}}{{\partial {by}}}", _ATOM
 
-    def _sum_over(self, arguments: Sequence[Node]) -> tuple[str, int]:
+    def _sum_over(self, arguments: Sequence[Node], sign: str = r"\sum") -> tuple[str, int]:
         first, *limits = arguments
         related = [limit for limit in limits if isinstance(limit, Call) and limit.function in _SIGNS]
         if related:
-            return rf"\sum_{{{self._listed(related)}}} {self._bound(first, _PRODUCT)}", _SUM
+            return rf"{sign}_{{{self._listed(related)}}} {self._bound(first, _PRODUCT)}", _SUM
         below = f"_{{{'='.join(map(self._whole, limits[:2]))}}}" if limits else ""
         above = f"^{{{self._whole(limits[2])}}}" if len(limits) > 2 else ""
-        return rf"\sum{below}{above} {self._bound(first, _PRODUCT)}", _SUM
+        return rf"{sign}{below}{above} {self._bound(first, _PRODUCT)}", _SUM
 
-    def _integral(self, arguments: Sequence[Node]) -> tuple[str, int]:
+    def _integral(self, arguments: Sequence[Node], joint: str = r" \,", sign: str = r"\int") -> tuple[str, int]:
         inside, by, *limits = map(self._whole, arguments)
         ends = "".join(f"{sign}{{{end}}}" for sign, end in zip("_^", limits, strict=False))
-        return rf"\int{ends} {inside} \, d{by}", _SUM
+        return rf"{sign}{ends} {inside}{joint} d{by}", _SUM
 
     def _limit(self, arguments: Sequence[Node]) -> tuple[str, int]:
         of, letter, end = arguments
@@ -185,13 +202,32 @@ class _Tex:
         if not isinstance(first, Sym):
             return rf"{self._bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
         inside = symbols(places[0]) if len(places) == 1 else set()
-        counts = inside and inside <= COUNTERS  # the number of a member of a sequence
+        counts = inside & COUNTERS and not any(calls_in(places[0]))  # the number of a member of a sequence
         return self._whole(first) + (rf"\left[{others}\right]" if counts else rf"\left({others}\right)"), _ATOM
 
     def _any_power(self, arguments: Sequence[Node]) -> tuple[str, int]:
         base, exponent = arguments
-        text = self._whole(base) if isinstance(base, Num) else self._bound(base, _ATOM + 1)
+        text = self._whole(base)
+        if not isinstance(base, Num | Sym) or "^" in text:
+            text = rf"\left({text}\right)"
         return rf"{text}^{{{self._whole(exponent)}}}", _PRODUCT
+
+    def _in_unit(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        value, unit = arguments
+        said = unit.value if isinstance(unit, Text) else ""
+        return rf"{self._whole(value)} \,\mathrm{{{said}}}", _PRODUCT
+
+    def _indexed(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, index = arguments
+        return rf"{self._bound(of, _ATOM + 1)}_{{{self._whole(index)}}}", _ATOM
+
+    def _over(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, mark = map(self._whole, arguments)
+        return rf"\{mark}{{{of}}}", _ATOM
+
+    def _indexed_norm(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, index = map(self._whole, arguments)
+        return rf"\|{of}\|_{{{index}}}", _ATOM
 
     def _both(self, arguments: Sequence[Node]) -> tuple[str, int]:
         steps = [part for part in arguments if isinstance(part, Call)]
@@ -208,11 +244,19 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "transpose": _Tex._transpose,
     "diff": _Tex._diff,
     "sum": _Tex._sum_over,
+    "product": lambda tex, arguments: tex._sum_over(arguments, r"\prod"),
     "integral": _Tex._integral,
+    "line_integral": lambda tex, arguments: tex._integral(arguments, r" \cdot"),
+    "circulation": lambda tex, arguments: tex._integral(arguments, r" \cdot", r"\oint"),
     "limit": _Tex._limit,
     "gradient": _Tex._gradient,
     "value": _Tex._value,
     "power": _Tex._any_power,
+    "raised": _Tex._any_power,
+    "indexed": _Tex._indexed,
+    "in_unit": _Tex._in_unit,
+    "indexed_norm": _Tex._indexed_norm,
+    "over": _Tex._over,
     "both": _Tex._both,
     "cases": _Tex._cases,
 }

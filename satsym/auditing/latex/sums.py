@@ -1,0 +1,60 @@
+"""Sums: terms with their signs, double ones too, and where a sum over an index among them ends."""
+
+from __future__ import annotations
+
+from satsym.auditing.latex import words
+from satsym.auditing.latex.enclosed import EnclosedCursor
+from satsym.auditing.latex.tokens import Unread
+from satsym.formula.reading import MAX_DEPTH
+from satsym.formula.tree import Add, Call, Neg, Node, children, symbols
+
+
+class SumCursor(EnclosedCursor):
+    """Reads sums."""
+
+    def _sum(self) -> Node:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise Unread(
+                f"brackets are nested more than {MAX_DEPTH} deep", self._found[min(self._i, len(self._found) - 1)].at
+            )
+        terms: list[Node] = []
+        summed: set[str] = set()
+        while True:
+            negative, double = False, ""
+            while (sign := self._additive()) in ("+", "-"):
+                negative ^= self._take().text == "-"
+            if sign:
+                double = words.DOUBLE_SIGNS[self._take().text]
+            at = self._found[min(self._i, len(self._found) - 1)].at
+            term = self._product()
+            if summed & self._indices(term):
+                raise Unread("where a sum ends is not clear without brackets", at)
+            summed |= _summed_over(term)
+            term = Call(double, (term,)) if double else term
+            terms.append(Neg(term) if negative else term)
+            if not self._additive():
+                break
+        self._depth -= 1
+        return terms[0] if len(terms) == 1 else Add(tuple(terms))
+
+    def _additive(self) -> str:
+        """The sign of a sum that is next; empty where none is."""
+        token = self._peek()
+        signed = token is not None and (
+            (token.kind == "sign" and token.text in "+-")
+            or (token.kind == "macro" and token.text in words.DOUBLE_SIGNS)
+        )
+        return token.text if token is not None and signed else ""
+
+    def _indices(self, term: Node) -> set[str]:
+        """The letters of a term, and those of their indices."""
+        letters = [self._reading.letters.get(name) for name in symbols(term)]
+        return symbols(term).union(*(letter.index.split("_") for letter in letters if letter))
+
+
+def _summed_over(term: Node) -> set[str]:
+    """The indices of the sums that are factors of a term."""
+    sums = [part for part in (term, *children(term)) if isinstance(part, Call) and part.function == "sum"]
+    over = [part.arguments[1] for part in sums if len(part.arguments) > 1]
+    return set().union(*(symbols(index.arguments[0] if isinstance(index, Call) else index) for index in over))
