@@ -214,6 +214,7 @@ class Parser(SumCursor):
     def _powers(self, base: Node) -> Node:
         while True:
             if self._is("^"):
+                self._part_transposition(base == Sym("e"))
                 at = self._take().at
                 known = isinstance(base, Sym) and base.name in self._reading.letters
                 base = self._raised(base, self._script(), at)

@@ -11,6 +11,8 @@ from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
 """Letters side by side, vowels among them, that are taken for a word."""
+_GROUPS = frozenset("Re Fr Pr Nu Pe We Ro Kn St Bi Bo Sc Sh".split())
+"""Names of numbers without a dimension that are printed as two letters."""
 _SIGNS = frozenset(("cdot", "*"))
 """Who sets these beside letters that stand side by side does not multiply the letters."""
 
@@ -78,6 +80,9 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
                 raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
+    named = "".join(t.text for t in side[:end])
+    if begin == 0 and end == len(side) and named in _GROUPS:
+        raise Unread(f"{named} may be one name, \\mathrm{{{named}}}, or a product", side[0].at)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)

@@ -87,6 +87,8 @@ class OperatorCursor(QuotientCursor):
                 parts += [Call(sign, pair) for sign, pair in zip(line.signs, pairwise(sides), strict=True)]
             else:
                 indices = split(line.sides[0], lambda t: t.text == ",")
+                if all(t.kind == "letter" for t in line.sides[0]):  # set side by side
+                    indices = [[letter] for letter in line.sides[0]]
                 parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
         if "^" in limits:
             parts.append(self._limit(limits["^"], token.at))
@@ -125,7 +127,7 @@ class OperatorCursor(QuotientCursor):
                     tree = self._inner(self._found[begin : here - along], token.at)
                     parts = [tree, self._symbol(letter, now.at)]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
-                    name = "line_integral" if along else "integral"
+                    name = "line_integral" if along and letter.bold else "integral"
                     return Call("circulation" if token.text == "oint" else name, tuple(parts))
             self._i = here + 1
         raise Unread("an integral without a differential at its end is not read", token.at)

@@ -19,6 +19,20 @@ _OTHER_NAMES = {
 }
 _OTHER_NAMES |= {"vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
 _OTHER_NAMES |= {name.capitalize(): name for name in ("dot", "ddot", "hat", "bar", "tilde", "check", "breve", "vec")}
+_UNITS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "newton": "N", "radian": "rad", "degree": "deg"}
+_UNITS |= {
+    "kilo": "k",
+    "milli": "m",
+    "mega": "M",
+    "giga": "G",
+    "centi": "c",
+    "per": "/",
+    "squared": "^2",
+    "cubed": "^3",
+}
+_UNITS |= {"kilogram": "kg", "kelvin": "K", "watt": "W", "joule": "J", "hertz": "Hz", "pascal": "Pa", "volt": "V"}
+_UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " ", ".": " "}
+"""Units and prefixes of the package siunitx, and how they are printed."""
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
 _DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
 
@@ -35,6 +49,9 @@ def put_in(found: Sequence[Token]) -> list[Token]:
             end = group_end(found, i)
             done += _bold(token, found[i + 1 : end - 1])
             i = end
+        elif name in ("SI", "si", "num", "unit") and i < len(found) and found[i].text in ("{", "["):
+            inside, i = _quantity(token, found, i)
+            done += inside
         elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
             done.append(Token("macro", f"arg{found[i].text}", token.at))
             i += 1
@@ -56,6 +73,23 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         else:
             done.append(token)
     return done
+
+
+def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token], int]:
+    """A number with its unit, as the package siunitx has them, and the place behind."""
+    if found[i].text == "[":
+        i = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1) + 1
+    groups: list[list[Token]] = []
+    while i < len(found) and found[i].kind == "open" and len(groups) < (2 if macro.text == "SI" else 1):
+        end = group_end(found, i)
+        groups.append(list(found[i + 1 : end - 1]))
+        i = end
+    number = groups.pop(0) if groups and macro.text in ("SI", "num") else []
+    if not groups:
+        return number, i
+    said = "".join(_UNITS.get(t.text, t.text) for t in groups[0])
+    letters = [Token("letter" if c.isalpha() else "sign", c, macro.at) for c in said.strip()]
+    return [*number, Token("macro", "mathrm", macro.at), _brace(True, macro.at), *letters, _brace(False, macro.at)], i
 
 
 def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:

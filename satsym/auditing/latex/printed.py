@@ -13,6 +13,7 @@ from satsym.auditing.latex.words import (
     ACCENTS,
     AT_A_TIME,
     COUNTERS,
+    DOUBLE_SIGNS,
     INDICES,
     MARKS,
     SHIFTED,
@@ -23,7 +24,7 @@ from satsym.auditing.latex.words import (
 )
 from satsym.formula.tree import Call, Node, Sym
 
-_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime"}
+_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to"}
 """Signs in an index, and what they are called."""
 
 
@@ -96,7 +97,7 @@ class LetterCursor(Cursor):
         """The letter with its index, stars and primes; a power is left where it is."""
         while True:
             if self._is("^"):
-                self._part_transposition(letter)
+                self._part_transposition(letter.base == "e")
                 self._index_first()
             if self._is("_"):
                 at = self._take().at
@@ -127,14 +128,14 @@ class LetterCursor(Cursor):
         finally:
             self._bold = False
 
-    def _part_transposition(self, letter: Letter) -> None:
+    def _part_transposition(self, exponential: bool) -> None:
         """Put a sign of transposition that is printed behind something else above in an exponent of its own."""
         script = self._peek_group()
         upright = [
             k for k in (-4, -2) if len(script) >= -k and script[k].text in UPRIGHT and script[k:][-k // 2].text == "T"
         ]
         rest, sign = script[: upright[0] if upright else -1], script[upright[0] if upright else -1 :]
-        if not rest or letter.base == "e" or not (upright or sign[0].text in TRANSPOSED):
+        if not rest or exponential or not (upright or sign[0].text in TRANSPOSED):
             return
         if sign[0].text == "T" and not all(t.kind == "number" or t.text in ("-", "prime", "'", *STARS) for t in rest):
             raise Unread("a T in an exponent of several letters", sign[0].at)
@@ -172,9 +173,9 @@ class LetterCursor(Cursor):
         self._i += 1
         script = self._script()
         word = "".join(t.text for t in script if t.text not in UPRIGHT and t.kind not in ("open", "close"))
-        upright = (
-            bool(script) and script[0].kind == "macro" and script[0].text in UPRIGHT and script[0].text != "mathsf"
-        )
+        upright = len(script) > 1 and script[0].kind == "macro" and script[0].text in UPRIGHT - {"mathsf"}
+        if upright:  # and nothing else
+            upright = group_end(script, 1) == len(script) or all(t.kind in ("letter", "number") for t in script[1:])
         if len(script) == 1 and script[0].text in "01" and self._may_have_index:
             return f"upper_{script[0].text}"  # no power
         if len(script) == 1 and script[0].text in STARS:
@@ -264,6 +265,10 @@ class LetterCursor(Cursor):
             or (len(places) == 1 and bool(bare) and bool(bare[0].index))
         )
         number = len(inside) == 1 and inside[0].kind == "number"
+        bold = letter.bold and bool(letters[0]) and all(at and at.bold for at in letters)
+        if bold and self._is("^"):  # a matrix in front of the power of another one
+            self._i = begin
+            return ()
         known = self._reading.known.get(letter.name, set())
         sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
         if not sure and not self._is_shift(letter, inside):
@@ -274,7 +279,7 @@ class LetterCursor(Cursor):
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
             varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
             shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
-            step = letter == Letter("H") and any(t.kind == "sign" and t.text in "+-" for t in inside)
+            step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
             next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
             a_place = barred or turned or taken or order or transposed or next_state or shifted or step
             if a_place or letter.style == "cal":
@@ -343,7 +348,7 @@ class LetterCursor(Cursor):
 
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""
-        if len(part) < 2 or any(t.text in "+-*/" and t.kind == "sign" for t in part):
+        if len(part) < 2 or any((t.text in "+-*/" and t.kind == "sign") or t.text in DOUBLE_SIGNS for t in part):
             return False
         inner = self._of(part)
         first = inner._letter()

@@ -59,6 +59,9 @@ class RefusalCursor(OperatorCursor):
             power = self._peek(2) if after is not None and after.text in "+-" else after
             if power is not None and power.kind == "number" and power.at <= token.at + 2:
                 raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
+        said = "".join(t.text for t in self._found[self._i : self._i + 4])
+        if isinstance(last, Num) and last.value.denominator > 1 and said.startswith(("m/s", "km/s", "rad/", "kg/")):
+            raise Unread("a unit that is not set upright, or letters", token.at)
         raised = isinstance(last, Pow) or (isinstance(last, Call) and last.function == "power")
         if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
             raise Unread("a unit, or a factor, behind a power of ten", token.at)

@@ -158,6 +158,8 @@ def _refuse_gap(row: Sequence[Token], gap: int) -> None:
     before, behind = row[:gap], row[gap:]
     if _has_relation(before) and _has_relation(behind):
         ends = before[-1], behind[0]
+        if behind[0].text == "d":  # of an integral
+            return
         if not any(_sign(token) or token.text in TIMES | {"+", "-", ",", ";", "&", "/", ":"} for token in ends):
             raise Unread("a space between equations, or between factors", behind[0].at)
 

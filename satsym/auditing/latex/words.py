@@ -53,6 +53,7 @@ RELATIONS = {
     **dict.fromkeys(("ne", "neq"), "unequal"),
     **dict.fromkeys(("approx", "simeq", "cong"), "near"),
     **dict.fromkeys(("to", "rightarrow", "longrightarrow", "mapsto"), "tends"),
+    **dict.fromkeys(("leftarrow", "gets"), "assigned"),
     "subset": "subset",
     "subseteq": "subset_or_same",
     "prec": "precedes",

@@ -40,7 +40,7 @@ _FIELDS = {"divergence": r"\nabla \cdot ", "curl": r"\nabla \times ", "laplacian
 _SIGNS = {"less": "<", "greater": ">", "at_most": r"\le", "at_least": r"\ge", "unequal": r"\ne", "near": r"\approx"}
 _SIGNS |= {"tends": r"\to", "subset": r"\subset", "precedes": r"\prec", "follows": r"\succ", "much_less": r"\ll"}
 _SIGNS |= {"much_greater": r"\gg", "similar": r"\sim", "proportional": r"\propto", "element": r"\in", "equal": "="}
-_SIGNS |= {"not_element": r"\notin", "subset_or_same": r"\subseteq"}
+_SIGNS |= {"not_element": r"\notin", "assigned": r"\leftarrow", "subset_or_same": r"\subseteq"}
 _SIGNS |= {"precedes_or_same": r"\preceq", "follows_or_same": r"\succeq"}
 _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argmax": r"\arg\max"}
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
