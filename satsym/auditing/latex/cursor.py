@@ -120,8 +120,8 @@ class Cursor(ABC):
             self._i = end
             return inside
         if token.kind == "number" and len(token.text) > 1:
-            if self._i > 1 and self._found[self._i - 2].text == "^":
-                raise Unread("an exponent of several digits needs braces", token.at)
+            if self._i > 1 and self._found[self._i - 2].text in ("^", "_"):
+                raise Unread("an exponent or an index of several digits needs braces", token.at)
             rest = Token("number", token.text[1:], token.at + 1)
             self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
             return [Token("number", token.text[0], token.at)]

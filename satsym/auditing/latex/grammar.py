@@ -128,6 +128,9 @@ class Parser(SumCursor):
                 break
             if times:
                 crossed = self._times(token, chain, crossed)
+            elif macro and text in words.OF_SETS:
+                self._i += 1
+                return Call(words.OF_SETS[text], (product_of(chain), self._product()))
             elif (unit := self._unit(chain[-1])) is not None:
                 return Call("in_unit", (product_of(chain), unit))
             elif over:
@@ -137,6 +140,9 @@ class Parser(SumCursor):
                 chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
             elif self._begins_factor(token):
                 self._refuse_behind(chain[-1], token)
+                last = self._found[self._i - 1]
+                if token.kind == "number" and last.kind == "letter" and token.at == last.at + 1:
+                    raise Unread("a number behind a letter, which may be an index or a power", token.at)
                 if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
                     raise Unread("an ellipsis between factors is not read", token.at)
                 chain.append(self._factor())

@@ -176,6 +176,8 @@ class OperatorCursor(QuotientCursor):
         else:
             arguments = [self._product(argument=True)]
             self._bare_end = self._i
+        if name == "det" and isinstance(arguments[0], Call) and arguments[0].function in ("abs", "norm", "det"):
+            return arguments[0] if arguments[0].function == "det" else Call("det", arguments[0].arguments)
         if name == "d":
             return self._along(arguments[0])
         if name == "exp" and len(arguments) == 1 and power is None:

@@ -45,7 +45,10 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         token = found[i]
         i += 1
         name = token.text if token.kind == "macro" else ""
-        if name in ("boldsymbol", "bm") and i < len(found) and found[i].kind == "open":
+        if token.kind == "open" and i < len(found) and found[i].kind == "macro" and found[i].text in ("rm", "it", "sf"):
+            done += [replace(found[i], text="mathrm"), token]
+            i += 1
+        elif name in ("boldsymbol", "bm", "mathbf") and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             done += _bold(token, found[i + 1 : end - 1])
             i = end

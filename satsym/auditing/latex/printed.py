@@ -196,7 +196,13 @@ class LetterCursor(Cursor):
         if word.startswith("(") and word.endswith(")") and cleaned(word):
             return f"upper_{cleaned(self._said(script))}"
         number = script[:1] != [] and all(t.kind == "number" or t.text in ("-", "/", "frac", "{", "}") for t in script)
-        if self._bold and not number and word not in TRANSPOSED and (said := cleaned(self._said(script))):
+        if (
+            self._bold
+            and not number
+            and word not in ("times", "wedge")
+            and word not in TRANSPOSED
+            and (said := cleaned(self._said(script)))
+        ):
             return said  # a vector, or a set, has no powers
         self._i, self._found = begin, found
         return ""
@@ -265,15 +271,22 @@ class LetterCursor(Cursor):
             or (len(places) == 1 and bool(bare) and bool(bare[0].index))
         )
         number = len(inside) == 1 and inside[0].kind == "number"
-        bold = letter.bold and bool(letters[0]) and all(at and at.bold for at in letters)
-        if bold and self._is("^"):  # a matrix in front of the power of another one
+        base = letters[0]
+        scalar = len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
+        matrices = base and base.bold and (base.base.isupper() if letter.bold else scalar)
+        crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
+        if crossed or (
+            matrices and len(places) == 1 and self._is("^")
+        ):  # a factor in front of the power of a matrix or a vector
             self._i = begin
             return ()
         known = self._reading.known.get(letter.name, set())
         sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
         if not sure and not self._is_shift(letter, inside):
             barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
-            turned = letter.base.isupper() and len(inside) == 2 and inside[0].text == "-" and inside[1].text in GREEK
+            angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
+            turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
+            turned |= letter.base == "R" and angles and inside[0].text in GREEK
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])

@@ -137,6 +137,8 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     end = group_end(found, i)
     inside = [t for t in found[i + 1 : end - 1] if t.text not in "~$"]
     alone = depth == 1 and i > 1 and found[i - 2].text == "(" and end < len(found) and found[end].text == ")"
+    before = kept[-2] if len(kept) > 1 else None
+    alone = alone and (before is None or not (before.kind in ("letter", "close") or before.text in GREEK))
     if not inside or (depth and not alone):
         return False
     said = inside[0].text + "".join(

@@ -25,7 +25,9 @@ RECIPROCALS = {"sec": "cos", "csc": "sin", "cot": "tan", "sech": "cosh", "csch":
 ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
 MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
 MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
-STYLES = dict.fromkeys("mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf".split(), "vector")
+STYLES = dict.fromkeys(
+    "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
+)
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
 UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
 SPACES = frozenset(
@@ -42,7 +44,9 @@ TIMES = frozenset("cdot times ast odot bullet".split())
 DOUBLE_SIGNS = {"pm": "either_sign", "mp": "other_sign"}
 BETWEEN = {"otimes": "tensor", "circ": "composed", "wedge": "wedge"}
 """Signs between two factors that are no multiplication, and what these are called."""
-SIGNS = TIMES | frozenset(("+", "-", "=", *DOUBLE_SIGNS, *BETWEEN))
+OF_SETS = {"cup": "union", "cap": "intersection", "setminus": "without"}
+"""Signs between products, and what these are called."""
+SIGNS = TIMES | frozenset(("+", "-", "=", *DOUBLE_SIGNS, *BETWEEN, *OF_SETS))
 OF_VECTORS = {"times": "cross", "cdot": "dot", "bullet": "dot"}
 """Signs that are products of another kind between vectors, and what these are called."""
 RELATIONS = {
@@ -88,7 +92,7 @@ NOT_COMPARED |= frozenset(
     "skew".split()
 )
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit".split()) | frozenset(
-    (*BETWEEN.values(), *DOUBLE_SIGNS.values())
+    (*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values())
 )
 """Functions in a tree that are read, and held against nothing."""
 NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise", "nabla", "star", "dagger"))

@@ -54,6 +54,7 @@ _BETWEEN = {
     "composed": r" \circ ",
     "wedge": r" \wedge ",
 }
+_BETWEEN |= {"union": r" \cup ", "intersection": r" \cap ", "without": r" \setminus "}
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
 _RUNS_ON = re.compile(
