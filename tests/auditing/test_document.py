@@ -156,6 +156,8 @@ HOSTILE = [
     ),
     ("$$" + "{" * 5000 + "x" + "}" * 5000 + "$$", ""),
     ("$$" + "(" * 200 + "x" + ")" * 200 + "$$", "nested more than"),
+    ("$$" + r"\sin" * 2000 + "x = 1$$", "nested too deep"),
+    ("$$" + r"\sum_i " * 1500 + "x_i = 1$$", "nested too deep"),
     (r"$$x^{x^{x^x}} = 1$$", "an exponent of several letters"),
     (r"$$\begin{pmatrix}1&2\\3\end{pmatrix} = A$$", "all rows of a matrix must have the same length"),
     (r"\input{../../etc/passwd}", "is not in the folder"),

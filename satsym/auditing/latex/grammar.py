@@ -61,9 +61,12 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
         At the first thing that is not in the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
-    reading = _read(kept, Reading([]), start)
-    if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
-        reading = _read(kept, Reading([], known=reading.places), start)
+    try:
+        reading = _read(kept, Reading([]), start)
+        if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
+            reading = _read(kept, Reading([], known=reading.places), start)
+    except RecursionError:
+        raise Unread("signs in front of signs, nested too deep", start) from None
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
