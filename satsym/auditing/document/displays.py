@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from satsym.auditing.latex.tokens import Macro, Unread, tokens
+from satsym.auditing.latex.words import ACCENTS, KEPT_GROUPS, MARKS, STYLES
 from satsym.status import BadInput
 from satsym.wording import printable
 
@@ -41,6 +42,8 @@ _MACRO = re.compile(
     r"|\\DeclareMathOperator\*?\s*\{\\(?P<operator>[A-Za-z]+)\}"
 )
 _PACKAGES = re.compile(r"\\usepackage\s*(?:\[[^\]\n]{0,200}\])?\s*\{([^{}\n]{1,300})\}")
+_KNOWN = frozenset((*ACCENTS, *MARKS, *STYLES, *KEPT_GROUPS))
+"""Macros of LaTeX that are known: what a document makes of them is how they are set, not what they mean."""
 _SET = re.compile(r"\\(?:text|textrm|mathrm)\s*\{([^{}]*)\}")
 _LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
 _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100})[}`]")
@@ -259,7 +262,7 @@ def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None)
     for match in _MACRO.finditer(text):
         name = match["name"] or match["def"] or match["operator"]
         opening = text.find("{", match.end())
-        if match["default"] or opening < 0 or text[match.end() : opening].strip():
+        if name in _KNOWN or match["default"] or opening < 0 or text[match.end() : opening].strip():
             continue
         closing = _closing(text, opening)
         body = text[opening + 1 : closing]

@@ -25,6 +25,8 @@ class Reading:
     """Name -> where it is printed as taken, time apart: letters that it is a function of, or places."""
     known: dict[str, set[str]] = field(default_factory=dict)
     """Names and places that were found when the formula was read a first time."""
+    differential: int = -1
+    """Where a differential stands that is no part of a derivative or of an integral; -1 where none does."""
     constants: bool = False
     """Whether something is said to be constant."""
     products: list[str] = field(default_factory=list)

@@ -18,6 +18,7 @@ from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
+from satsym.auditing.latex.quotients import has_differentials, is_differential_of
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.sums import SumCursor
@@ -77,7 +78,10 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
 def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
     for line in lines(kept):
         refuse_spelled_name(line.sides)
+        reading.differential = -1
         sides = [Parser(part, reading, start).side() for part in line.sides]
+        if reading.differential >= 0 and line.bare:
+            raise Unread("a differential is not read", reading.differential)
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
@@ -87,6 +91,8 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
                 raise Unread("what may be a set is no product", line.sides[0][0].at)
             if Sym("nabla") in (one, other):
                 raise Unread("a sign of derivatives by itself is no quantity", line.sides[0][0].at)
+            if reading.differential >= 0 and not (sign == "=" and is_differential_of(one) and has_differentials(other)):
+                raise Unread("a differential is not read", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
             if sign == "=" and taken and _stands_in(one, other):
                 raise Unread("this letter is taken at a place, and stands without one", line.sides[0][0].at)
@@ -294,7 +300,7 @@ class Parser(SumCursor):
                 after.kind == "letter" or after.text in GREEK or after.text in words.STYLES
             )
             if token.text == "d" and beside and differs:
-                raise Unread("a differential is not read", token.at)
+                return self._differential(token.at)
             self._i -= 1
             letter = self._letter()
             assert letter is not None
@@ -348,10 +354,6 @@ class Parser(SumCursor):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
 
-    def _dotted(self, inner: Node, times: int) -> Node:
-        """A derivative by time, of what dots stand over."""
-        return inner if times == 0 else self._along(self._dotted(inner, times - 1))
-
     def _upright(self, token: Token) -> Node | None:
         """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
         group = self._peek_group()
@@ -378,7 +380,7 @@ _READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
     "sqrt": lambda parser, _: parser._root(),
     "nabla": Parser._gradient,
     **dict.fromkeys(("sum", "prod"), Parser._sum_over),
-    **dict.fromkeys(("int", "oint"), Parser._integral),
+    **dict.fromkeys(words.INTEGRALS, Parser._integral),
     **dict.fromkeys(words.OPENING, Parser._braces),
 }
 """Macros that begin something, and what reads it."""

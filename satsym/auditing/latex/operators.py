@@ -120,15 +120,20 @@ class OperatorCursor(QuotientCursor):
             here = self._i
             if depth == 0 and here > begin and is_differential(now):
                 self._i = here + len(self._found[here:]) - len(after_differential(list(self._found[here:])))
-                letter = self._letter()
+                letters = [self._letter()]
+                while is_differential(self._peek()):
+                    self._i += len(self._found[self._i :]) - len(after_differential(list(self._found[self._i :])))
+                    letters.append(self._letter())
                 behind = self._peek()
-                if letter is not None and (behind is None or behind.text in ("+", "-", ")", "]")):
+                ends = behind is None or behind.text in ("+", "-", ")", "]")
+                if ends and all(letters) and len(letters) in (1, words.INTEGRALS[token.text]):
                     along = self._found[here - 1].text == "cdot"
                     tree = self._inner(self._found[begin : here - along], token.at)
-                    parts = [tree, self._symbol(letter, now.at)]
+                    over = [self._symbol(letter, now.at) for letter in letters if letter]
+                    parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
-                    name = "line_integral" if along and letter.bold else "integral"
-                    return Call("circulation" if token.text == "oint" else name, tuple(parts))
+                    name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
+                    return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
             self._i = here + 1
         raise Unread("an integral without a differential at its end is not read", token.at)
 

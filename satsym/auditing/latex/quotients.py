@@ -8,7 +8,7 @@ from dataclasses import replace
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.formula.tree import Call, Mul, Node, Sym, constant
+from satsym.formula.tree import Add, Call, Mul, Node, Sym, constant, walk
 
 
 class QuotientCursor(LetterCursor):
@@ -77,6 +77,18 @@ class QuotientCursor(LetterCursor):
             self._i += 1
             self._script()
         return above, list(self._found[start : self._i])
+
+    def _differential(self, at: int) -> Node:
+        """The differential of the letter that is next."""
+        letter = self._letter()
+        if letter is None:
+            raise Unread("a differential is not read", at)
+        self._reading.differential = at
+        return Call("differential", (self._symbol(letter, at),))
+
+    def _dotted(self, inner: Node, times: int) -> Node:
+        """A derivative by time, of what dots stand over."""
+        return inner if times == 0 else self._along(self._dotted(inner, times - 1))
 
     def _quotient(self, above: list[Token], below: list[Token]) -> Node | None:
         """The derivative that a quotient of differentials is."""
@@ -181,3 +193,14 @@ def after_differential(part: list[Token]) -> list[Token]:
     if part[0].text in ("mathrm", "text", "operatorname"):
         return part[group_end(part, 1) :] if len(part) > 1 and part[1].kind == "open" else part[2:]
     return part[1:]
+
+
+def is_differential_of(tree: Node) -> bool:
+    """Whether a tree is the differential of a letter."""
+    return isinstance(tree, Call) and tree.function == "differential"
+
+
+def has_differentials(tree: Node) -> bool:
+    """Whether each term has a differential among its factors."""
+    terms = tree.terms if isinstance(tree, Add) else (tree,)
+    return all(any(is_differential_of(part) for _, part in walk(term)) for term in terms)

@@ -8,7 +8,17 @@ from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
-from satsym.auditing.latex.words import CONNECTIVES, OPTIMA, SAID, SIGNS, SKIPPED_GROUPS, SPACES, UNITS, UPRIGHT
+from satsym.auditing.latex.words import (
+    CONNECTIVES,
+    OPTIMA,
+    RELATIONS,
+    SAID,
+    SIGNS,
+    SKIPPED_GROUPS,
+    SPACES,
+    UNITS,
+    UPRIGHT,
+)
 
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 REMARK = "remark"
@@ -64,6 +74,9 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         ):
             if token.text == " " or token.text.isspace():
                 kept.append(replace(token, text=" "))
+        elif token.kind == "macro" and token.text in UPRIGHT and _has_formula(found, i, kept):
+            found = [*found[: i - 1], *_apart(found, i), *found[group_end(found, i) :]]
+            i -= 1
         elif token.kind == "macro" and token.text in UPRIGHT and _is_spoken(found, i, depth, kept):
             i = group_end(found, i)
             if depth and i < len(found) and found[i].text == ")":  # the bracket is one of the words
@@ -127,6 +140,30 @@ def _underset(found: Sequence[Token], i: int) -> list[Token]:
         return []
     at = found[i].at
     return [Token("macro", word, at), Token("sign", "_", at), *found[i:end]]
+
+
+def _has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
+    """Whether words at a place, which are no index, have relations between them."""
+    index = any(token.text in "^_" for token in kept[-2:])
+    inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
+    related = any(token.text == "=" or token.text in RELATIONS for token in inside)
+    return not index and related and sum(token.text == "$" for token in inside) in (2, 4)
+
+
+def _apart(found: Sequence[Token], i: int) -> list[Token]:
+    """Words at a place and the formulas between them, each by itself."""
+    macro, opening = found[i - 1], found[i]
+    apart: list[Token] = []
+    spoken: list[Token] = []
+    formula = False
+    for token in [*found[i + 1 : group_end(found, i) - 1], replace(opening, text="$")]:
+        if token.text != "$":
+            (apart if formula else spoken).append(token)
+            continue
+        if any(t.kind == "letter" for t in spoken):
+            apart += [macro, opening, *spoken, replace(opening, kind="close", text="}")]
+        spoken, formula = [], not formula
+    return apart
 
 
 def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:

@@ -42,6 +42,8 @@ KEPT_GROUPS = frozenset("boxed underbrace overbrace underbracket overbracket mat
 EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "coloneq"))
 TIMES = frozenset("cdot times ast odot bullet".split())
 DOUBLE_SIGNS = {"pm": "either_sign", "mp": "other_sign"}
+INTEGRALS = {"int": 1, "oint": 1, "iint": 2, "iiint": 3}
+"""Signs of integrals, and over how many letters they go; all may go over one."""
 BETWEEN = {"otimes": "tensor", "circ": "composed", "wedge": "wedge"}
 """Signs between two factors that are no multiplication, and what these are called."""
 OF_SETS = {"cup": "union", "cap": "intersection", "setminus": "without"}
@@ -91,15 +93,12 @@ NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
     "skew".split()
 )
-NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit".split()) | frozenset(
-    (*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values())
-)
+NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
+NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))
 """Functions in a tree that are read, and held against nothing."""
 NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise", "nabla", "star", "dagger"))
 """Names in a tree that stand for no number."""
 REFUSED = {
-    "iint": "an integral",
-    "iiint": "an integral",
     "not": "a negation",
     "exists": "a quantifier",
 }
@@ -121,8 +120,8 @@ FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
 """Macros that are read as words where they stand in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
-ATOMS = frozenset("sum prod int oint frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
-ATOMS |= ELLIPSES | OPENING
+ATOMS = frozenset("sum prod frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
+ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that are misread as products of letters where their backslash is lost, longer names first."""

@@ -159,6 +159,8 @@ class _Tex:
             return (rf"\left({said}\right)", _ATOM) if arguments[-1] == Sym("nabla") else (said, _PRODUCT)
         if name in _DOUBLE_SIGNS:
             return f"{_DOUBLE_SIGNS[name]} {self._bound(arguments[0], _PRODUCT)}", _SUM
+        if name == "differential":
+            return f"d{self._whole(arguments[0])}", _ATOM
         if name in _FIELDS:
             return f"{_FIELDS[name]}{self._bound(arguments[0], _ATOM)}", _PRODUCT
         if name in _WRITERS:
@@ -185,9 +187,12 @@ class _Tex:
         return rf"{sign}{below}{above} {self._bound(first, _PRODUCT)}", _SUM
 
     def _integral(self, arguments: Sequence[Node], joint: str = r" \,", sign: str = r"\int") -> tuple[str, int]:
-        inside, by, *limits = map(self._whole, arguments)
-        ends = "".join(f"{sign}{{{end}}}" for sign, end in zip("_^", limits, strict=False))
-        return rf"{sign}{ends} {inside}{joint} d{by}", _SUM
+        inside, by, *limits = arguments
+        over = by.arguments if isinstance(by, Call) and by.function == "list" else (by,)
+        ends = "".join(f"{mark}{{{self._whole(end)}}}" for mark, end in zip("_^", limits, strict=False))
+        steps = r" \, ".join(f"d{self._whole(letter)}" for letter in over)
+        sign = {2: r"\iint", 3: r"\iiint"}.get(len(over), sign)
+        return f"{sign}{ends} {self._whole(inside)}{joint} {steps}", _SUM
 
     def _limit(self, arguments: Sequence[Node]) -> tuple[str, int]:
         of, letter, end = arguments
