@@ -240,7 +240,10 @@ class Parser(SumCursor):
                 base = self._taken(base, self._script(), bar.at)
             elif self._is("_") and not isinstance(base, Num):
                 at = self._take().at
-                base = Call("indexed", (base, self._inner(self._script(), at)))
+                index = self._inner(self._script(), at)
+                if isinstance(index, Mul):
+                    raise Unread("this index is not read", at)
+                base = Call("indexed", (base, index))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
             elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:

@@ -273,7 +273,8 @@ class LetterCursor(Cursor):
         number = len(inside) == 1 and inside[0].kind == "number"
         base = letters[0]
         scalar = len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
-        matrices = base and base.bold and (base.base.isupper() if letter.bold else scalar)
+        factor = base == letter or (base and base.base.isupper() if letter.bold and letter.base.isupper() else scalar)
+        matrices = base and base.bold and factor
         crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
         if crossed or (
             matrices and len(places) == 1 and self._is("^")
@@ -289,12 +290,13 @@ class LetterCursor(Cursor):
             turned |= letter.base == "R" and angles and inside[0].text in GREEK
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
+            divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not _has_bold(inside)
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
             varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
             shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
             step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
             next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
-            a_place = barred or turned or taken or order or transposed or next_state or shifted or step
+            a_place = barred or turned or taken or order or transposed or next_state or shifted or step or divided
             if a_place or letter.style == "cal":
                 raise Unread("what it is taken at is not read", self._found[begin].at)
             self._i = begin
@@ -367,6 +369,11 @@ class LetterCursor(Cursor):
         first = inner._letter()
         behind = part[inner._i] if inner._i < len(part) else None
         return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
+
+
+def _has_bold(part: Sequence[Token]) -> bool:
+    """Whether a letter that is set as a vector is among tokens."""
+    return any(token.kind == "macro" and STYLES.get(token.text) == "vector" for token in part)
 
 
 def _in_tex(part: Sequence[Token]) -> str:

@@ -44,7 +44,7 @@ class RefusalCursor(OperatorCursor):
         if not self._begins_factor(token) or token.text in words.STYLES or token.text in MARKS:
             return False
         number = constant(divisor) is not None
-        return not (number and (token.text in "([" or constant(product_of(above)) is not None))
+        return not (number and constant(product_of(above)) is not None)
 
     def _refuse_behind(self, last: Node, token: Token) -> None:
         """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
