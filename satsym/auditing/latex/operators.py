@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.quotients import QuotientCursor, after_differential, is_differential
+from satsym.auditing.latex.quotients import QuotientCursor, is_differential
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
@@ -119,11 +119,7 @@ class OperatorCursor(QuotientCursor):
                 break
             here = self._i
             if depth == 0 and here > begin and is_differential(now):
-                self._i = here + len(self._found[here:]) - len(after_differential(list(self._found[here:])))
-                letters = [self._letter()]
-                while is_differential(self._peek()):
-                    self._i += len(self._found[self._i :]) - len(after_differential(list(self._found[self._i :])))
-                    letters.append(self._letter())
+                letters = list(self._variables())
                 behind = self._peek()
                 ends = behind is None or behind.text in ("+", "-", ")", "]")
                 if ends and all(letters) and len(letters) in (1, words.INTEGRALS[token.text]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
@@ -68,15 +68,19 @@ class QuotientCursor(LetterCursor):
         above = list(self._found[self._i : slash])
         self._i = slash + 1
         start = self._i
-        while is_differential(self._peek()):
-            rest = list(self._found[self._i :])
-            self._i += len(rest) - len(after_differential(rest))
-            if self._letter() is None:
-                return None
+        if not all(self._variables()):
+            return None
         if self._is("^"):
             self._i += 1
             self._script()
         return above, list(self._found[start : self._i])
+
+    def _variables(self) -> Iterator[Letter | None]:
+        """Go past differentials, as far as there are some: the letter of each; ``None`` where it has none."""
+        while is_differential(self._peek()):
+            rest = list(self._found[self._i :])
+            self._i += len(rest) - len(after_differential(rest))
+            yield self._letter()
 
     def _differential(self, at: int) -> Node:
         """The differential of the letter that is next."""
@@ -154,10 +158,7 @@ class QuotientCursor(LetterCursor):
         found: list[Letter] = []
         inner = self._of(below)
         while inner._i < len(below):
-            if not is_differential(inner._peek()):
-                return None
-            inner._i += len(below[inner._i :]) - len(after_differential(below[inner._i :]))
-            letter = inner._letter()
+            letter = next(inner._variables(), None)
             if letter is None:
                 return None
             times = 1
