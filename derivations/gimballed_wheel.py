@@ -1,10 +1,11 @@
-"""A satellite in a circular orbit: a rigid body, a momentum wheel in two sprung gimbals, one flexible mode an axis.
+"""A satellite in a circular orbit: a rigid body, a momentum wheel in two sprung gimbals, and flexible panels.
 
-The axes are x forward, y against the normal of the orbit, z to the Earth; orbital motion and wheel turn about -y. The
-wheel hangs in an outer gimbal that turns about the body's z and an inner one that turns about its own x; both have no
-inertia. A flexible mode turns about an axis of the body, as panels that bend or twist: a part of the moment of inertia
-about that axis is elastic. I_x, I_y, I_z are those of the whole satellite. The centre of mass stays in the orbit. Other
-numbers than those of the paper lapan_pitch, which prints none of gimbals and panels, are typical ones.
+The x axis points forward, the y axis opposite to the orbit normal, and the z axis towards the Earth; the orbital motion
+and the spin of the wheel are rotations about -y. The wheel is mounted in an inner gimbal, which turns about its own x
+axis, and this in an outer gimbal, which turns about the z axis of the body; the gimbals have no inertia. The panels
+have one flexible mode about each axis of the body, in which a part of the moment of inertia about that axis is elastic.
+I_x, I_y and I_z are the moments of inertia of the whole satellite, whose centre of mass stays in the orbit. Numbers
+that the paper lapan_pitch does not print, such as those of the gimbals and the panels, are typical values.
 """
 
 from typing import Any, TypeAlias
@@ -117,22 +118,22 @@ def satellite() -> tuple[Any, Any, Any, Any]:
 
 
 def rigid(name: str, frame: Any, centre: Any, dyadic: Any) -> RigidBody:
-    """A body whose centre of mass is that of the whole; its mass does not matter."""
+    """A rigid body whose centre of mass is that of the whole satellite; its mass has no effect."""
     return RigidBody(name, centre, frame, 0, (dyadic, centre))
 
 
 def gravity_gradient(body: RigidBody, orbit: Any) -> Load:
-    """Gravity pulls the near end of a body more strongly: a torque of 3 w0^2 n x (I n), n pointing to the Earth."""
+    """The gravity-gradient torque 3 w0^2 n x (I n) on a body, where n is the unit vector towards the Earth."""
     return body.frame, 3 * w0**2 * cross(orbit.z, body.central_inertia.dot(orbit.z))
 
 
 def between(torque: Any, frame: Any, other: Any) -> tuple[Load, Load]:
-    """A torque on a frame, and its opposite on another one."""
+    """A torque on one frame, and the opposite torque on another."""
     return (frame, torque), (other, -torque)
 
 
 def full() -> Mechanics:
-    """Body, wheel and modes, and what acts between them."""
+    """The rigid bodies (body, wheel and modes) and the loads on them."""
     space, orbit, body, centre = satellite()
     outer_gimbal, inner_gimbal, spinning = (ReferenceFrame(name) for name in ("outer", "inner", "wheel"))
     (g_x, g_z), (g_x_dot, g_z_dot), (speed,) = moving(GIMBALS), moving(GIMBAL_RATES), moving(SPEED)
@@ -163,7 +164,7 @@ def full() -> Mechanics:
 
 
 def locked(momentum: tuple[Any, ...]) -> Mechanics:
-    """All of it rigid, the wheel with a constant momentum relative to the body."""
+    """The rigid bodies and loads of a rigid satellite whose wheel has a constant momentum relative to the body."""
     space, orbit, body, centre = satellite()
     whole = rigid("body", body, centre, inertia(body, I_x, I_y, I_z))
     h = sum((c * e for c, e in zip(momentum, body, strict=True)), 0 * body.x)
@@ -175,7 +176,7 @@ def locked(momentum: tuple[Any, ...]) -> Mechanics:
 def triangle(what: str, moments: tuple[Any, ...]) -> tuple[Demand, ...]:
     """The demand that no moment of inertia of a body exceeds the sum of the other two."""
     total = sum(moments)
-    reason = f"a moment of inertia of {what} exceeds the sum of the other two, which no body has"
+    reason = f"one moment of inertia of {what} exceeds the sum of the other two, which is impossible for a rigid body"
     return tuple(Demand(total - 2 * moment, reason) for moment in dict.fromkeys(moments))
 
 
@@ -183,10 +184,10 @@ WHOLE = triangle("the satellite", (I_x, I_y, I_z))
 
 
 def demands() -> tuple[Demand, ...]:
-    """Of the whole, the wheel, and what is left of the body without wheel and modes."""
+    """The demands on the moments of inertia: of the satellite, the wheel, and the body without wheel and modes."""
     J_x, J_y, J_z = symbols_of(PANELS[:3])
     parts = ((I_x, I_wx, J_x), (I_y, I_wy, J_y), (I_z, I_wx, J_z))
-    heavy = "the wheel and the elastic part have together no less inertia than the satellite that they are parts of"
+    heavy = "the wheel and the elastic part together have at least as much inertia as the whole satellite"
     wheel = triangle("the wheel", (I_wx, I_wy, I_wx))
     return (*WHOLE, *wheel, *(Demand(i - w - j, heavy, strict=True) for i, w, j in parts))
 
@@ -202,7 +203,7 @@ def model(
     demanded: tuple[Demand, ...],
     varied: str = "",
 ) -> Multibody:
-    """A model of such bodies."""
+    """A model of the satellite with some of its bodies and loads."""
     space, bodies, loads = mechanics
     states = (*ATTITUDE, *more_coordinates, *RATES, *more_speeds)
     rates = dict(zip(symbols_of(more_coordinates), symbols_of(more_speeds), strict=False))
@@ -266,7 +267,7 @@ def about_rest(
     more: Variables = (),
     controls: Variables = (),
 ) -> AboutRest:
-    """Linear equations about pointing to the Earth."""
+    """The model linearised about the attitude in which the satellite points to the Earth."""
     return AboutRest(
         name=name,
         title=title,

@@ -72,7 +72,11 @@ pitch_wheel = Gyrostat(
     torques={"body": gravity_gradient},
     motors=(Motor(MOTOR_TORQUE, drives="body", against="wheel"),),
     drives={wheel_torque: I_wy * rate_of(wheel_speed)},
-    demands=(Demand(I_y - I_wy, "the wheel has no less inertia than the satellite that it is part of", strict=True),),
+    demands=(
+        Demand(
+            I_y - I_wy, "the wheel has at least as much inertia as the whole satellite, wheel included", strict=True
+        ),
+    ),
     quantities=(
         Output(CURRENT, motor_torque / K_t),
         Output(VOLTAGE, R_a * current + (nominal_speed + wheel_speed) / K_m),

@@ -1,4 +1,4 @@
-"""Small systems of plain numbers, such as textbooks show methods on; one varies with time, two have singular arcs.
+"""Small systems without units, as in textbook examples; one depends on time, and two have singular arcs.
 
 The first three are examples 2.8 (both systems) and 2.9, the fourth is example 2.7 of the thesis that the ledger
 uny_thesis is about.

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: 3b25ebabca237690ba5c8587767b3eb0beb7f4aa597b3c83abf9d3ff39888e78
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 4b840e53263034ad26f7a6fcb93cbd6aea6b54f55317f8a4a8db644c5c9d5aa7
 """
 
 import math

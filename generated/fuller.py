@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Source: ../derivations/examples/fuller.py 95a7cd1d5f54d0885be4ba971f16f24f
-Digest: 9fc75abad77f544b78d4682d4cd0fbe55a438968bf3b6bdd11ca57a2a5297b52
+Source: ../derivations/examples/fuller.py b8bd6c3e53908d8e8ed7eff8543a9b11
+Digest: b3fa717e81fcea6be7d44ead7a6e7f6f1d1bad14b390b8926cf43b35b65cc85c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: 187edc90f1613505a803aa391b7cc70b2e7832cf8996d856865fdbe1af5346ca
+Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
+Digest: 3fbc65fed801c7141485087066eb3874770601f80c3a422874f3e86f63ea9514
 """
 
 import math
@@ -71,14 +71,14 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'conditions': (
-        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wy', 1.0),), 'strict': False, 'reason': 'a moment of inertia of the wheel exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wx', 2.0), ('I_wy', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the wheel exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
-        {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
+        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wy', 1.0),), 'strict': False, 'reason': 'one moment of inertia of the wheel exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wx', 2.0), ('I_wy', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the wheel exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
+        {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
     ),
     'mode_groups': (
         {'name': 'nutation', 'states': ('phi', 'psi', 'w_x', 'w_z'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: b63bee05b435104dffa43e1468cbf5878884f61a27942211efe9d362cdc0c2f6
+Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
+Digest: a5effcb786dc29005439b7eca17fb880c0fbb1fc29e29479f61c9d172e385297
 """
 
 import math
@@ -44,9 +44,9 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'conditions': (
-        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
+        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
     ),
     'equilibria': 'h',
     'mode_groups': (

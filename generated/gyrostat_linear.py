@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: b391fe7c6053a1af66f8879e26c8b44567cb08dc190e4eb1cc1db3ddda55312b
+Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
+Digest: 84b1261e81da67a907ba706e18d349b680996e2d2313fe6de15a89be42e50b41
 """
 
 import math
@@ -48,9 +48,9 @@ MODEL = {
         'input_matrix',
     ),
     'conditions': (
-        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
+        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
     ),
     'mode_groups': (
         {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: feea7549db6ba485fdac4ab30f11fd658cddbe7ce1af6d8b5ff421db2ab3b44b
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: 6a3c22b0c4392699bdcbb4dfcb3b5519fcea30e1157e64e1cf546a5b6d5705b3
 """
 
 import math
@@ -41,7 +41,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'conditions': (
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has at least as much inertia as the whole satellite, wheel included'},
     ),
 }
 

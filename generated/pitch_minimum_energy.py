@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 7b81339f59a06e3d938fd357f6ecf5267d543a493f61526cad5f73cf40f85b8d
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: 9c116a6b2801294d3bf4464482d70cc169ad211a781998ac4497ec715aee8b2a
 """
 
 import math
@@ -47,7 +47,7 @@ MODEL = {
         {'symbol': 'power', 'latex': 'P', 'unit': 'W', 'meaning': 'electrical power of the motor'},
     ),
     'conditions': (
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has at least as much inertia as the whole satellite, wheel included'},
     ),
     'objective_unit': 'W*s',
     'linear_quadratic': True,

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 285d554ed4997cbbafac6d2a6ce28441c54ab0e25e1a1959bdca7225e99c5e0f
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: c1ee0bd7eac0a59ae4bff21fdd79b49086c770fea6b15207b7261df8beb5c158
 """
 
 import math
@@ -52,7 +52,7 @@ MODEL = {
         'theta_dot',
     ),
     'conditions': (
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has at least as much inertia as the whole satellite, wheel included'},
     ),
     'objective_unit': 's',
     'linear_quadratic': True,

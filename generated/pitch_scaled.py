@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 68663761f828c8c1586a137dce969a95e5f6d09fa64c73deb3aa4f99063a02c3
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: cc1cffdae10e964857abeb41145204924a6c309b2951737a678eec4882008e01
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: c60174958e53de821187a5ace10a7e710fba21f85baefa7f0eca2d7f04fe914c
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: 151968ef7d97b6a88ebc823a463fdaf046b4a9304d58ff91dc12d8ebc939f507
 """
 
 import math

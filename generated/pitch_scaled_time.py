@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 58ace79dfb770e734daeff5965c5403fc09a72ebb341ecfac69c7c617409fdeb
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: a1fbae73f0c97ad0664b4a16545988eba60d1e1282d3f0b023ddd2246e4df149
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 20c42f3034094a4f0a2a34851336205a
-Digest: 6c33653b3adaab5c6dd4e4e4a6845111def11e4e8d4780d5c280688799b818bb
+Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
+Digest: 5210e6362ba8545f175acdce00ea494e3b636c5972f610d7690017a122ab83d9
 """
 
 import math
@@ -53,7 +53,7 @@ MODEL = {
         {'symbol': 'angular_momentum', 'latex': '\\ell'},
     ),
     'conditions': (
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has no less inertia than the satellite that it is part of'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0)), 'strict': True, 'reason': 'the wheel has at least as much inertia as the whole satellite, wheel included'},
     ),
 }
 

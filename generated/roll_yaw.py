@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: 0176d1860bfd6219554dd8c965e2a18e4e08bea93c725aecc2ed35a9b95ecf4c
+Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
+Digest: f9b81a5997b53f417c98f8d26603862c7b6b054eedc08cbbc84d96a04415a83d
 """
 
 import math
@@ -69,14 +69,14 @@ MODEL = {
         'input_matrix',
     ),
     'conditions': (
-        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wy', 1.0),), 'strict': False, 'reason': 'a moment of inertia of the wheel exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wx', 2.0), ('I_wy', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the wheel exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
-        {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
-        {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
+        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wy', 1.0),), 'strict': False, 'reason': 'one moment of inertia of the wheel exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wx', 2.0), ('I_wy', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the wheel exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
+        {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
+        {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part together have at least as much inertia as the whole satellite'},
     ),
     'mode_groups': (
         {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},

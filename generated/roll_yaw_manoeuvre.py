@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 148986e26229a9a03726155c0e9ce5e5
-Digest: dd292eed83836003f822ffdee7b847438ca255b8522e5a3d0883cf8d62df0cc0
+Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
+Digest: a2e1579a3443d4bea1a5ed4d4ef4c4c08768dd21f27fc55d7b93c807941db6a5
 """
 
 import math
@@ -42,9 +42,9 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'conditions': (
-        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
-        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
+        {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
+        {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'one moment of inertia of the satellite exceeds the sum of the other two, which is impossible for a rigid body'},
     ),
     'mode_groups': (
         {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},

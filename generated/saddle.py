@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: 6d3f847c86261dd9fb41e7fc1aa199721d4689619fa695ffa4d453087474eb1c
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: b7478a61bdb679ff2d9c11b33b53004af836a6ac42d66fea7d44c8e768069e92
 """
 
 import math

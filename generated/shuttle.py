@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py bfdb60a9086283fffb832b0d4b8303ba
-Digest: a722b70ddabb6013cecaf3f741ffb3799ed0cebf50a637222d19eaf808595219
+Source: ../derivations/examples/shuttle.py f1c85d7a28dfb86483cb9609b4451a51
+Digest: 5ca7c0235981f06ec1fc61aee7606a32c68f7d1a56ba6dc8d455fe40179e02b3
 """
 
 import math

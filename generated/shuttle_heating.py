@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py bfdb60a9086283fffb832b0d4b8303ba
-Digest: 1f630aa05a224dc449161c984a807aa64a70d01e86cfdde0a635621cdc29fba4
+Source: ../derivations/examples/shuttle.py f1c85d7a28dfb86483cb9609b4451a51
+Digest: 51e6d1d0a217cbd8e2fbc3841493858e438d0d3b77da8a76c6279ed5afc8d980
 """
 
 import math

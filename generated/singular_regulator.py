@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: 3b050b484cf1244320679701c53ac8c12f9896daad3d4c8a8c5c4344a5f5f0e6
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 5c50f34ca55e0b348a626295b4962e3f4de38376d80455cb77155a203d2dfa77
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: 3d1d05056fcdeb9b38313eedd58213835d3ffd815794399f184f8e0583a017bd
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 36b7b30ff6a6ed0d2611f11d11f6881140d8d3fcace6e32dc3584254405bff83
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/three_bodies.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/three_bodies.py
-Source: ../derivations/examples/three_bodies.py 8e932671ebc9e906d4c11047d6ad6914
-Digest: 25c3a89e4e989969c24840d9e02c320170842196ab38cf34f86686f7828d72d3
+Source: ../derivations/examples/three_bodies.py 65502d1d3c5cd0bec2a287213e5006e5
+Digest: e3e926ee4d265012f6dc88482a0e9dfd3f9191cff99a01d8127b69a69830ff01
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: f2129ccf192cd6e3dafebd060ffd9fc9ca17ecf89820f5a23e15309bf58618a7
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 59d819b6265edc9f3736e92d1648896df716ad2983a6c85bb9d60f60fe081c5d
 """
 
 import math

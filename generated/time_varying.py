@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: bf67a9824a7980560072863e34633b9b08a64126ae3da6eaa99d8917b3b7ef23
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 176c06ee81994fea9da62dddc93c65be48af7774103f7aeace11d388b4e20061
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 615efcc8565aaaec1fc2873ba41b5f57
-Digest: aa4b7bb6f0bee21c4c3059c3e62080f577b378f0da01305cd47eb69a1c8be79a
+Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
+Digest: 999ce164ba9928c335103709ffe0fb35002633a4eb73a455518185a805e7d0dc
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/velocity_frame.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/velocity_frame.py
-Source: ../derivations/examples/velocity_frame.py 8d3feaf4ffacc4d9396797a9e2b5ebe3
-Digest: ae85eba483be73f9f18b59356bcea83461838edfc714662465b53778ff870ce2
+Source: ../derivations/examples/velocity_frame.py 57bd014f9f298d94975820c10396093b
+Digest: 99b410ab733d92ff15cf3bdf4f16fa19e3efc93d035897d1488b52ad0036ea1d
 """
 
 import math

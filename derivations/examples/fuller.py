@@ -1,8 +1,9 @@
 """Fuller's problem: a body on a line is brought to rest so that the integral of its squared distance is a minimum.
 
 A. T. Fuller (Relay control systems optimized for various performance criteria, 1960) found that the force switches
-infinitely often in finite time: the singular arc, at rest, is of second order, and no bang-bang arc joins such an arc
-(Kelley, Kopp and Moyer, Singular extremals, 1967; Zelikin and Borisov, Theory of Chattering Control, 1994).
+infinitely often in finite time: the state of rest is a singular arc of second order, which cannot be joined to a
+bang-bang arc (Kelley, Kopp and Moyer, Singular extremals, 1967; Zelikin and Borisov, Theory of Chattering Control,
+1994).
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,9 +1,10 @@
 """A space shuttle enters the atmosphere and glides to the greatest cross-range (Betts 2010, section 6.1).
 
-The controls are the angle of attack and the bank angle. Lift grows linearly with the angle of attack and drag
-quadratically; the bank angle turns the lift. Without a limit on heating the greatest latitude is 34.1411843 degrees.
-The bounds of the bank angle matter: upside down, with negative lift, the same polar would glide further. In the second
-problem the heating of the wing's leading edge, which depends on the angle of attack, is bounded.
+The controls are the angle of attack and the bank angle. The lift coefficient is linear in the angle of attack, the drag
+coefficient quadratic; the bank angle rotates the lift about the velocity. The greatest latitude is 34.1411843 degrees
+if heating is not limited. It depends on the bounds of the bank angle, because a vehicle with these coefficients would
+glide even further if it flew upside down with negative lift. In the second problem, the heating rate of the leading
+edge of the wing, which depends on the angle of attack, is bounded.
 """
 
 from dataclasses import replace

@@ -1,7 +1,7 @@
 """The circular restricted three-body problem: a spacecraft near two bodies that circle each other.
 
-The axes turn with the two bodies, and their origin is the centre of mass: the first body is at x = -mu R, the second
-at x = (1 - mu) R. The potential V counts the turning of the axes, and has the sign that makes its slope a force.
+The axes rotate with the two bodies about their centre of mass: the first body is at x = -mu R, the second at x = (1 -
+mu) R. The potential V includes that of the centrifugal force; its sign is such that its gradient is a force.
 """
 
 from sympy import Matrix, cos, sin, sqrt

@@ -1,7 +1,7 @@
 """The axes along the velocity of a satellite on a Kepler orbit: how they turn as the true anomaly grows.
 
-The orbit is a conic of eccentricity e; its motion follows from the angular momentum alone. The velocity stands at the
-flight path angle beta from the direction across the radius, and the axes turn with f - beta.
+The orbit is a conic of eccentricity e; its motion follows from the angular momentum alone. The velocity makes the
+flight path angle beta with the local horizontal, so that the axes rotate through the angle f - beta.
 """
 
 from sympy import atan, cos, sin, sqrt

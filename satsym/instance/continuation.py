@@ -50,7 +50,9 @@ def varied(
         If there is no such number, or it is free, or both ends are the same.
     """
     if table and not spec.has_cost:
-        raise BadInput(f"[continuation]: the model {spec.name} has no cost, so there is nothing to solve; remove it")
+        raise BadInput(
+            f"[continuation]: the model {spec.name} has no cost, so there is nothing to solve; remove this table"
+        )
     found = list[Varied]()
     for name, ends in table.items():
         place = f"[continuation] {printable(name)}"

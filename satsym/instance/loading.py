@@ -256,8 +256,8 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
         return None
     if not spec.switching_curve:
         raise BadInput(
-            f"[switching] model {spec.name} has no switching curve in closed form, as only minimum-time "
-            "problems of double integrators have; leave the table out"
+            f"[switching] model {spec.name} has no switching curve in closed form (only minimum-time problems "
+            "of double integrators have one); leave out this table"
         )
     position = spec.states[spec.state_names.index(spec.switching_curve[0])]
     found = quantity(table.deadband, position.unit, "[switching] deadband")

@@ -78,7 +78,7 @@ class Key:
         if self.table is Table.CONTROL:
             number = quantity(given, self.unit(spec), place)
             if self.name == MAX_NORM and number <= 0.0:
-                raise BadInput(f"{place}: with {shown(given)}, no control remains; write a positive number")
+                raise BadInput(f"{place}: a bound of {shown(given)} admits no control; write a positive number")
             return number
         if self.table is Table.LQR:
             return quantity(given, "1", place)

@@ -52,7 +52,9 @@ def parameters(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
         margin = math.fsum(weight * values[name] for name, weight in condition.terms)
         if margin < 0.0 or (condition.strict and margin == 0.0):
             named = ", ".join(f"{name} = {values[name]:.6g}" for name, _ in condition.terms)
-            raise BadInput(f"[parameters] {condition.terms[0][0]}: {condition.reason}; change one of {named}")
+            raise BadInput(
+                f"[parameters] {condition.terms[0][0]}: {condition.reason}; change one of these parameters: {named}"
+            )
     return found
 
 

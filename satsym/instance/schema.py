@@ -147,11 +147,16 @@ class DrivenTable(_Table, frozen=True):
 
 
 class GuessTable(_Table, frozen=True):
-    state: Annotated[dict[str, Series], Key("values over time, evenly spaced", SOLVING, "the model's", "STATE")] = {}
-    costate: Annotated[
-        dict[str, Series], Key("the same for costates; plain numbers", SOLVING, "cost by state", "STATE")
+    state: Annotated[
+        dict[str, Series], Key("values of a state at evenly spaced times", SOLVING, "the model's", "STATE")
     ] = {}
-    control: Annotated[dict[str, Series], Key("the same for controls", SOLVING, "the model's", "CONTROL")] = {}
+    costate: Annotated[
+        dict[str, Series],
+        Key("values of a costate at evenly spaced times, as numbers without units", SOLVING, "cost by state", "STATE"),
+    ] = {}
+    control: Annotated[
+        dict[str, Series], Key("values of a control at evenly spaced times", SOLVING, "the model's", "CONTROL")
+    ] = {}
     parameter: Annotated[
         dict[str, Quantity], Key("initial guess of a free parameter", SOLVING, "the model's", "PARAMETER")
     ] = {}
@@ -166,16 +171,26 @@ class OrbitTable(_Table, frozen=True):
     inclination: Annotated[
         Quantity | None,
         Key(
-            "inclination of the plane of a planar model to the plane of the first two axes of the frame",
+            "for planar models: inclination of the plane to the first two axes of the frame",
             EXPORTING,
             "rad",
         ),
     ] = None
     node: Annotated[
-        Quantity | None, Key("direction of its ascending node, from the first axis of the frame", EXPORTING, "rad")
+        Quantity | None,
+        Key(
+            "for planar models: angle from the first axis of the frame to the ascending node of the plane",
+            EXPORTING,
+            "rad",
+        ),
     ] = None
     argument: Annotated[
-        Quantity | None, Key("angle in that plane from the node to the model's first axis", EXPORTING, "rad")
+        Quantity | None,
+        Key(
+            "for planar models: angle from the ascending node to the first axis of the model, in the plane",
+            EXPORTING,
+            "rad",
+        ),
     ] = None
 
 
@@ -208,7 +223,12 @@ class SolverOptions(_Table, frozen=True):
     max_iterations: Annotated[Count | None, Key("number of sweeps, for methods that sweep", SOLVING)] = None
     free_angles: Annotated[Names, Key("angles whose final value counts modulo a full turn", SOLVING)] = ()
     relaxation: Annotated[
-        UpToOne | None, Key("weight of the new control in each sweep; selects plain relaxation", SOLVING, "1")
+        UpToOne | None,
+        Key(
+            "fixed weight of the new control in each sweep; if it is left out, quasi-Newton steps are taken",
+            SOLVING,
+            "1",
+        ),
     ] = None
     backend: Annotated[Backends, Key("whether kernels are compiled", MOVING)] = "auto"
 
@@ -254,7 +274,12 @@ class InstanceFile(_Table, frozen=True):
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
-        Key("largest allowed magnitudes; only reported", MOVING, "the model's", "STATE or quantity"),
+        Key(
+            "largest allowed magnitudes; the solver ignores them, and exceeding them is reported",
+            MOVING,
+            "the model's",
+            "STATE or quantity",
+        ),
     ] = {}
     switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
     driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None

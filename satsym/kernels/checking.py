@@ -49,7 +49,7 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
     except SyntaxError as error:
         raise Unexpected(error.lineno or 1, f"is not Python ({error.msg})") from None
     except ValueError:  # NUL characters, up to Python 3.11
-        raise Unexpected(1, "or a later line is not text") from None
+        raise Unexpected(1, "is followed by a character that is not text") from None
     opening = len(_IMPORTS) + 2
     docstring, *imports = body[: opening - 1] or [ast.Pass()]
     _docstring(docstring)

@@ -225,7 +225,7 @@ class Kernels(Functions):
         """Raise BadInput unless the model has a symplectic loop."""
         if not self.spec.separable:
             reason = "its accelerations are not derived from a potential in the coordinates alone; use RK4"
-            raise BadInput(f"{self.spec.name}: there is no symplectic integrator for it: {reason}")
+            raise BadInput(f"{self.spec.name}: no symplectic integrator applies to this model: {reason}")
 
     def in_domain(self, x: ArrayLike) -> bool:
         """Whether the states that must be positive are so, at every node of ``x``, shape (n,) or (n, N+1)."""

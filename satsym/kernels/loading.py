@@ -154,7 +154,7 @@ def _refuse_older(model: str, text: str, folder: Path) -> None:
     edited, stating, out = (printable(os.path.relpath(path.resolve()), 150) for path in (*found, folder))
     ours = source_files.is_model(model)
     command = "satsym derive" if ours else shlex.join(["satsym", "derive", stating, "--out", out])
-    raise BadInput(f"{shown(model)}: {edited} has changed since this was derived from it; run `{command}`")
+    raise BadInput(f"{shown(model)}: {edited} has changed since this module was derived from it; run `{command}`")
 
 
 @cache

@@ -54,7 +54,7 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
     return (
         Hypothesis(
             "the cost is a positive definite quadratic form in the controls alone, and the final state is free",
-            "by second derivatives for all controls",
+            "from the second derivatives with respect to all controls",
             "exactly",
         ),
         Hypothesis("zero control is admissible", "zero lies within all bounds", "exactly"),
@@ -66,9 +66,9 @@ def of_signs(shown: Shown) -> Hypothesis:
     """Say that laws are the best ones along their arcs."""
     if not shown.conditions:
         return Hypothesis("no control reaches a bound", "there are no bounds", "no proof is needed")
-    changes = f"{shown.conditions} signs, {shown.crossings} changes of law"
+    changes = f"{shown.conditions} signs and {shown.crossings} changes of the control law"
     if shown.crossings == 1:
-        changes = f"{shown.conditions} signs, 1 change of law"
+        changes = f"{shown.conditions} signs and 1 change of the control law"
     return Hypothesis(
         "the law of each arc holds on the whole arc, and the switching function crosses each change of law "
         "with a nonzero slope",
@@ -217,6 +217,6 @@ def scope(statement: Statement) -> str:
     compared = (
         "The derivatives and laws of the generated kernel were compared with its motion and costs at random points."
     )
-    near = "The theorem gives no size of this neighbourhood."
+    near = "The theorem does not say how large this neighbourhood is."
     model = f"The theorem concerns the problem of the model {statement.spec.name} with the numbers listed here:"
     return f"{model} {numbers} {compared} {near}"

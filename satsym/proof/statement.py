@@ -242,7 +242,9 @@ def _turned(case: Instance, i: int, target: Target, last: float) -> Target:
     if name not in case.solver.free_angles:
         return target
     if target.value is None or target.side is not None:
-        raise BeyondProof("angles modulo a turn on the reference, or in a range")
+        raise BeyondProof(
+            "a final angle that counts modulo a full turn and is required to lie on the reference or in a range"
+        )
     return replace(target, turns=round((last - float(target.value.mid())) / math.tau))
 
 

@@ -125,7 +125,7 @@ def load(path: Path) -> Record:
     try:
         status = path.stat()
     except (OSError, ValueError):
-        raise BadInput(f"{printable(str(path), 200)}: no such file; satsym derive writes it") from None
+        raise BadInput(f"{printable(str(path), 200)}: no such file; write it with `satsym derive`") from None
     if status.st_size > _MOST_BYTES:
         raise BadInput(
             f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; the record of a derivation is never "

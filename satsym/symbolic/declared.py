@@ -56,7 +56,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.control_sets and problem.control_set != "free":
         raise DerivationError(
-            f"{problem.name}: control_set: it is given although control_sets states each control set; leave it out",
+            f"{problem.name}: control_set: control_sets already states each control set; leave it out",
             ("control_set",),
         )
     if problem and not isinstance(problem.maximise, bool):

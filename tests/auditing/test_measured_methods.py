@@ -80,7 +80,7 @@ def test_a_stage_that_adds_a_slope_without_the_step_spoils_the_method():
 def test_a_method_that_says_nothing_has_no_order():
     with pytest.raises(Undecided, match="k1"):
         MEASURE["order"](["y_n1 = y_n + h*k1"])
-    with pytest.raises(BadInput, match="another node"):
+    with pytest.raises(BadInput, match="next node"):
         MEASURE["order"](["k1 = f(x_n, y_n)"])
     with pytest.raises(BadInput, match="k5"):
         MEASURE["with_line"](RK4, "k5 = 0")

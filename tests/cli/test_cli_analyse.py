@@ -155,7 +155,7 @@ def test_people_get_a_summary(run: Run, subject: str) -> None:
     code, out, err = run("analyse", subject)
     assert (code, err) == (0, "")
     assert "Jordan block of size 2" in out
-    assert "u1 alone 3 (without the mode s = 0)" in " ".join(out.split())
+    assert "u1 alone: 3 (without the mode s = 0)" in " ".join(out.split())
     assert max(map(len, out.splitlines())) <= 100
 
 

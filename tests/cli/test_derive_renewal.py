@@ -183,7 +183,10 @@ def test_a_module_older_than_its_model_is_not_used(
     text = (tmp_path / file).read_text(encoding="utf-8")
     assert not refusal(tmp_path)
     edit(tmp_path / file, "import", "import (")
-    told = f'"made/hiking": {file} has changed since this was derived from it; run `satsym derive own.py --out made`'
+    told = (
+        f'"made/hiking": {file} has changed since this module was derived from it; run `satsym derive own.py --out '
+        "made`"
+    )
     assert refusal(tmp_path) == told
     derived(code=3)
     assert refusal(tmp_path) == told

@@ -96,8 +96,8 @@ def test_it_says_of_the_certificate_what_the_terminal_says(text: str, solution: 
     assert found is not None
     section = unescape(text.partition('<section id="certificate">')[2].partition("</section>")[0])
     printed = [line.split() for line in solution_text(solution).splitlines()]
-    assert "3, final time given, final state free or partly so" in text
-    assert "boundary type 3, final time given, final state free or partly so".split() in printed
+    assert "3, final time given, final state wholly or partly free" in text
+    assert "boundary type 3, final time given, final state wholly or partly free".split() in printed
     assert verdict_text(found).capitalize() in section
     for said, measured, limit, _ in condition_rows(found)[1:]:
         assert f"{said} {measured} {limit}".split() in printed

@@ -115,8 +115,12 @@ COMPOSED = (
         f"no law is known for {what} on an interval where the minimum principle does not determine it"
         for what in UNDECIDED
     ),
-    "the entries are not known accurately enough to decide. Either <verdict>: <reason>; or <other>: <why>",
+    "the entries of the matrix are not known accurately enough to decide. Either <verdict>: <reason>; or "
+    "<other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
+    "there is no published constant <a>",
+    "the instance gives no number for <a>",
+    *("an integral", "a negation", "a product over an index", "a double sign", "a quantifier"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),

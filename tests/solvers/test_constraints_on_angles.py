@@ -210,7 +210,7 @@ def test_the_shuttle_that_may_not_be_heated_too_much_glides_as_far_as_by_direct_
 def test_an_end_beyond_a_bank_is_refused_whenever_it_is_reached_unless_the_bank_moves():
     given = {"parameters": {"c": 0.2}, "initial": {"x": 0.0, "y": 0.0}, "final": {"x": 2.0, "y": 0.5}, "tf": "free"}
     with pytest.raises(
-        BadInput, match=r"final: path constraint bank has the value 0\.3 there, but must not be positive"
+        BadInput, match=r"final: path constraint bank has the value 0\.3 at that point, but must not be positive"
     ):
         satsym.solve(satsym.Instance.of(boat("beyond", bank=y - c), **given))
     assert satsym.solve(satsym.Instance.of(boat("moving", bank=y - c - t), **given)).status is Status.CONVERGED

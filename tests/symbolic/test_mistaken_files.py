@@ -46,7 +46,7 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             '"speed"),)',
             '"speed", 1, "real", 1, (1, 2), 3),)',
-            "Variable has fewer fields than the values it was given; its positional",
+            "Variable was given more values than it has fields; its positional",
         ),
         ("import FirstOrder,", "import FirstOder,", "satsym.symbolic has no 'FirstOder'; did you mean \"FirstOrder\"?"),
         ("import FirstOrder,", "import", "mine.py:8: 'FirstOrder' is not defined; write `from satsym.symbolic import"),

@@ -135,7 +135,7 @@ def plant(instance: Instance, feedback: str) -> Plant:
     position, rate = (spec.state_names.index(state) for state in spec.switching_curve)
     for state in spec.switching_curve:
         if not isinstance(instance.final.get(state), float | int):
-            raise BadInput(f"{name}: [final] {state}: missing; a switching feedback requires a number")
+            raise BadInput(f"{name}: [final] {state}: missing; a switching feedback requires a given final value")
     (low,), (high,) = instance.lower, instance.upper
     if not -np.inf < low < 0.0 < high < np.inf:
         raise BadInput(

@@ -152,8 +152,8 @@ def simulate(instance: Instance) -> Simulation:
     if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
         raise BadInput(
             f"{instance.called}: [classical]: the shortest time constant of the loop, "
-            f"{1.0 / found.fastest:.3g}, is too short for a simulation until {instance.tf:.6g}; give an "
-            "earlier time.tf, a slower law or a slower differentiator"
+            f"{1.0 / found.fastest:.3g}, is too short for a simulation until {instance.tf:.6g}; shorten "
+            "time.tf, or use a slower control law or a slower differentiator"
         )
     limits, _ = watched(instance, None)
     try:

@@ -255,7 +255,9 @@ def stability(eigenvalues: Sequence[Eigenvalue], *others: Sequence[Eigenvalue]) 
     if len({each.verdict for each in found}) == 1:
         return found[0]
     listed = "; or ".join(f"{each.verdict}: {each.reason}" for each in found)
-    return Stability(UNDECIDED, f"the entries are not known accurately enough to decide. Either {listed}", False)
+    return Stability(
+        UNDECIDED, f"the entries of the matrix are not known accurately enough to decide. Either {listed}", False
+    )
 
 
 def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:

@@ -61,7 +61,10 @@ def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: A
     arrays = {name: _numbers(name, value) for name, value in given.items()}
     for name in ("position", "velocity"):
         if arrays[name].shape[:1] != (3,):
-            raise BadInput(f"{name}: has shape {arrays[name].shape}; give three components along the first axis")
+            raise BadInput(
+                f"{name}: has shape {arrays[name].shape}; give an array whose first axis has length 3, one entry "
+                "for each component"
+            )
     vectors = [arrays[name] for name in ("position", "velocity")]
     scalars = [arrays[name] for name in ("mu", "duration")]
     try:

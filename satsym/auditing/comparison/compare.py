@@ -20,7 +20,7 @@ def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
     if isinstance(printed, tuple):
         return [_of_matrix(bench, row, printed, target)]
     if isinstance(trees, Roots | Kernel):
-        raise BadInput('eigenvalues(...) and nullspace(...) are compared with a list: kind = "matrix"')
+        raise BadInput('eigenvalues(...) and nullspace(...) are compared with a list, which requires kind = "matrix"')
     if isinstance(trees, Matrix):
         side = printed.rhs if isinstance(printed, Equality) and isinstance(printed.lhs, Sym) else printed
         if isinstance(side, Equality):

@@ -98,20 +98,20 @@ class Cursor(ABC):
         token = self._peek()
         if token is None:
             last = self._found[-1] if self._found else None
-            raise Unread("the formula breaks off", (last.at + len(last.text)) if last else self._start)
+            raise Unread("the formula is incomplete", (last.at + len(last.text)) if last else self._start)
         self._i += 1
         return token
 
     def _refuse(self) -> None:
         token = self._take()
         if token.kind == "macro" and token.text in REFUSED:
-            raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not read", token.at)
+            raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not supported", token.at)
         if token.kind == "macro" and token.text == "remark":
-            raise Unread("words between formulas are not read", token.at)
+            raise Unread("words inside a formula are not supported", token.at)
         if token.text in RELATIONS:
-            raise Unread("a relation inside of something is not read", token.at)
+            raise Unread("a relation inside brackets or arguments is not supported", token.at)
         sign = "\\" if token.kind == "macro" else ""
-        raise Unread(f'"{sign}{printable(token.text)}" is not read here', token.at)
+        raise Unread(f'"{sign}{printable(token.text)}" is not supported here', token.at)
 
     def _script(self) -> list[Token]:
         """What stands behind ``^`` or ``_``."""
@@ -168,5 +168,8 @@ class Cursor(ABC):
                 depth += (token.text in "([") - (token.text in ")]")
             self._i += 1
         if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
-            raise Unread("brackets that do not match, as of an interval, are not read", opening.at)
+            raise Unread(
+                "a bracket is closed by one of another kind, as in a half-open interval, which is not supported",
+                opening.at,
+            )
         return self._i - 1

@@ -26,7 +26,7 @@ class EnclosedCursor(RefusalCursor):
             line = relation_in(part)
             sides = [self._inner(side, at) for side in line.sides]
             if line.signs not in ([], ["="]):
-                raise Unread("what something is taken at is not read", at)
+                raise Unread("this point of evaluation is not supported", at)
             places.append(sides[0] if line.bare else Call("equal", tuple(sides)))
         return Call("value", (base, *places))
 
@@ -40,7 +40,7 @@ class EnclosedCursor(RefusalCursor):
             self._group()
         letter = self._letter()
         if letter is None or not all(said):
-            raise Unread("what this index in front belongs to is not clear", at)
+            raise Unread("it is not clear to which letter this leading index belongs", at)
         return self._symbol(replace(letter, marks=(*letter.marks, f"in_{'_'.join(said)}")), at)
 
     def _named(self, macro: str, word: str, length: int) -> Node | None:
@@ -107,7 +107,7 @@ class EnclosedCursor(RefusalCursor):
                 continue
             sides = [self._inner(side, at) for side in line.sides]
             if not rest or line.bare:
-                raise Unread("the condition of a case is not read", said[0].at if said else at)
+                raise Unread("the condition of this case is not supported", said[0].at if said else at)
             conditions: list[Node] = [
                 Call("equal" if sign == "=" else sign, (one, other))
                 for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True)
@@ -124,7 +124,7 @@ class EnclosedCursor(RefusalCursor):
         begin, groups = self._i, 0
         while True:
             if self._peek() is None:
-                raise Unread("a bar that nothing closes, as behind what is taken at a place, is not read", token.at)
+                raise Unread("a vertical bar without a closing one, as in an evaluation at a point, is not supported", token.at)
             inside = self._take()
             groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
             if groups == 0 and inside.text == closing and inside.kind == token.kind:
@@ -141,7 +141,7 @@ class EnclosedCursor(RefusalCursor):
         if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
             return Call("det", (inner,))
         if single and isinstance(inner, Add) and "I" in symbols(inner):
-            raise Unread("bars around a matrix are a determinant, or a size; write \\det", token.at)
+            raise Unread("bars around a matrix could mean its determinant or its norm; write \\det for the determinant", token.at)
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
         if not single and self._is("_"):

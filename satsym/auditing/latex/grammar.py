@@ -71,7 +71,7 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
-        raise Unread("no formula", start)
+        raise Unread("there is no formula here", start)
     return reading
 
 
@@ -81,18 +81,18 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         reading.differential = -1
         sides = [Parser(part, reading, start).side() for part in line.sides]
         if reading.differential >= 0 and line.bare:
-            raise Unread("a differential is not read", reading.differential)
+            raise Unread("a differential is not supported", reading.differential)
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
                 raise Unread("a bracket with a comma, which may be one of operators, is not read", line.sides[0][0].at)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
-                raise Unread("what may be a set is no product", line.sides[0][0].at)
+                raise Unread("braces could enclose a set here; write round brackets around a product", line.sides[0][0].at)
             if Sym("nabla") in (one, other):
                 raise Unread("a sign of derivatives by itself is no quantity", line.sides[0][0].at)
             if reading.differential >= 0 and not (sign == "=" and is_differential_of(one) and has_differentials(other)):
-                raise Unread("a differential is not read", reading.differential)
+                raise Unread("a differential is not supported", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
             if sign == "=" and taken and _stands_in(one, other):
                 raise Unread("this letter is taken at a place, and stands without one", line.sides[0][0].at)
@@ -120,7 +120,7 @@ class Parser(SumCursor):
     def whole(self) -> Node:
         """The whole side."""
         if not self._found:
-            raise Unread("one side of an equality is empty", self._start)
+            raise Unread("one side of the equation is empty", self._start)
         tree = self._sum()
         if self._i < len(self._found):
             self._refuse()
@@ -153,7 +153,7 @@ class Parser(SumCursor):
                 if token.kind == "number" and last.kind == "letter" and token.at == last.at + 1:
                     raise Unread("a number behind a letter, which may be an index or a power", token.at)
                 if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
-                    raise Unread("an ellipsis between factors is not read", token.at)
+                    raise Unread("an ellipsis between factors is not supported", token.at)
                 chain.append(self._factor())
             else:
                 break
@@ -166,28 +166,28 @@ class Parser(SumCursor):
         if product and self._is_vector(before):
             field = isinstance(before, Call) and before.function in ("curl", "divergence")
             if (crossed and "cross" in (product, crossed)) or field:
-                raise Unread("products of vectors one after the other, without brackets", sign.at)
+                raise Unread("several products of vectors in a row need brackets", sign.at)
             chain[-1] = self._of_vectors(product, before, sign)
             return product
         chain.append(self._signed_factor())
         scalar = any(constant(side) is not None for side in (before, chain[-1]))
         if sign.text == "times" and not scalar and not isinstance(before, Grid):
-            raise Unread("a product, or one of vectors; set vectors bold, or write \\cdot", sign.at)
+            raise Unread("this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot", sign.at)
         return crossed
 
     def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
         """A product divided by the factor behind a slash."""
         if self._bare_end == self._i:
-            raise Unread("what a function is taken of, a slash behind it, needs brackets", slash.at)
+            raise Unread("the argument of a function in front of a slash needs brackets", slash.at)
         self._i += 1
         following = self._peek()
         if slash.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
-            raise Unread("a colon is not read here", slash.at)
+            raise Unread("a colon is not supported here", slash.at)
         divisor, unit = self._signed_factor(), self._peek()
         if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
-            raise Unread("a unit behind a slash is not read", unit.at)
+            raise Unread("a unit after a slash is not supported", unit.at)
         if unit is not None and self._may_be_divided_by(unit, chain, divisor):
-            raise Unread("what a slash divides by is not clear without brackets", slash.at)
+            raise Unread("without brackets, it is not clear what the slash divides by", slash.at)
         return Div(product_of(chain), divisor)
 
     def _signed_factor(self) -> Node:
@@ -242,7 +242,7 @@ class Parser(SumCursor):
                 at = self._take().at
                 index = self._inner(self._script(), at)
                 if isinstance(index, Mul):
-                    raise Unread("this index is not read", at)
+                    raise Unread("this index is not supported", at)
                 base = Call("indexed", (base, index))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
@@ -250,13 +250,13 @@ class Parser(SumCursor):
                 self._i += 1
                 base = Num(Fraction(factorial(int(base.value))))
             elif self._is("!"):
-                raise Unread("a factorial is not read", self._take().at)
+                raise Unread("a factorial is not supported here", self._take().at)
             else:
                 return base
 
     def _inner(self, part: Sequence[Token], at: int) -> Node:
         if not part:
-            raise Unread("nothing stands here", at)
+            raise Unread("an expression is missing here", at)
         return self._of(part).whole()
 
     def _atom(self) -> Node:
@@ -296,7 +296,7 @@ class Parser(SumCursor):
                 return called
             twice = self._peek()
             if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
-                raise Unread("twice the same letter in front of an index may be one name", token.at)
+                raise Unread("a doubled letter with an index could be one name", token.at)
             after = self._peek()
             beside = after is not None and after.at <= token.at + 2
             differs = after is not None and (
@@ -331,7 +331,7 @@ class Parser(SumCursor):
         if name in words.STYLES and (zero := self._peek_number()) is not None:
             return zero
         if name in words.CLOSING:
-            raise Unread(f'"\\{name}" is not read here', token.at)
+            raise Unread(f'"\\{name}" is not supported here', token.at)
         if name in _READERS:
             return _READERS[name](self, token)
         if name in FUNCTIONS:
@@ -352,7 +352,7 @@ class Parser(SumCursor):
         after = self._peek()
         short = name in words.UPRIGHT and letter in (Letter("s"), Letter("c"))
         if short and after is not None and after.kind == "macro" and after.text in GREEK:
-            raise Unread("s and c may stand for sine and cosine", token.at)
+            raise Unread("s and c could be abbreviations of sine and cosine", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)

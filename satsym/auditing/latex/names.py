@@ -60,24 +60,24 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
             if name in SAID and len(name) == len(part):
-                raise Unread("words between formulas are not read", part[first].at)
+                raise Unread("words inside a formula are not supported", part[first].at)
             if (
                 len(name) >= _LONG_WORD
                 and name not in CONSTANT
                 and not grouped
                 and sum(letter in "aeiou" for letter in name) > 1
             ):
-                raise Unread("words between formulas are not read", part[first].at)
+                raise Unread("words inside a formula are not supported", part[first].at)
             called = len(name) > 2 and name[0].isupper() and name[-2:].islower() and bool(set("aeiou") & set(name))
             called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
             if called and behind and behind[0].text == "(":
-                raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
             numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
             beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
             multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
             barred = beside == {"|"} and len(name) == 2
             if name.isupper() and (barred or numbered or multiplied or _is_ratio(part, first, last)):
-                raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
     named = "".join(t.text for t in side[:end])
@@ -85,7 +85,7 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
         raise Unread(f"{named} may be one name, \\mathrm{{{named}}}, or a product", side[0].at)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
-        raise Unread(f"{name} may be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
+        raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
 
 
 def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:
@@ -105,4 +105,4 @@ def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
                 isinstance(part, Pow) and isinstance(part.base, Sym) and part.base.name in numbered
                 for _, part in walk(side)
             ):
-                raise Unread("powers of a letter that has indices above, too", start)
+                raise Unread("a letter that has superscript indices is also raised to a power, which is ambiguous", start)

@@ -60,13 +60,13 @@ class OperatorCursor(QuotientCursor):
         if token.text == "lim":
             sides = relation_in(below).sides
             if len(sides) != 2:
-                raise Unread("a limit without an arrow below is not read", token.at)
+                raise Unread("a limit needs an arrow below it", token.at)
             ends = [self._limit(side, token.at) for side in sides]
             return Call("limit", (self._product(), *ends))
         line = relation_in(below)
         over = [self._inner(part, token.at) for part in split(line.sides[0], lambda t: t.text == ",")]
         if line.signs not in ([], ["element"]):
-            raise Unread("what stands below is not read", token.at)
+            raise Unread("what is written below this operator is not supported", token.at)
         if line.signs:
             over = [
                 Call(
@@ -131,7 +131,7 @@ class OperatorCursor(QuotientCursor):
                     name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
                     return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
             self._i = here + 1
-        raise Unread("an integral without a differential at its end is not read", token.at)
+        raise Unread("an integral without a differential at its end is not supported", token.at)
 
     def _root(self) -> Node:
         degree: Node | None = None
@@ -147,7 +147,7 @@ class OperatorCursor(QuotientCursor):
         if degree is None or value == 2:
             return Call("sqrt", (radicand,))
         if value is None or value.denominator != 1 or not 1 < value <= 12:
-            raise Unread("a root of this degree is not read", self._found[self._i - 1].at)
+            raise Unread("a root of this degree is not supported", self._found[self._i - 1].at)
         return Pow(radicand, Div(Num(Fraction(1)), Num(value)))
 
     def _function(self, name: str, token: Token) -> Node:
@@ -158,7 +158,7 @@ class OperatorCursor(QuotientCursor):
             power = self._inner(script, at)
             if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "log", "exp"):
                 if name not in ("sin", "cos", "tan"):
-                    raise Unread("an inverse function of this name is not read", at)
+                    raise Unread("the inverse of this function is not supported", at)
                 name, power = f"a{name}", None
         if name == "atan" and self._is("2", kind="number") and self._is("(", 1):
             self._i, name = self._i + 1, "atan2"
@@ -167,7 +167,7 @@ class OperatorCursor(QuotientCursor):
             base = self._inner(self._script(), at)
             return Div(self._function(name, token), Call("log", (base,)))
         if self._is("_") and name in ("min", "max"):
-            raise Unread(f"an index of {name} is not read", self._take().at)
+            raise Unread(f"an index of {name} is not supported", self._take().at)
         if self._is("(") or self._is("["):
             arguments = self._arguments()
         elif self._is("{", kind="open") or self._peek() is None:
@@ -187,7 +187,7 @@ class OperatorCursor(QuotientCursor):
         if name in ("min", "max") and len(arguments) == 1 and power is None:
             return Call(OPTIMA[name], (arguments[0],))
         if len(arguments) != wanted:
-            raise Unread(f"{name} of {len(arguments)} things is not read", token.at)
+            raise Unread(f"{name} with {len(arguments)} arguments is not supported", token.at)
         found = Call(name, tuple(arguments))
         return found if power is None else Pow(found, power)
 
@@ -212,21 +212,21 @@ class OperatorCursor(QuotientCursor):
                 self._script()
                 return Call("skew", (arguments[0],))
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
-            raise Unread("letters in square brackets, which may be one name, are not read", at)
+            raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
         if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
-            raise Unread("a bracket with a comma, which may be one of fields, is not read", at)
+            raise Unread("a bracket with a comma is not supported, as it could be a Lie bracket", at)
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
             if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
-                raise Unread("what something is taken at, in brackets behind it, is not read", at)
+                raise Unread("arguments in brackets after this expression are not supported", at)
         if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
             return Call("value", (listed, *self._arguments()))
         if len(arguments) > 1:
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
-            raise Unread("an empty bracket", at)
+            raise Unread("the brackets are empty", at)
         return arguments[0]
 
     def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
@@ -257,7 +257,7 @@ class OperatorCursor(QuotientCursor):
 
     def _environment(self, token: Token) -> Node:
         if token.text not in MATRICES and not token.text.endswith("cases"):
-            raise Unread(f"the environment {printable(token.text)} is not read here", token.at)
+            raise Unread(f"the environment {printable(token.text)} is not supported here", token.at)
         if token.text == "array" and self._is("{", kind="open"):
             self._group()
         option = self._peek(1)
@@ -298,7 +298,7 @@ class OperatorCursor(QuotientCursor):
         if isinstance(base, Call) and base.function == "raised" and all(map(self._place, places)):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if words_inside in words.AT_A_TIME or self._place(inside) is not None or self._is_taken(inside):
-            raise Unread("a power between a letter and what it is taken at is not read", self._found[begin].at)
+            raise Unread("a power between a function and its argument, as in x^2(t), is not supported", self._found[begin].at)
         self._i = begin
         return base
 
@@ -319,7 +319,7 @@ class OperatorCursor(QuotientCursor):
         if value is None and (constant(base) is not None or base == Sym("pi")):
             return Call("power", (base, exponent))
         if base == Sym("e") and len(script) == 1 and script[0].text in "ijklmn":
-            raise Unread("a power of e may be one of a number, or an exponential", at)
+            raise Unread("this could be a power of a variable e or an exponential; write \\exp for the exponential", at)
         if isinstance(base, Sym) and base.name == "e" and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))
         if value is None:  # a power, or an index above
@@ -328,23 +328,23 @@ class OperatorCursor(QuotientCursor):
                 raise Unread("an exponent of several letters is not read", at)
             return Call("raised", (base, exponent))
         if value == 0:
-            raise Unread("a power of zero may be an index", at)
+            raise Unread("an exponent of zero could be an index", at)
         if base == Num(Fraction(10)):  # an order of magnitude
             return Pow(base, exponent) if abs(value) <= MAX_EXPONENT else Call("power", (base, exponent))
         if abs(value) > MAX_EXPONENT:
-            raise Unread(f"an exponent beyond {MAX_EXPONENT} is not read", at)
+            raise Unread(f"an exponent above {MAX_EXPONENT} is not supported", at)
         return Pow(base, exponent)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
         if product == "cross" and left == Sym("I_vector"):
-            raise Unread("a product of a vector and what is none", sign.at)  # inertia, or the identity
+            raise Unread("a product of vectors needs a vector on both sides", sign.at)  # inertia, or the identity
         right = [self._signed_factor()]
         while not self._is_vector(right[-1]):
             token = self._peek()
             if token is None or not self._begins_factor(token):
                 if product == "cross":
-                    raise Unread("a product of a vector and what is none", sign.at)
+                    raise Unread("a product of vectors needs a vector on both sides", sign.at)
                 return product_of([left, *right])
             right.append(self._factor())
         return Call(product, (left, product_of(right)))

@@ -74,7 +74,7 @@ class LetterCursor(Cursor):
         if sign.text not in ("delta", "Delta"):
             return False
         if token.kind == "letter" and self._is("(", 1):
-            raise Unread("a difference of values at a place, or a factor in front of a bracket", sign.at)
+            raise Unread("this delta could be a difference or a factor in front of a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"
@@ -106,7 +106,7 @@ class LetterCursor(Cursor):
                     continue
                 index = cleaned(self._said(script))
                 if not index:
-                    raise Unread("this index is not read", at)
+                    raise Unread("this index is not supported", at)
                 foot = ",".join(filter(None, [letter.foot, _in_tex(script)]))
                 letter = replace(letter, index="_".join(filter(None, [letter.index, index])), foot=foot)
             elif self._is("'"):
@@ -234,10 +234,10 @@ class LetterCursor(Cursor):
         name = letter.name
         if letter.base == "pi" and letter == Letter("pi"):
             if self._is("(") and self._is_place_next():
-                raise Unread("pi may be a function here, or a number", at)
+                raise Unread("pi could be a function or a number here", at)
             return Sym("pi")
         if not is_name(name):
-            raise Unread("this letter is not read", at)
+            raise Unread("this letter is not supported", at)
         places = self._taken_at(letter)
         self._reading.letters.setdefault(name, letter)
         return Call("value", (Sym(name), *places)) if places else Sym(name)
@@ -255,7 +255,7 @@ class LetterCursor(Cursor):
         end = self._bracket_end()
         inside = list(self._found[begin + 1 : end])
         if not inside:
-            raise Unread("an empty bracket", self._found[begin].at)
+            raise Unread("the brackets are empty", self._found[begin].at)
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
         timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
         if timed or words in (".", "cdot"):
@@ -298,7 +298,7 @@ class LetterCursor(Cursor):
             next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
             a_place = barred or turned or taken or order or transposed or next_state or shifted or step or divided
             if a_place or letter.style == "cal":
-                raise Unread("what it is taken at is not read", self._found[begin].at)
+                raise Unread("the argument in brackets after this letter is not supported", self._found[begin].at)
             self._i = begin
             return ()
         said = words if len(bare) < len(letters) or fixed else ",".join(at.name for at in bare)
@@ -340,7 +340,7 @@ class LetterCursor(Cursor):
         letters = [t.text for t in part if t.kind == "letter" or t.text in GREEK]
         simple = all(t.kind in ("letter", "number") or t.text in GREEK or t.text in "+-_" for t in part)
         if letter.base in "fF" and letters:
-            raise Unread("what it is taken at is not read", part[0].at)
+            raise Unread("the argument in brackets after this letter is not supported", part[0].at)
         return simple and "t" in letters and any(t.text in "+-" for t in part)
 
     def _is_taken(self, part: Sequence[Token]) -> bool:

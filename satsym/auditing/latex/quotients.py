@@ -54,7 +54,7 @@ class QuotientCursor(LetterCursor):
         if self._is("(") and self._is_place_next():
             at = self._found[self._i].at
             if not (self._is("t", 1, "letter") and self._is(")", 2)):
-                raise Unread("what it is taken at is not read", at)
+                raise Unread("the argument in brackets after this letter is not supported", at)
             self._i += 3
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
@@ -86,7 +86,7 @@ class QuotientCursor(LetterCursor):
         """The differential of the letter that is next."""
         letter = self._letter()
         if letter is None:
-            raise Unread("a differential is not read", at)
+            raise Unread("a differential is not supported", at)
         self._reading.differential = at
         return Call("differential", (self._symbol(letter, at),))
 
@@ -124,7 +124,7 @@ class QuotientCursor(LetterCursor):
         at = self._found[min(self._i, len(self._found) - 1)].at
         found = self._product()
         if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1:
-            raise Unread("what is differentiated is not clear without brackets", at)
+            raise Unread("without brackets, it is not clear what is differentiated", at)
         return found
 
     def _along(self, what: Node) -> Node:
@@ -137,7 +137,7 @@ class QuotientCursor(LetterCursor):
     def _symbol_of(self, letter: Letter, part: Sequence[Token]) -> Node:
         self._reading.letters.setdefault(letter.name, letter)
         if not is_name(letter.name):
-            raise Unread("this letter is not read", part[0].at)
+            raise Unread("this letter is not supported", part[0].at)
         return Sym(letter.name)
 
     def _order(self, above: list[Token]) -> tuple[int, list[Token], bool] | None:
@@ -165,7 +165,9 @@ class QuotientCursor(LetterCursor):
             if inner._is("(") and inner._is("t", 1, "letter") and inner._is(")", 2):
                 inner._i += 3
             if inner._is("("):
-                raise Unread("a derivative by what is taken at a time is not read", below[inner._i].at)
+                raise Unread(
+                    "a derivative with respect to a value at a given time is not supported", below[inner._i].at
+                )
             if inner._is("^"):
                 inner._i += 1
                 script = inner._script()

@@ -36,7 +36,7 @@ class RefusalCursor(OperatorCursor):
         if (time and stem not in words.ANGLES) or (stem in FREQUENCIES and token.text in words.PLACES):
             return True
         if time or (len(stem) == 1) or (stem in GREEK and token.text in GREEK):
-            raise Unread("where what a function is taken of ends is not clear without brackets", token.at)
+            raise Unread("without brackets, it is not clear where the argument of the function ends", token.at)
         return False
 
     def _may_be_divided_by(self, token: Token, above: Sequence[Node], divisor: Node) -> bool:
@@ -52,13 +52,13 @@ class RefusalCursor(OperatorCursor):
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
             if said in words.UNITS and (plain or constant(last) is not None):
-                raise Unread("a unit is not read", token.at)
+                raise Unread("a unit in a formula is not supported", token.at)
             if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
-                raise Unread("words between formulas are not read", token.at)
+                raise Unread("words inside a formula are not supported", token.at)
         if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
             power = self._peek(2) if after is not None and after.text in "+-" else after
             if power is not None and power.kind == "number" and power.at <= token.at + 2:
-                raise Unread("a power of ten is not read so; write \\cdot 10^{...}", token.at)
+                raise Unread("this notation for a power of ten is not supported; write \\cdot 10^{...}", token.at)
         said = "".join(t.text for t in self._found[self._i : self._i + 4])
         if isinstance(last, Num) and last.value.denominator > 1 and said.startswith(("m/s", "km/s", "rad/", "kg/")):
             raise Unread("a unit that is not set upright, or letters", token.at)
@@ -68,14 +68,14 @@ class RefusalCursor(OperatorCursor):
         stem = last.base if isinstance(last, Pow) else last
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         if letter is not None and letter.base == "L" and letter.index in FIELDS:
-            raise Unread("a derivative along a field is not read", token.at)
+            raise Unread("a derivative along a vector field is not supported", token.at)
         applied = token.text in FIELDS and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
-            raise Unread("an operator in front of a function, or a product", token.at)
+            raise Unread("this could be an operator that is applied to a function, or a product", token.at)
         if letter is not None and token.text in ("[", "{") and token.kind in ("sign", "macro"):
             alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
             if letter.style == "cal" or alone:
-                raise Unread("what something is taken of, in such brackets, is not read", token.at)
+                raise Unread("arguments in brackets of this kind are not supported", token.at)
 
     def _spells(self, word: str) -> bool:
         """Whether letters side by side, the first of which was taken, are a word; then it is taken."""
@@ -95,7 +95,7 @@ class RefusalCursor(OperatorCursor):
                 after = self._peek()
                 if alone and word in FUNCTIONS and after is not None and (after.text == "(" or after.text in GREEK):
                     return self._function(FUNCTIONS[word], replace(token, kind="macro", text=word))
-                raise Unread(f"{word} without a backslash; write \\{word}, or put spaces between letters", token.at)
+                raise Unread(f"{word} has no backslash; write \\{word}, or put spaces between the letters", token.at)
         return None
 
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
@@ -103,9 +103,9 @@ class RefusalCursor(OperatorCursor):
         if len(above) < 2 or above[1].text in ("^", "_"):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
-            raise Unread("a derivative of this kind is not read", at)
+            raise Unread("this kind of derivative is not supported", at)
         if above[0].text == "d" and (above[1].kind == "letter" or above[1].text in GREEK):
-            raise Unread("a differential is not read", above[0].at)
+            raise Unread("a differential is not supported", above[0].at)
 
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
         """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
@@ -115,8 +115,8 @@ class RefusalCursor(OperatorCursor):
         space = 1 if macro.startswith(("text", "mbox")) else 2  # elsewhere a space has to be set: "\\ "
         parted = any(b > a + space for a, b in pairwise(places)) and word.isalpha()
         if word.lower() in words.SAID or parted:
-            raise Unread("words between formulas are not read", at)
+            raise Unread("words inside a formula are not supported", at)
         if word == "d" and taken:
-            raise Unread("a differential is not read", at)
+            raise Unread("a differential is not supported", at)
         if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
             raise Unread(f"the function {printable(word)} is not known", at)

@@ -88,7 +88,7 @@ def _refuse_arrow(line: Line) -> None:
         if sign == "unequal" and len(line.signs) > 1:
             raise Unread("an inequality in a chain of relations is not read", (after or before)[0].at)
         if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
-            raise Unread("an arrow between more than two things is not read", (after or before)[0].at)
+            raise Unread("an arrow between more than two expressions is not supported", (after or before)[0].at)
 
 
 def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
@@ -126,14 +126,14 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 i += 1
         elif token.kind == "sign" and token.text == "&" and not inside:
             if not systems:
-                raise Unread('a "&" outside of lines that are aligned', token.at)
+                raise Unread('an "&" stands outside aligned lines', token.at)
             if depth <= 0 and not _goes_on(rows[-1]) and not _asks(rows[-1]):
                 rows[-1].append(token)
         elif token.kind == "macro" and token.text == REMARK and not inside:
             if rows[-1] and depth == 0:
                 empty = all(t.text == "&" for t in rows[-1])
                 if not empty and (not _has_relation(rows[-1]) or _goes_on(rows[-1])):
-                    raise Unread("words between formulas are not read", token.at)
+                    raise Unread("words inside a formula are not supported", token.at)
                 rows.append([])
         elif token.kind == "macro" and token.text in ("quad", "qquad", " "):
             if not inside and bracket:
@@ -163,7 +163,7 @@ def _refuse_gap(row: Sequence[Token], gap: int) -> None:
         if behind[0].text == "d":  # of an integral
             return
         if not any(_sign(token) or token.text in TIMES | {"+", "-", ",", ";", "&", "/", ":"} for token in ends):
-            raise Unread("a space between equations, or between factors", behind[0].at)
+            raise Unread("this space could separate two equations or two factors", behind[0].at)
 
 
 def _is_brace(row: Sequence[Token]) -> bool:
@@ -212,7 +212,7 @@ def _equations(row: Sequence[Token]) -> list[list[Token]]:
             pieces[-1] += cell
         else:
             assert first is not None
-            raise Unread("what stands in this column is no part of an equation", first.at)
+            raise Unread("the entry in this column is not part of an equation", first.at)
     return pieces
 
 
@@ -243,7 +243,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     for before, after in pairwise(part for part in parts if part and not listed):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
-            raise Unread("a comma in a number may part thousands or decimals", after[0].at - 1)
+            raise Unread("a comma in a number could separate thousands or decimals", after[0].at - 1)
     kept = [part for part in (_without_stop(part) for part in parts) if part]
     if not any(_has_relation(part) for part in kept):
         return kept

@@ -93,19 +93,19 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
         If it is too long, or macros make it so, or a character is none.
     """
     if len(text) > MAX_LENGTH:
-        raise Unread(f"longer than {MAX_LENGTH} characters; split it", start)
+        raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", start)
     if broken := _BROKEN.search(text):
-        raise Unread("a character that is none; save the file as UTF-8", start + broken.start())
+        raise Unread("a character is invalid; save the file as UTF-8", start + broken.start())
     found = expanded(_pieces(text, start), macros or {})
     depth = 0
     for token in found:
         depth += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
         if depth > MAX_DEPTH or depth < 0:
-            why = f"groups are nested more than {MAX_DEPTH} deep" if depth > 0 else "this closes nothing"
+            why = f"braces are nested more than {MAX_DEPTH} levels deep" if depth > 0 else "this brace closes nothing"
             raise Unread(why, token.at)
         _refuse_long(token)
     if depth:
-        raise Unread("a group is not closed", start + len(text.rstrip()))
+        raise Unread("a brace is not closed", start + len(text.rstrip()))
     return found
 
 
@@ -132,14 +132,16 @@ def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Tok
             done.append(token)
         else:
             if depth >= _MAX_NESTING:
-                raise Unread(f"the macro \\{printable(token.text)} has no end", token.at)
+                raise Unread(f"macros are nested too deeply in \\{printable(token.text)}", token.at)
             arguments = []
             for _ in range(macro.arguments):
                 argument, i = _argument(rest, i, token)
                 arguments.append(argument)
             done += expanded(_filled(macro, arguments, token.at), macros, depth + 1)
         if len(done) > MAX_TOKENS:
-            raise Unread(f"more than {MAX_TOKENS} symbols, macros included; split it", token.at)
+            raise Unread(
+                f"the formula has more than {MAX_TOKENS} symbols, with its macros expanded; split it", token.at
+            )
     return done
 
 
@@ -155,7 +157,7 @@ def group_end(found: Sequence[Token], i: int) -> int:
 
 def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token], int]:
     if i >= len(found):
-        raise Unread(f"\\{printable(macro.text)} lacks an argument", macro.at)
+        raise Unread(f"\\{printable(macro.text)} has too few arguments", macro.at)
     if found[i].kind != "open":
         return [found[i]], i + 1
     end = group_end(found, i)
@@ -194,7 +196,7 @@ def _pieces(text: str, start: int) -> list[Token]:
                 digits = _NUMBER.match(text, comma.end())
                 assert digits is not None
                 if len(digits[0]) == 3 and value != "0" and not _POWER_OF_TEN.match(text, digits.end()):
-                    raise Unread("a comma in a number may part thousands or decimals", start + position)
+                    raise Unread("a comma in a number could separate thousands or decimals", start + position)
                 value, position = f"{value}.{digits[0]}", digits.end()
             found.append(Token("number", value, start + number.start()))
             continue
@@ -203,7 +205,7 @@ def _pieces(text: str, start: int) -> list[Token]:
         except LatexWalkerEndOfStream:
             break
         except (LatexWalkerParseError, RecursionError, IndexError):
-            raise Unread("a backslash, a brace or an environment is broken off here", start + position) from None
+            raise Unread("a command, a group or an environment is incomplete here", start + position) from None
         if token.pos > position and _NUMBER.match(text, token.pos):
             position = token.pos
             continue
@@ -265,9 +267,9 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
         As of :func:`tokens`.
     """
     if len(text) > MAX_LENGTH:
-        raise Unread(f"longer than {MAX_LENGTH} characters; split it", 0)
+        raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", 0)
     if broken := _BROKEN.search(text):
-        raise Unread("a character that is none; save the text as UTF-8", broken.start())
+        raise Unread("a character is invalid; save the text as UTF-8", broken.start())
     found: list[Token] = []
     for match in _PLAIN.finditer(text.rstrip()):
         kind = next(name for name in ("number", "above", "word", "power", "sign") if match[name] is not None)
@@ -286,7 +288,7 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
             found.append(Token("number", value, at))
             _refuse_long(found[-1])
     if len(found) > MAX_TOKENS:
-        raise Unread(f"more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
+        raise Unread(f"the formula has more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
     return _exponents_grouped(found)
 
 
@@ -317,7 +319,7 @@ def _word(word: str, primes: int, at: int, behind: str, is_known: Callable[[Lett
         return _placed(rf"\operatorname{{{word}}}", at) if word == "sqrt" else [Token("macro", word, at)]
     letter = of_word(word).dotted(primes)
     if letter is None:
-        raise Unread("too many primes", at)
+        raise Unread("there are too many primes here", at)
     singles = [Letter(one) for one in word]
     if not primes and word.isalpha() and not is_known(letter) and all(map(is_known, singles)):
         return [Token("letter", one, at + k) for k, one in enumerate(word)]

@@ -30,7 +30,7 @@ def quantity(text: str) -> Quantity:
 
 def constant(name: str) -> Quantity:
     """A published constant, such as ``mu_earth``."""
-    refuse_unknown("no published constant", name, PUBLISHED)
+    refuse_unknown("there is no published constant", name, PUBLISHED)
     return quantities.in_base_units(PUBLISHED[name])
 
 

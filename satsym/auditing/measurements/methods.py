@@ -170,7 +170,7 @@ def _error(lines: Sequence[str], along: Record, h: float) -> float:
             else:
                 world[name] = exact
     if not errors:
-        raise BadInput("no line of the method assigns a value at another node")
+        raise BadInput("no line of the method computes the value at the next node")
     with undecided_if_refused():
         values = run(program, world=world).values
     return float(max(np.abs(values[name] - exact).max() for name, exact in errors))

@@ -26,12 +26,16 @@ Examples:
 @command(epilog=EXAMPLES)
 @click.argument("ledgers", metavar="[LEDGER]...", nargs=-1, shell_complete=names.completed(names.documents))
 @json_option
-@place_option("--html", metavar="FILE", help="Write a report as a page of its own, too.")
-@place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
+@place_option("--html", metavar="FILE", help="Also write a report as an HTML page.")
+@place_option("--latex", metavar="FILE", help="Also write a report as a LaTeX document.")
 @click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
 @place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
-@place_option("--keep", metavar="FILE", help="With --text: write what was found there, to be kept with the ledger.")
+@place_option(
+    "--keep",
+    metavar="FILE",
+    help="With --text: write the numbers found in the text to this file, to be kept with the ledger.",
+)
 @click.option("--rows", is_flag=True, help="After the findings, print every row that is not fully confirmed.")
 @click.option("--code", is_flag=True, help="Also print, as code, what was tested and what was measured.")
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")

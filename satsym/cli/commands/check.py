@@ -30,11 +30,11 @@ In single quotes the shell leaves backslashes alone."""
     "model",
     metavar="NAME",
     required=True,
-    help="The model whose derivation it is checked against: a shipped one, or DIR/NAME.",
+    help="The model against whose derivation the formula is checked: a shipped one, or DIR/NAME.",
     shell_complete=names.completed(names.models),
 )
 @click.option("--let", metavar="LETTER=NAME", multiple=True, help="What a printed letter means; may be repeated.")
-@click.option("--free", is_flag=True, help="The uncontrolled motion is meant.")
+@click.option("--free", is_flag=True, help="The formula describes the uncontrolled motion.")
 @json_option
 def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
     """Say whether a printed formula is right, or what is wrong.

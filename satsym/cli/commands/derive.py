@@ -31,7 +31,7 @@ MAX_SECONDS = 900.0
 
 @command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
-@place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
+@place_option("--out", metavar="DIR", help="Write into this folder instead of generated/ in the checkout.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
 @click.option("--fresh", is_flag=True, help="Derive everything anew, even what has not changed.")
 @click.option(
@@ -40,16 +40,16 @@ MAX_SECONDS = 900.0
     metavar="S",
     default=MAX_SECONDS,
     show_default=True,
-    help="Time that deriving one problem may take.",
+    help="Longest time, in seconds, that deriving one problem may take.",
 )
 def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, max_seconds: float) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.
 
-    Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py, NAME.tex and
-    NAME.derivation.json for each problem; the last has every equation, and audits read it. Every step is checked by
-    machine, and so is every generated function, before anything is written. A file is derived again only if it, or the
-    code that derives, has changed; --check derives all of it. NAME.tex is English whatever --lang says; `satsym latex
-    NAME --lang id` writes the Indonesian one.
+    Writes NAME.py, NAME.tex and NAME.derivation.json for each problem in the FILEs or, without a FILE, for each
+    problem that comes with satsym. NAME.derivation.json lists every equation; audits read it. Every step is checked
+    by machine, and so is every generated function, before anything is written. A file is derived again only if the
+    file or the code that derives it has changed; with --check, everything is derived. NAME.tex is in English,
+    whatever --lang says; `satsym latex NAME --lang id` writes it in Indonesian.
     """
     from satsym import source_files
     from satsym.report import artefacts

@@ -33,7 +33,7 @@ def instances(name: str | None, keys: bool, schema: bool, whole: bool, as_json: 
     An instance is a problem with its numbers, ready to be solved. With X, print the file of that instance.
     """
     if sum((name is not None, keys, schema)) > 1:
-        raise click.UsageError("Give one of X, --keys, --schema.")
+        raise click.UsageError("Give only one of X, --keys and --schema.")
     if keys or schema:
         _said(schema or as_json)
     elif name is not None:

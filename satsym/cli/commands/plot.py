@@ -33,9 +33,9 @@ Examples:
     "--from",
     "source",
     metavar="DIR",
-    help="Folder of its result.json; by default the newest in results/X.",
+    help="Folder with the result; by default the newest one in results/X.",
 )
-@place_option("--out", metavar="DIR", help="Folder for the pictures; by default the same one.")
+@place_option("--out", metavar="DIR", help="Folder for the pictures; by default that of the result.")
 @look_options
 @json_option
 def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:

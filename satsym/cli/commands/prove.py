@@ -29,7 +29,7 @@ Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved her
     "--digits", type=click.IntRange(6, 60), default=20, metavar="N", help="Significant digits; 20 by default."
 )
 @place_option(
-    "--latex", "document", metavar="FILE", help="Also typeset it in this file, which is replaced if it exists."
+    "--latex", "document", metavar="FILE", help="Also typeset the proof in this file, which is replaced if it exists."
 )
 @set_option
 @json_option
@@ -39,9 +39,9 @@ def prove(
 ) -> ExitCode:
     """Prove that the answer is a strict local minimum.
 
-    X is a shipped instance or the path of a TOML file. It is solved; then ball arithmetic, whose every number carries a
-    bound of its error, proves that an extremal exists, that there is no other one nearby, and that no nearby motion
-    costs less.
+    X is a shipped instance or the path of a TOML file. The instance is solved first. Then ball arithmetic, in which
+    every number carries a bound on its error, proves that an extremal exists, that there is no other one nearby, and
+    that no nearby motion costs less.
     """
     from satsym import instance, solvers
     from satsym.instance.numbers import changed

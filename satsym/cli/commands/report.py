@@ -32,12 +32,14 @@ Examples:
 @command(epilog=EXAMPLES)
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="Write the page to this file, which is replaced if it exists.")
-@place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
+@place_option(
+    "--derivation", "stated", metavar="FILE.py", help="Derivation file of the model of X, if the model is your own."
+)
 @click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
 @place_option(
-    "--study", "study", metavar="DIR", help="With --interactive: a study of X, whose answers a slider chooses."
+    "--study", "study", metavar="DIR", help="With --interactive: a study of X; a slider chooses among its answers."
 )
-@click.option("--prove", "proving", is_flag=True, help="Add the proof that `satsym prove` gives of the answer.")
+@click.option("--prove", "proving", is_flag=True, help="Add the proof of the answer, as by `satsym prove`.")
 @set_option
 def report(
     subject: str,
@@ -48,12 +50,12 @@ def report(
     proving: bool,
     values: tuple[str, ...],
 ) -> ExitCode:
-    """Solve an instance, and show all of it on one page.
+    """Solve an instance, and show everything on one page.
 
     X is an instance as for `satsym solve`. The page holds the problem, the answer, its certificate, the motion,
-    pictures and the derivation, and needs nothing but itself. FILE.py is Python and is executed. With --interactive
-    scripts are inside the page, too, and without them it shows the same as otherwise. A study has answers to choose
-    from if it was made with --trajectories.
+    pictures and the derivation, and loads nothing from elsewhere. FILE.py is Python and is executed. With
+    --interactive, the page also contains scripts; a browser without scripts still shows everything else. The study in
+    DIR must have been made with --trajectories.
     """
     from satsym import instance, solvers
     from satsym.instance.numbers import changed

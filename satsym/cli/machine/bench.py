@@ -40,9 +40,9 @@ Exit codes: 0 measured, 4 measured, but the instance has no solution."""
 def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
     """Measure how fast a model runs on this machine.
 
-    X is an instance or a model, shipped or the path of one. Many motions at once are integrated by the classical
-    Runge-Kutta method, with NumPy, and with numba (extra fast) on one core and on all. An instance with a cost is
-    also solved and certified.
+    X is an instance or a model, shipped or the path of one. Many motions are integrated at once by the classical
+    Runge-Kutta method: with NumPy, and with numba (extra fast) on one core and on all cores. An instance with a cost
+    is also solved and certified.
     """
     from satsym.analysis.speed import solved, speeds
     from satsym.analysis.subject import find

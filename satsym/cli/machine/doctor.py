@@ -33,7 +33,7 @@ EXTRAS = {
 }
 
 PROGRAMS = (
-    ("pdflatex", ("pdflatex",), "optional; turns what `satsym latex` writes into PDF"),
+    ("pdflatex", ("pdflatex",), "optional; makes PDFs of the documents that `satsym latex` writes"),
     ("C compiler", ("cc", "gcc", "clang", "cl"), "optional"),
 )
 
@@ -172,7 +172,7 @@ def _shipped() -> Iterator[Finding]:
 
         derivations, models, names = loader.shipped(), kernels.shipped(), instance.shipped()
         folder = derivations[0].parent if derivations else None
-        note = f"in {folder}; `satsym derive --check` compares them with the models"
+        note = f"in {folder}; `satsym derive --check` compares these files with the models"
         yield Finding("derivations", str(len(derivations)), bool(derivations), True, note)
         for name in models:
             kernels.load(name)

@@ -238,7 +238,7 @@ def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
     axes.plot([0.0], [0.0], **ONE)
     axes.locator_params(axis="x", nbins=2)  # each tick carries its power of ten
     furthest, likely = (decimal(figure(value, 2)) for value in (float(np.abs(away).max()), expected))
-    axes.set_title(say("near 1: up to <furthest> away, <likely> expected", furthest=furthest, likely=likely))
+    axes.set_title(say("near 1: at most <furthest> from 1 (<likely> expected)", furthest=furthest, likely=likely))
     axes.set_xlabel(r"$\mathrm{Re}\,\mu - 1$")
     axes.set_ylabel(r"$\mathrm{Im}\,\mu$")
 

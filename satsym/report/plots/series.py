@@ -178,7 +178,7 @@ def constraints(scene: Scene) -> list[Series]:
             rf"\mathrm{{{name.replace('_', ' ')}}}",
             name,
             "1",
-            say("path constraint <name>, never positive", name=name.replace("_", " ")),
+            say("path constraint <name>, which must not be positive", name=name.replace("_", " ")),
             rows[k],
             upper=0.0,
             active=rows[k] >= -ON_BOUND * _largest(rows[k]),

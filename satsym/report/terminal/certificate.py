@@ -54,7 +54,7 @@ _HOLDS = {
     "distance from the boundary on a boundary arc": "boundary arcs lie on the boundary",
     "off the boundary on its arcs": "boundary arcs lie on the boundary",
     "path constraint violated": "path constraints satisfied",
-    "distance from the points on the way": "points on the way passed",
+    "distance of the motion from the points that it must pass": "points on the way passed",
     "derivative of the cost with respect to the times of the points on the way": (
         "cost stationary with respect to the times of the points on the way"
     ),

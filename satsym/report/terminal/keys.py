@@ -14,11 +14,11 @@ HEAD = """# Instance files
 
 <!-- Written by `make derive` from satsym/instance/schema.py: do not edit. -->
 
-One case of a model, in TOML. `satsym instances` lists those that come with satsym, `satsym instances soft-return`
-shows one, `satsym new my_case --instance soft-return` copies one to start from. `satsym instances --keys` prints what
-stands here, `satsym instances --schema` the same as JSON Schema for editors: with
-`satsym instances --schema > instance.schema.json` and `#:schema instance.schema.json` in the first line of a file,
-those that know TOML complete and check it.
+An instance is one case of a model, in TOML. `satsym instances` lists those that come with satsym,
+`satsym instances soft-return` shows one, `satsym new my_case --instance soft-return` copies one to start from.
+`satsym instances --keys` prints this page. Editors that support TOML can complete and check an instance file:
+write the keys as JSON Schema, `satsym instances --schema > instance.schema.json`, and begin the file with the line
+`#:schema instance.schema.json`.
 
 `model`, `[initial]` and `[time] tf` are all that solving needs. Names in capitals stand for those of the model, which
 `satsym models MODEL` lists with their units and defaults. A number is in the unit that is listed; a text may carry its

@@ -160,9 +160,9 @@ def _reach(texts: tuple[str, str], found: Reach | None, n: int) -> list[str]:
     if found is None:
         return wrapped(say(texts[0]))
     alone = [
-        say("<name> alone <rank> (without the mode s = <mode>)", name=name, rank=one.rank, mode=_modes(one))
+        say("<name> alone: <rank> (without the mode s = <mode>)", name=name, rank=one.rank, mode=_modes(one))
         if one.lost
-        else say("<name> alone <rank>", name=name, rank=one.rank)
+        else say("<name> alone: <rank>", name=name, rank=one.rank)
         for name, one in found.alone.items()
     ]
     return wrapped(say(texts[1], rank=found.rank, n=n, alone=", ".join(alone)))
@@ -186,7 +186,7 @@ def attitudes_text(found: Attitudes) -> str:
     """Summary of the equilibria."""
     kinds = Counter(one.kind.value for one in found.equilibria)
     listed = ", ".join(f"{count} {message(kind)}" for kind, count in sorted(kinds.items()))
-    header = (*each("nadir in the body", "normal of the orbit, reversed"), "")
+    header = (*each("nadir in body axes", "normal of the orbit, reversed"), "")
     attitudes = [
         (_vector(one.cosines[2]), _vector(one.cosines[1]), message(one.kind.value)) for one in found.equilibria
     ]
@@ -215,9 +215,12 @@ def _number(found: Attitudes) -> str:
     if whole is None:
         return say("<count> attitudes (<number> with complex ones)", count=found.count, number=found.complex)
     if whole.circles is None:
-        text = "a continuum of dimension <n> (counting complex ones), which is not resolved"
+        text = "infinitely many: a set of dimension <n> (complex attitudes included), which is not resolved"
         return say(text, n=whole.dimension)
-    text = "a continuum: <n> circles of rotations about the body axis <axis>, with one attitude of each listed below"
+    text = (
+        "infinitely many, in <n> families: each attitude may be turned by any angle about the body axis <axis>, "
+        "and one of each family is listed below"
+    )
     return say(text, n=len(whole.circles), axis=axis(whole))
 
 

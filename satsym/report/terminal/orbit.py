@@ -137,11 +137,15 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         (
             "det M - 1",
             figure(matrix.determinant - 1.0, 2),
-            say("of the revolution from the start" if circle else "of the revolution from apoapsis"),
+            say("over one revolution from the start" if circle else "over one revolution from apoapsis"),
         ),
-        ("M'JM - J", figure(matrix.symplectic_defect, 2), say("relative: M is symplectic")),
-        (say("second singular value of M - I"), figure(matrix.second_singular, 2), say("relative: its rank is one")),
-        ("(M - I)^2", figure(matrix.square, 2), say("relative: it is nilpotent")),
+        ("M'JM - J", figure(matrix.symplectic_defect, 2), say("relative; 0 for a symplectic M")),
+        (
+            say("second singular value of M - I"),
+            figure(matrix.second_singular, 2),
+            say("relative; 0 for a matrix of rank one"),
+        ),
+        ("(M - I)^2", figure(matrix.square, 2), say("relative; 0 for a nilpotent M - I")),
         (
             say("lag per revolution"),
             figure(found.lag or 0.0) + unit,

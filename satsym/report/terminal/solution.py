@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 ROUNDING = 1e-10
 """Share of the largest value along the way at which nothing is shown."""
 
-_PARTLY = "final state free or partly so"
+_PARTLY = "final state wholly or partly free"
 _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final state on the reference", 5: _PARTLY}
 """By boundary type."""
 

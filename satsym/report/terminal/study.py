@@ -30,7 +30,7 @@ def study_text(found: Mapping[str, Any]) -> str:
     failed = found["rows"] - found["statuses"].get(Status.CONVERGED.value, 0)
     lines = [
         say(
-            "<name>, model <model>: <each> for <rows> of <varied>",
+            "<name>, model <model>: <each> for <rows>, varying <varied>",
             name=found["instance"],
             model=found["model"],
             each=found["each"],
@@ -68,8 +68,8 @@ def _verdict(counted_verdict: tuple[str, int]) -> tuple[str, str, str]:
 def _branches(found: Mapping[str, int]) -> str:
     """What comparing neighbouring rows came to."""
     return say(
-        "minima of <branches> (column branch) and of <pairs> of neighbouring rows were compared; <rows> "
-        "changed to a branch with a lower cost",
+        "<branches> of solutions (column branch) were found, and <pairs> of neighbouring rows were compared; "
+        "<rows> changed to a branch with a lower cost",
         branches=counted(found["count"], "branch", "branches"),
         pairs=counted(found["borders"], "pair"),
         rows=counted(found["changed"], "row"),

@@ -69,7 +69,7 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
             raise BadInput(
                 f"{instance.called}: {key}: path constraint {one.name} is reached with the rate of change "
                 f"{rate:.6g}, which no control can change instantly, so the constraint is violated just "
-                f"{when}; change the velocity there"
+                f"{when}; change the velocity at that point"
             )
 
 
@@ -86,6 +86,6 @@ def _refuse_values(
     for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
         if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
-                f"{instance.called}: {key}: path constraint {one.name} has the value {value:.6g} there, but "
-                "must not be positive; change that state, or the constraint's parameters"
+                f"{instance.called}: {key}: path constraint {one.name} has the value {value:.6g} at that "
+                "point, but must not be positive; change that state, or the constraint's parameters"
             )

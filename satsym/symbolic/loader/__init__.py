@@ -107,8 +107,8 @@ def load(path: Path) -> tuple[Problem | Model, ...]:
     names = [p.name for p in problems]
     if len(set(names)) < len(names):
         raise BadInput(
-            f"{path}: two entries of PROBLEMS have the same name; a name is also that of a generated file, so it "
-            "must be unique"
+            f"{path}: two entries of PROBLEMS have the same name; a generated file is named after each entry, "
+            "so the names must differ"
         )
     return problems
 

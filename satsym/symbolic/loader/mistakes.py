@@ -47,7 +47,7 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
         if (found := _TOO_MANY_ARGUMENTS.match(text)) and (known := _fields(found[1], names)):
             ordered = ", ".join(name for name, keyword in known.items() if not keyword)
             instead = f"its positional fields are {ordered}" if ordered else "name its fields, such as name=..."
-            return line, f"{found[1]} has fewer fields than the values it was given; {instead}"
+            return line, f"{found[1]} was given more values than it has fields; {instead}"
     if isinstance(error, SyntaxError):
         return line, f"{type(error).__name__}: {error.msg}"
     if isinstance(error, ModuleNotFoundError) and (error.name or "").startswith("satsym"):

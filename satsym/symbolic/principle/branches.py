@@ -220,7 +220,8 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
             raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
         if len(slopes) == 1:
             raise DerivationError(
-                f"{name}: the norm of {controls} alone is its magnitude; state a box, and |{controls}|"
+                f"{name}: the norm of the single control {controls} is its magnitude; state a Box, and write "
+                f"|{controls}|"
             )
         return Minimum(part, "throttled", tuple(slopes), weight=tidy(weight))
     try:

@@ -30,7 +30,7 @@ def passing(solution: Solution, again: Replay) -> list[Check]:
         return [Check("points on the way that are not passed", float(len(which) - len(found)), 0.0)]
     met = [_met(solution, again, k, own) for k, own in zip(found, which, strict=True)]
     return [
-        Check("distance from the points on the way", max(off for off, _ in met), MISSED),
+        Check("distance of the motion from the points that it must pass", max(off for off, _ in met), MISSED),
         Check(
             "derivative of the cost with respect to the times of the points on the way",
             max(slope for _, slope in met),
