@@ -30,7 +30,7 @@ def written(case: Any, folder: Path) -> dict[str, str]:
     found = sorted(folder.glob("*.svg"), key=lambda path: path.stem not in ("overview", "orbit", "responses"))
     texts = {path.stem: path.read_text("utf-8") for path in found}
     names = ["", *(f"-{name}" for name in list(texts)[1:])]
-    panels = {"orbit": _conic, "equilibria": _attitudes, "eigenvalues": _loops}
+    panels = {"orbit": _conic, "equilibria": _attitudes, "eigenvalues": _loops, "comparison": _compared}
     panel = next((panels[name] for name in panels if name in texts), None)
     card = _alone(panel, case) if panel else next(iter(texts.values()))
     return dict(zip(names, texts.values(), strict=True)) | {CARD: card}
@@ -76,6 +76,14 @@ def _loops(axes: Any, case: Any) -> None:
     plane.loops(axes, designed(case), with_notes=False)
     if axes.get_xscale() == "linear":
         axes.locator_params(nbins=5)
+
+
+def _compared(axes: Any, case: Any) -> None:
+    """The first quantity of all cases of a comparison."""
+    from satsym.analysis import comparison
+    from satsym.report.plots import comparison as plots
+
+    plots.first_panel(axes, [one for one in comparison.compare([case]) if one.answered])
 
 
 def _empty() -> Any:

@@ -41,15 +41,18 @@ LONGEST = (
     "goddard shuttle"
 ).split()
 """Begun first, so that no processor waits for another in the end."""
-WHOLE = 110
-"""Characters of LaTeX beyond which an equation is left to the derivation."""
+WHOLE = 104
+"""Signs beyond which an equation is left to the derivation, a macro counting as one; a page has room for these."""
 EQUATIONS = 12
+"""Equations beyond which all are left to the derivation."""
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
 OWN = hashlib.blake2b(b"".join(Path(one).read_bytes() for one in (__file__, cards.__file__))).hexdigest()
 """Digest of what writes the pages."""
 DRAWN = "--format svg --size page --no-title".split()
 KEPT = "SATSYM_DOCS_KEPT"
 """Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
+SIGNS = re.compile(r"\\(?:[a-zA-Z]+|.)|[{}^_\s]+")
+"""Macros, and what LaTeX needs besides the signs of a formula."""
 TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
 """How long solving took, which is another time each time."""
 
@@ -125,7 +128,7 @@ def themed(svg: str) -> str:
 
 
 def equations(model: str, generated: Path) -> list[str]:
-    """Motion, cost and constraints of a model, from its typeset derivation; empty if they are long."""
+    """Motion, cost and constraints of a model, from its typeset derivation; empty if they are long or many."""
     path = generated / f"{model}.tex"
     if not path.is_file():
         return []
@@ -136,7 +139,7 @@ def equations(model: str, generated: Path) -> list[str]:
         for tex, step, name in found
         if step == "first_order" or not re.match(r"directions|position|forces|reference|outputs|bodies|frames", name)
     ]
-    short = [tex for tex in kept if len(tex) <= WHOLE]
+    short = [tex for tex in kept if len(SIGNS.sub(".", tex)) <= WHOLE]
     return short if len(short) == len(kept) <= EQUATIONS else []
 
 
@@ -144,7 +147,7 @@ def page(known: dict[str, Any], root: Path) -> str:
     """The page of one instance."""
     name, model = known["name"], known["model"]
     motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
-    motion = f"{motion}\n\n" if motion else "The equations are long and are therefore shown in the derivation only.\n\n"
+    motion = f"{motion}\n\n" if motion else "The equations are long; the derivation below has them.\n\n"
     alone = "--lang id" if known["command"] in ("lqr", "analyse", "compare") else "--json"
     python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
     call = python.get(known["command"], "found = satsym.analyse")
@@ -184,10 +187,7 @@ def picture(known: dict[str, Any], part: str) -> str:
 def card(known: dict[str, Any]) -> str:
     """An example in the overview."""
     name, title = known["name"], escape(raised(known["title"]))
-    shape = " class='tall'" if known["command"] == "compare" else ""
-    image = (
-        f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'{shape}>" if known["pictures"] else ""
-    )
+    image = f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'>" if known["pictures"] else ""
     return (
         f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"
         f"<p><code>{name}</code> {escape(known['verdict'])}</p></figure>"

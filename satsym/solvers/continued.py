@@ -72,14 +72,14 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
     began = time.perf_counter()
     first = certified(at(instance, 0.0), progress)
     if not first.status.answered:
-        reason = f"the beginning of the way, {_values(instance, 0.0)}, has no answer: {first.message}"
+        reason = f"the first problem of the continuation, {_values(instance, 0.0)}, has no answer: {first.message}"
         return _told(instance, first, reason, (), began)
     reached = _stepped(instance, _Reached(0.0, (first,)), progress, quick)
     if reached.share < 1.0:
         reached = _past_folds(instance, reached, progress, quick)
     count = len(reached.answers)
     if reached.share < 1.0:
-        where = f"continuation stops at {_values(instance, reached.share)} after {counted(count, 'answer')}"
+        where = f"continuation stops at {_values(instance, reached.share)} after {counted(count, 'solution')}"
         failed = reached.failed
         lost = replace(reached.last, status=Status.NOT_CONVERGED, objective=float("nan"), certificate=None)
         if failed is not None and not failed.status.answered:
@@ -88,7 +88,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
     final = certified(_guessed(instance, 1.0, reached.last), progress)
     folded = f", past {counted(reached.folds, 'fold')}" if reached.folds else ""
     begin, end = (_values(instance, share) for share in (0.0, 1.0))
-    how = f"continued from {begin} to {end} by {counted(count, 'answer')}{folded}"
+    how = f"continued from {begin} to {end} through {counted(count, 'solution')}{folded}"
     return _told(instance, final, f"{final.message}; {how}", reached.answers, began)
 
 

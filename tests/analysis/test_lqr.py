@@ -529,5 +529,5 @@ def test_instances_without_a_table_and_models_without_controls_are_refused(tmp_p
 
 
 def test_a_feedback_that_does_not_exist_is_refused(tmp_path: Path):
-    with pytest.raises(BadInput, match="this model has none, lqr"):
+    with pytest.raises(BadInput, match="the control laws of this model are none, lqr"):
         simulate(case(tmp_path), "telepathy")

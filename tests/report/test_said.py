@@ -127,7 +127,7 @@ COMPOSED = (
     *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
     "estimated error <error> on <n> intervals, found by the direct search",
     *("<name> ends at its lower limit", "<name> ends at its upper limit"),
-    *("continued from <begin> to <end> by <n> answers", "continued from <begin> to <end> by <n> answer"),
+    *("continued from <begin> to <end> through <n> solutions", "continued from <begin> to <end> through <n> solution"),
     "<name>: there are no results in <folder>; write them with `satsym <command> <again> --plot`, or give "
     "their folder with --from",
     "[control] <key>: the model bounds its controls one by one; write <name> = [lower, upper], and so on",

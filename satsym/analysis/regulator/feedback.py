@@ -98,7 +98,7 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
     if feedback is None:
         feedback = "classical" if instance.classical else "none"
     if feedback not in FEEDBACKS:
-        raise BadInput(f"--feedback {feedback}: unknown; this model has {', '.join(FEEDBACKS)}")
+        raise BadInput(f"--feedback {feedback}: unknown; the control laws of this model are {', '.join(FEEDBACKS)}")
     if feedback == "none":
         return simulated(instance)
     if feedback == "classical":

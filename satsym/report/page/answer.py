@@ -10,6 +10,7 @@ from satsym.report.display import capitalised, number, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
+from satsym.report.shown import spec_of
 from satsym.report.terminal.arcs import in_words, rows_of_arcs
 from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
 from satsym.report.terminal.solution import boundary, control_rows, state_rows
@@ -22,7 +23,7 @@ from satsym.status import Scope, Verdict
 
 def facts(solution: Solution, texts: Texts) -> Markup:
     """The cost, the final time, and how they were found."""
-    instance, spec = solution.instance, solution.instance.model.spec
+    instance, spec = solution.instance, spec_of(solution.instance)
     unit = unit_text(time_unit(spec) or "1")
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
     span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""

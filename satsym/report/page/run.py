@@ -28,6 +28,7 @@ from satsym.report.plots import style
 from satsym.report.plots.scene import Scene
 from satsym.report.results.objects import file_of, time_unit
 from satsym.report.said import decimal, message, say, spoken
+from satsym.report.shown import spec_of
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution
@@ -152,7 +153,8 @@ def _sections(
     explored: Sequence[Answer],
     proof: Proof | None,
 ) -> dict[str, Markup]:
-    spec, scene = solution.instance.model.spec, Scene.of(solution)
+    scene = Scene.of(solution)
+    spec = scene.spec
     parts = [answer.facts(solution, texts)]
     if scene.drawable:
         parts += [answer.states(solution, texts), answer.controls(solution, texts)]
@@ -282,7 +284,7 @@ def _conditions(instance: Instance, texts: Texts) -> list[tuple[str, ...]]:
         (say("state"), say("initial"), say("final"), say("unit"), texts.get("words", "meaning").lower())
     ]
     free = {unknown.name for unknown in instance.free}
-    for variable, initial in zip(instance.model.spec.states, instance.initial, strict=True):
+    for variable, initial in zip(spec_of(instance).states, instance.initial, strict=True):
         name = variable.symbol
         begin = say("free") if name in free else figure(initial, DIGITS)
         rows.append((name, begin, _final(instance, name), variable.unit, say(variable.meaning)))
@@ -302,20 +304,20 @@ def _final(instance: Instance, name: str) -> str:
 
 def _admissible(instance: Instance) -> list[tuple[str, ...]]:
     """Below a header, a row for each bound of controls and each path constraint."""
-    spec = instance.model.spec
+    spec = spec_of(instance)
     rows: list[tuple[str, ...]] = [(say("control"), say("lower bound"), say("upper bound"), say("unit"))]
     for variable, *bounds in zip(spec.controls, instance.lower, instance.upper, strict=True):
         if any(map(math.isfinite, bounds)):
             rows.append((variable.symbol, *(figure(b) if math.isfinite(b) else "" for b in bounds), variable.unit))
     for norm in instance.bounded_norms:
         lower = figure(norm.lower) if norm.lower else ""
-        rows.append((f"|{norm.name or 'u'}|", lower, figure(norm.upper), norm.unit))
+        rows.append((f"|{norm.name or 'u'}|", lower, figure(norm.upper), spec.controls[norm.places[0]].unit))
     rows += [(name.replace("_", " "), "", "0", "1") for name in stated_constraints(spec)]
     return rows
 
 
 def _times(instance: Instance, texts: Texts) -> str:
-    unit = unit_text(time_unit(instance.model.spec) or "1")
+    unit = unit_text(time_unit(spec_of(instance)) or "1")
 
     def said(time: float) -> str:
         return f"{decimal(figure(time, DIGITS))} {unit}".rstrip()

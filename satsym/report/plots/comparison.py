@@ -73,6 +73,12 @@ def page(cases: Sequence[Case]) -> Figure | None:
     return figure
 
 
+def first_panel(axes: Axes, cases: Sequence[Case]) -> None:
+    """Draw the first quantity that the cases share, over time; their colours are those of the page."""
+    panels = [(_shared(cases)[0], dict[int, Array]())]
+    _over_time(axes, cases, *panels[0], _measures(cases, panels)[0])
+
+
 def _shared(cases: Sequence[Case]) -> list[Variable]:
     """States, used controls and limited quantities of all cases; what follows a command or is limited comes first."""
     every = [

@@ -13,6 +13,7 @@ from satsym.report import display
 from satsym.report.plots import curves
 from satsym.report.results import restrictions
 from satsym.report.said import message, say
+from satsym.report.shown import spec_of
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
@@ -46,7 +47,7 @@ class Scene:
     def of(cls, result: Solution | Simulation) -> Scene:
         """Gather what the pictures of a result show."""
         instance, nodes = result.instance, np.asarray(result.times, dtype=float)
-        spec, p = instance.model.spec, instance.parameters
+        spec, p = spec_of(instance), instance.parameters
         variables = (*spec.states, *spec.controls, *spec.parameters)
         factor, unit = display.time_scale((v.unit for v in variables), float(np.ptp(nodes)) if len(nodes) else 0.0)
         x, reference = curves.states(instance.model, result.x), None
@@ -69,9 +70,9 @@ class Scene:
     def instance(self) -> Instance:
         return self.result.instance
 
-    @property
+    @cached_property
     def spec(self) -> ProblemSpec:
-        return self.instance.model.spec
+        return spec_of(self.instance)
 
     @property
     def title(self) -> str:

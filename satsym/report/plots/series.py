@@ -151,7 +151,7 @@ def controls(scene: Scene) -> list[Series]:
             Series(
                 r"\Vert " + (rf"\mathrm{{{bound.name}}}" if bound.name else "u") + r" \Vert",
                 f"|{bound.name or 'u'}|",
-                bound.unit,
+                spec.controls[bound.places[0]].unit,
                 say("norm of <name>", name=bound.name) if bound.name else say("norm of the control"),
                 norm,
                 lower=lower,

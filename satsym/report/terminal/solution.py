@@ -14,6 +14,7 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.report.results.objects import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
+from satsym.report.shown import spec_of
 from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
 from satsym.report.terminal.certificate import certificate_lines
 from satsym.report.terminal.table import WIDEST, figure, joined, room, table, wrapped
@@ -34,7 +35,7 @@ _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final st
 def solution_text(solution: Solution, colour: bool = False) -> str:
     """Summary of a solution."""
     instance = solution.instance
-    unit = time_unit(instance.model.spec)
+    unit = time_unit(spec_of(instance))
     facts = [
         _objective(instance, solution.objective),
         *_interval(solution),
@@ -54,7 +55,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         table(control_rows(instance, solution.times, solution.u), right=(1, 2, 4)),
         _switching(solution, unit),
         _events(solution, unit),
-        certificate_lines(solution.certificate, instance.model.spec) if solution.certificate else [],
+        certificate_lines(solution.certificate, spec_of(instance)) if solution.certificate else [],
     ]
     return joined(blocks)
 
@@ -62,7 +63,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
 def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     """Summary of a simulation; see :func:`solution_text`."""
     instance = simulation.instance
-    unit = time_unit(instance.model.spec)
+    unit = time_unit(spec_of(instance))
     facts = [(say("final time"), f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]
     kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in simulation.invariants.items()]
     metrics = [(name, figure(value, 10)) for name, value in _metrics(simulation).items()]
@@ -79,7 +80,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
 
 def _metrics(simulation: Simulation) -> dict[str, float]:
     """Metrics by name; one of a variable is zero where it is nothing beside the largest value of that variable."""
-    names = simulation.instance.model.spec.state_names
+    names = spec_of(simulation.instance).state_names
     sizes = {name: float(np.abs(row).max(initial=0.0)) for name, row in zip(names, simulation.x, strict=True)}
     found = {}
     for key, value in simulation.metrics.items():
@@ -121,7 +122,7 @@ def boundary(instance: Instance) -> str:
 
 def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     """The objective in its author's sense and unit; costates keep the sign of a cost, which is said."""
-    spec = instance.model.spec
+    spec = spec_of(instance)
     unit = "" if spec.objective_unit == "1" else spec.objective_unit
     text = f"{figure(spec.objective(cost), 10)} {unit}".rstrip()
     return (
@@ -135,7 +136,7 @@ def _interval(solution: Solution) -> list[tuple[str, str]]:
     """What the best objective lies between, where it takes infinitely many switches."""
     if solution.interval is None:
         return []
-    spec = solution.instance.model.spec
+    spec = spec_of(solution.instance)
     ends = sorted(spec.objective(end) for end in (solution.interval.lower, solution.interval.upper))
     name = say("maximum objective" if spec.maximise else "minimum cost")
     return [(name, say("from <low> to <high>", low=figure(ends[0], 12), high=figure(ends[1], 12)))]
@@ -143,7 +144,7 @@ def _interval(solution: Solution) -> list[tuple[str, str]]:
 
 def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
     """What was free at the start and among the parameters."""
-    spec = instance.model.spec
+    spec = spec_of(instance)
     groups = {Place.INITIAL: (say("initial"), spec.states), Place.PARAMETER: (say("parameter"), spec.parameters)}
     rows = []
     for one in instance.free:
@@ -157,7 +158,7 @@ def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
 
 def progress_line(iteration: Iteration, instance: Instance) -> str:
     """One iteration of a solver, for the live line."""
-    value = figure(instance.model.spec.objective(iteration.objective), 8)
+    value = figure(spec_of(instance).objective(iteration.objective), 8)
     residual = f"{iteration.residual:.1e}"
     return say(
         "iteration <number>   J <value>   residual <residual>", number=iteration.number, value=value, residual=residual
@@ -167,7 +168,7 @@ def progress_line(iteration: Iteration, instance: Instance) -> str:
 def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list[str]:
     word = message(status.value)
     word = f"\x1b[{32 if status.answered else 31}m{word}\x1b[0m" if colour else word
-    name = say("<name>, model <model>", name=instance.name, model=instance.model.spec.name)
+    name = say("<name>, model <model>", name=instance.name, model=spec_of(instance).name)
     return [*filter(None, [say(instance.title)]), f"{name}: {word} ({how})"]
 
 
@@ -187,7 +188,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
 
 def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[tuple[str, ...]]:
     """Below a header, a row for each state: where it starts and ends, where it was to end, and its costate."""
-    spec = instance.model.spec
+    spec = spec_of(instance)
     reference, worth = _reference(instance, times), [0.0] * len(x) if lam is None else _worth(x, lam)
     rows: list[tuple[str, ...]] = [
         each("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
@@ -230,7 +231,7 @@ def _given(instance: Instance, name: str) -> str:
 
 def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
     """The reference at the final time, where the model has one."""
-    if not instance.model.spec.has_reference or not len(times):
+    if not spec_of(instance).has_reference or not len(times):
         return None
     values: Sequence[float] = instance.model.reference(float(times[-1]), instance.parameters)
     return values
@@ -238,7 +239,7 @@ def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
 
 def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, ...]]:
     """Below a header, a row for each control, and one for their norm where it is bounded."""
-    spec = instance.model.spec
+    spec = spec_of(instance)
     rows: list[tuple[str, ...]] = [each("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
         limits = (instance.lower[i], instance.upper[i])
@@ -247,7 +248,8 @@ def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, 
     for bound in instance.bounded_norms:
         norm = np.sqrt((u[list(bound.places)] ** 2).sum(axis=0)) if u.size else u[0]
         named = say("norm of <name>", name=bound.name) if bound.name else say("norm")
-        unit = "" if bound.unit == "1" else bound.unit
+        unit = spec.controls[bound.places[0]].unit
+        unit = "" if unit == "1" else unit
         rows.append((named, *_range(times, norm, (bound.lower or -math.inf, bound.upper)), unit))
     return rows
 
@@ -276,7 +278,7 @@ def _events(solution: Solution, unit: str) -> list[str]:
     """Where path constraints are met and left, points on the way passed, and minimisers of H changed."""
     jumping = any(one.kind == "jump" for one in solution.events)
     head = say("minimiser of H") if jumping else say("path constraint")
-    head = say("point on the way") if solution.instance.model.spec.interior else head
+    head = say("point on the way") if spec_of(solution.instance).interior else head
     rows = [
         (message(one.kind), one.name, say("at <times>", times=f"{figure(one.t, 10)} {unit}".rstrip()))
         for one in solution.events

@@ -1,0 +1,42 @@
+"""The units that results are shown in: those of the model, or none where its numbers are those of no real orbit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from satsym.instance import Instance
+from satsym.spec import ProblemSpec, Variable
+
+ROUNDING = 1e-12
+"""Relative error of a gravitational parameter that is computed from other parameters."""
+
+
+def spec_of(instance: Instance) -> ProblemSpec:
+    """What the model of an instance states, without units where its gravitational parameter is 1.
+
+    No body attracts so weakly, in any unit of a model: the numbers of such an instance are multiples of those of a
+    circular orbit, and units would be misleading. Angles remain in radians. Files and JSON keep the units of the model.
+    """
+    model = instance.model
+    if "inertial_state" not in model.functions:
+        return model.spec
+    mu = float(model.inertial_state(instance.t0, instance.initial, instance.parameters)[6])
+    return _without_units(model.spec) if abs(mu - 1.0) <= ROUNDING else model.spec
+
+
+def _without_units(spec: ProblemSpec) -> ProblemSpec:
+    def plain(variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
+        return tuple(v if v.kind == "angle" else replace(v, unit="1") for v in variables)
+
+    return replace(
+        spec,
+        states=plain(spec.states),
+        controls=plain(spec.controls),
+        parameters=plain(spec.parameters),
+        invariants=plain(spec.invariants),
+        position=plain(spec.position),
+        multipliers=plain(spec.multipliers),
+        outputs=plain(spec.outputs),
+        quantities=plain(spec.quantities),
+        objective_unit="1" if spec.objective_unit else "",
+    )

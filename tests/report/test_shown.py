@@ -1,0 +1,52 @@
+"""Results are shown in the model's units, and without any where the numbers are those of no real orbit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from satsym import instance
+from satsym.report.plots.scene import Scene
+from satsym.report.results.objects import cost_per
+from satsym.report.results.objects import units as units_object
+from satsym.report.shown import spec_of
+from satsym.report.terminal.solution import solution_text
+from satsym.solvers import solve
+
+KILOMETRES = ("km", "km/s", "rad", "rad/s")
+
+
+def units(name: str, **changed: float) -> tuple[str, ...]:
+    case = instance.load(name)
+    values = dict(zip(case.model.spec.parameter_names, case.parameters, strict=True)) | changed
+    return tuple(v.unit for v in spec_of(replace(case, parameters=tuple(values.values()))).states)
+
+
+@pytest.mark.parametrize("name", ["return-to-orbit", "its-thesis", "return-to-orbit-ball", "ends-2-given-state"])
+def test_an_orbit_of_radius_one_about_a_centre_of_attraction_one_has_no_units_but_angles(name: str) -> None:
+    assert units(name) == ("1", "1", "rad", "1")
+    assert spec_of(instance.load(name)).objective_unit in ("1", "")
+
+
+@pytest.mark.parametrize("name", ["return-to-geo", "soft-return-geo", "return-to-geo-window"])
+def test_a_geostationary_orbit_is_in_kilometres_and_seconds(name: str) -> None:
+    assert units(name) == KILOMETRES
+
+
+def test_the_product_of_radius_and_rate_decides_and_not_one_of_them() -> None:
+    assert units("return-to-orbit", sigma=4.0, omega=0.125) == ("1", "1", "rad", "1")
+    assert units("return-to-orbit", sigma=2.0) == KILOMETRES
+
+
+@pytest.mark.parametrize("name", ["cart-pole", "lapan-minimum-time", "shuttle", "inspection"])
+def test_models_without_a_centre_of_attraction_keep_their_units(name: str) -> None:
+    case = instance.load(name)
+    assert spec_of(case) is case.model.spec
+
+
+def test_tables_and_pictures_leave_the_units_out_and_programs_read_them() -> None:
+    found = solve(instance.load("return-to-orbit"))
+    assert "km" not in solution_text(found)
+    assert cost_per("1", Scene.of(found).spec) == "1"
+    assert units_object(found.instance.model.spec)["r"] == "km"
