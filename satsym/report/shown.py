@@ -15,7 +15,7 @@ def spec_of(instance: Instance) -> ProblemSpec:
     """What the model of an instance states, without units where its gravitational parameter is 1.
 
     No body attracts so weakly, in any unit of a model: the numbers of such an instance are multiples of those of a
-    circular orbit, and units would be misleading. Angles remain in radians. Files and JSON keep the units of the model.
+    circular orbit, and units would be misleading. Files and JSON keep the units of the model.
     """
     model = instance.model
     if "inertial_state" not in model.functions:
@@ -26,7 +26,7 @@ def spec_of(instance: Instance) -> ProblemSpec:
 
 def _without_units(spec: ProblemSpec) -> ProblemSpec:
     def plain(variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
-        return tuple(v if v.kind == "angle" else replace(v, unit="1") for v in variables)
+        return tuple(replace(v, unit="1") for v in variables)
 
     return replace(
         spec,

@@ -24,8 +24,8 @@ def units(name: str, **changed: float) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("name", ["return-to-orbit", "its-thesis", "return-to-orbit-ball", "ends-2-given-state"])
-def test_an_orbit_of_radius_one_about_a_centre_of_attraction_one_has_no_units_but_angles(name: str) -> None:
-    assert units(name) == ("1", "1", "rad", "1")
+def test_an_orbit_of_radius_one_about_a_centre_of_attraction_one_has_no_units(name: str) -> None:
+    assert units(name) == ("1", "1", "1", "1")
     assert spec_of(instance.load(name)).objective_unit in ("1", "")
 
 
@@ -35,7 +35,7 @@ def test_a_geostationary_orbit_is_in_kilometres_and_seconds(name: str) -> None:
 
 
 def test_the_product_of_radius_and_rate_decides_and_not_one_of_them() -> None:
-    assert units("return-to-orbit", sigma=4.0, omega=0.125) == ("1", "1", "rad", "1")
+    assert units("return-to-orbit", sigma=4.0, omega=0.125) == ("1", "1", "1", "1")
     assert units("return-to-orbit", sigma=2.0) == KILOMETRES
 
 
