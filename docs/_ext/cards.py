@@ -83,7 +83,7 @@ def _compared(axes: Any, case: Any) -> None:
     from satsym.analysis import comparison
     from satsym.report.plots import comparison as plots
 
-    plots.first_panel(axes, [one for one in comparison.compare([case]) if one.answered])
+    plots.panel(axes, [one for one in comparison.compare([case]) if one.answered])
 
 
 def _empty() -> Any:

@@ -12,8 +12,10 @@ import re
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from html import escape
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import wrap
 from typing import Any
 
 import cards
@@ -51,6 +53,8 @@ OWN = hashlib.blake2b(b"".join(Path(one).read_bytes() for one in (__file__, card
 DRAWN = "--format svg --size page --no-title".split()
 KEPT = "SATSYM_DOCS_KEPT"
 """Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
+COLUMNS = 86
+"""Letters of a line of code on a page."""
 SIGNS = re.compile(r"\\(?:[a-zA-Z]+|.)|[{}^_\s]+")
 """Macros, and what LaTeX needs besides the signs of a formula."""
 TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
@@ -157,7 +161,7 @@ def page(known: dict[str, Any], root: Path) -> str:
         "Back to the [gallery](../gallery.md).\n",
         *(f"{picture(known, part)}\n" for part in known["pictures"]),
         f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
-        f"The instance `{name}` sets the numbers:\n\n```toml\n{known['file']}\n```\n",
+        f"The instance `{name}` sets the numbers:\n\n```toml\n{narrow(known['file'])}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
         f"## What it prints\n\n```text\n{known['text']}\n```\n",
@@ -166,6 +170,23 @@ def page(known: dict[str, Any], root: Path) -> str:
         f"{{download}}`{known['source']} <../../{known['source']}>`.\n",
     ]
     return "\n".join(filter(None, parts))
+
+
+def narrow(text: str) -> str:
+    """A file whose comments are broken anew, so that none of their lines runs out of a page."""
+    lines: list[str] = []
+    for line in text.splitlines():
+        if lines and lines[-1].startswith("# ") and line.startswith("# ") and not line.startswith("# - "):
+            lines[-1] += f" {line[1:].strip()}"
+        else:
+            lines.append(line)
+    broken = (
+        wrap(line, COLUMNS, subsequent_indent="#   " if line.startswith("# - ") else "# ")
+        if line.startswith("# ")
+        else [line]
+        for line in lines
+    )
+    return "\n".join(chain.from_iterable(broken))
 
 
 def about(source: Path) -> str:

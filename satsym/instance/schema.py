@@ -147,16 +147,12 @@ class DrivenTable(_Table, frozen=True):
 
 
 class GuessTable(_Table, frozen=True):
-    state: Annotated[
-        dict[str, Series], Key("values of a state at evenly spaced times", SOLVING, "the model's", "STATE")
-    ] = {}
+    state: Annotated[dict[str, Series], Key("state at evenly spaced times", SOLVING, "the model's", "STATE")] = {}
     costate: Annotated[
         dict[str, Series],
-        Key("values of a costate at evenly spaced times, as numbers without units", SOLVING, "cost by state", "STATE"),
+        Key("costate at evenly spaced times, without units", SOLVING, "cost by state", "STATE"),
     ] = {}
-    control: Annotated[
-        dict[str, Series], Key("values of a control at evenly spaced times", SOLVING, "the model's", "CONTROL")
-    ] = {}
+    control: Annotated[dict[str, Series], Key("control at evenly spaced times", SOLVING, "the model's", "CONTROL")] = {}
     parameter: Annotated[
         dict[str, Quantity], Key("initial guess of a free parameter", SOLVING, "the model's", "PARAMETER")
     ] = {}
@@ -169,28 +165,13 @@ class OrbitTable(_Table, frozen=True):
         "Earth"
     )
     inclination: Annotated[
-        Quantity | None,
-        Key(
-            "for planar models: inclination of the plane to the first two axes of the frame",
-            EXPORTING,
-            "rad",
-        ),
+        Quantity | None, Key("planar models: inclination of the plane to the frame's first two axes", EXPORTING, "rad")
     ] = None
     node: Annotated[
-        Quantity | None,
-        Key(
-            "for planar models: angle from the first axis of the frame to the ascending node of the plane",
-            EXPORTING,
-            "rad",
-        ),
+        Quantity | None, Key("planar models: angle from the frame's first axis to the ascending node", EXPORTING, "rad")
     ] = None
     argument: Annotated[
-        Quantity | None,
-        Key(
-            "for planar models: angle from the ascending node to the first axis of the model, in the plane",
-            EXPORTING,
-            "rad",
-        ),
+        Quantity | None, Key("planar models: angle from the ascending node to the model's first axis", EXPORTING, "rad")
     ] = None
 
 
@@ -224,11 +205,7 @@ class SolverOptions(_Table, frozen=True):
     free_angles: Annotated[Names, Key("angles whose final value counts modulo a full turn", SOLVING)] = ()
     relaxation: Annotated[
         UpToOne | None,
-        Key(
-            "fixed weight of the new control in each sweep; if it is left out, quasi-Newton steps are taken",
-            SOLVING,
-            "1",
-        ),
+        Key("fixed weight of the new control in each sweep, instead of quasi-Newton steps", SOLVING, "1"),
     ] = None
     backend: Annotated[Backends, Key("whether kernels are compiled", MOVING)] = "auto"
 
@@ -274,12 +251,7 @@ class InstanceFile(_Table, frozen=True):
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
-        Key(
-            "largest allowed magnitudes; the solver ignores them, and exceeding them is reported",
-            MOVING,
-            "the model's",
-            "STATE or quantity",
-        ),
+        Key("largest magnitudes; only compared with the result", MOVING, "the model's", "STATE or quantity"),
     ] = {}
     switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
     driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None

@@ -33,7 +33,7 @@ Examples:
 @place_option("--out", metavar="LEDGER", help="Write the ledger to this file instead of beside the document.")
 @json_option
 def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
-    """Draft a ledger of a document: a list of its displayed formulas, and of what each is to be checked against.
+    """Draft a ledger of a document. The ledger lists the displayed formulas, and what each is to be checked against.
 
     FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; a person
     confirms a row by taking out its line `draft = true`. If the document is read again, confirmed

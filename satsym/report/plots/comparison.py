@@ -73,10 +73,12 @@ def page(cases: Sequence[Case]) -> Figure | None:
     return figure
 
 
-def first_panel(axes: Axes, cases: Sequence[Case]) -> None:
-    """Draw the first quantity that the cases share, over time; their colours are those of the page."""
-    panels = [(_shared(cases)[0], dict[int, Array]())]
-    _over_time(axes, cases, *panels[0], _measures(cases, panels)[0])
+def panel(axes: Axes, cases: Sequence[Case]) -> None:
+    """Draw one quantity that the cases share, the first whose differences one curve would hide, if there is one."""
+    shared = _shared(cases)
+    hidden = ((variable, apart) for variable in shared if (apart := _differences(cases, variable)))
+    shown: tuple[Variable, Mapping[int, Array]] = next(hidden, (shared[0], {}))
+    _over_time(axes, cases, *shown, _measures(cases, [shown])[0])
 
 
 def _shared(cases: Sequence[Case]) -> list[Variable]:

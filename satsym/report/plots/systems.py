@@ -195,7 +195,7 @@ def angles(axes: Axes, found: Attitudes, unit: str = "") -> list[tuple[Any, str]
         axes.axvline((change.below + change.above) / 2, **DOTTED)
     if found.followed.changes:
         seen.append((legend.line(**DOTTED), say("number or kinds of equilibria change")))
-    axes.set_ylabel(say("angle between the y axes of orbit and body [deg]"))
+    axes.set_ylabel(say("angle from orbit y to body y [deg]"))
     axes.set_xlabel(display.labelled(found.parameter, unit))
     axes.set_yticks(range(0, 181, 30))
     return seen
