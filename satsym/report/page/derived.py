@@ -49,11 +49,15 @@ class Derived:
     ----------
     values
         Name of a parameter -> its value in the instance.
+    units
+        Name of a quantity -> the unit that the instance is shown in, where it is not that of the model.
     """
 
-    def __init__(self, derivation: Derivation, texts: Texts, values: Mapping[str, float]) -> None:
+    def __init__(
+        self, derivation: Derivation, texts: Texts, values: Mapping[str, float], units: Mapping[str, str] | None = None
+    ) -> None:
         own = in_language(derivation, texts.language)
-        self._derivation, self._texts, self._values = derivation, own, values
+        self._derivation, self._texts, self._values, self._units = derivation, own, values, units or {}
         self._context = Context(derivation, own, Typesetter(derivation))
         self._numbers: dict[str, str] = {}
         self._ends: dict[str, tuple[str, str]] = {}
@@ -135,7 +139,7 @@ class Derived:
             "tr",
             tag("td", math(v.latex)),
             tag("th", tag("code", v.symbol), scope="row"),
-            tag("td", unit_text(v.unit)),
+            tag("td", unit_text(self._units.get(v.symbol, v.unit))),
             tag("td", "" if value is None else decimal(figure(value, 10)), class_="number"),
             tag("td", said, lang=self._texts.language if self._texts.find(PHRASES, v.meaning) else "en"),
         )

@@ -179,8 +179,9 @@ def _derived(solution: Solution, derivation: Derivation | None, texts: Texts) ->
         return None
     from satsym.report.page.derived import Derived
 
-    spec, values = solution.instance.model.spec, solution.instance.parameters
-    return Derived(derivation, texts, dict(zip((v.symbol for v in spec.parameters), values, strict=True)))
+    spec, values = spec_of(solution.instance), solution.instance.parameters
+    units = {v.symbol: v.unit for v in (*spec.states, *spec.controls, *spec.parameters)}
+    return Derived(derivation, texts, dict(zip(spec.parameter_names, values, strict=True)), units)
 
 
 def _derivation(derived: Derived | None, texts: Texts) -> Markup:
