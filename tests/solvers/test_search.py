@@ -358,10 +358,36 @@ def test_corners_next_to_a_node_of_every_mesh_are_junctions() -> None:
     assert found.cost == pytest.approx(box, rel=1e-12)
 
 
+def test_derivatives_on_uneven_intervals_are_those_of_residuals() -> None:
+    """Two arcs of which the junction's time is unknown, the final time, and a free parameter."""
+    case = replace(instances.load("soft-return"), tf=None)
+    law, n = laws.derived(case, case.control_set.arguments), len(case.initial)
+    junction, meshes = laws.Junction(lambda t, z, p: z[0] - t), (np.array([0.0, 0.1, 0.4, 1.0]), np.array([0.0, 0.7, 1.0]))
+    problem = equations.Problem(case, (law, law), (junction,), meshes, (np.ones(2 * n), 1.0, np.ones(0)))
+    rng, times = np.random.default_rng(5), np.linspace(0.0, 1.3, 30)
+    z = rng.uniform(0.5, 1.0, (2 * n, 1)) + 0.1 * np.sin(times)
+    v = equations.begun(problem, times, z, np.array([0.0, 0.4, 1.3]), np.zeros(0), np.zeros(0))
+    along, step = rng.normal(size=len(v)), 1e-6
+    ahead, behind = (equations.system(problem, v + sign * step * along, sloped=False)[0] for sign in (1.0, -1.0))
+    assert equations.system(problem, v)[1] @ along == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-6, abs=1e-7)
+
+
+def test_values_between_points_of_uneven_intervals_are_those_of_the_motion() -> None:
+    case = instances.load("soft-return")
+    law, n, mesh = laws.derived(case, case.control_set.arguments), len(case.initial), np.array([0.0, 0.05, 0.3, 1.0])
+    problem = equations.Problem(case, (law,), (), (mesh,), (np.ones(2 * n), 1.0, np.ones(0)))
+    times = np.linspace(0.0, case.tf, 4001)
+    z = np.array([np.sin(k + times / case.tf) for k in range(2 * n)])
+    v = equations.begun(problem, times, z, times[[0, -1]], np.zeros(0), np.zeros(0))
+    shares = np.array([0.0, 0.02, 0.05, 0.17, 0.8, 1.0])
+    known = np.array([np.sin(k + shares) for k in range(2 * n)])
+    assert equations.between(problem, v, 0, shares) == pytest.approx(known, abs=1e-5)
+
+
 def test_singular_derivatives_end_an_attempt(monkeypatch: pytest.MonkeyPatch) -> None:
     case = instances.load("soft-return")
     law, n = laws.derived(case, case.control_set.arguments), len(case.initial)
-    problem = equations.Problem(case, (law,), (), (4,), (np.ones(2 * n), 1.0, np.ones(0)))
+    problem = equations.Problem(case, (law,), (), (np.linspace(0.0, 1.0, 5),), (np.ones(2 * n), 1.0, np.ones(0)))
     count = problem.layout.count
     monkeypatch.setattr(newton, "system", lambda *_, **__: (np.ones(count), csc_matrix((count, count))))
     assert newton.newton(problem, np.zeros(count), LIMITS) is None

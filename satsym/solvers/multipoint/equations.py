@@ -49,10 +49,12 @@ class Layout:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """An extremal's laws and junctions, and on how many intervals each arc is.
+    """An extremal's laws and junctions, and on which intervals each arc is.
 
     Parameters
     ----------
+    meshes
+        Edges of the intervals of each arc, from 0 to 1.
     sizes
         Of states and costates (2n,), of the duration, and of what is free.
     """
@@ -60,13 +62,18 @@ class Problem:
     instance: Instance
     laws: tuple[Law, ...]
     junctions: tuple[Junction, ...]
-    intervals: tuple[int, ...]
+    meshes: tuple[Array, ...]
     sizes: tuple[Array, float, Array]
 
     @property
     def n(self) -> int:
         """How many states there are."""
         return len(self.instance.initial)
+
+    @property
+    def intervals(self) -> tuple[int, ...]:
+        """On how many intervals each arc is."""
+        return tuple(len(mesh) - 1 for mesh in self.meshes)
 
     @property
     def open(self) -> bool:
@@ -110,8 +117,7 @@ class Problem:
 
     def places(self, arc: int) -> Array:
         """Places of the stages within an arc, from 0 to 1, shape (k, s)."""
-        k = self.intervals[arc]
-        return (np.arange(k)[:, None] + scheme(STAGES).nodes) / k
+        return points(self.meshes[arc], scheme(STAGES).nodes)
 
     def units(self) -> Array:
         """Sizes of all unknowns."""
@@ -122,6 +128,11 @@ class Problem:
         found[at.multipliers : at.free] = both[self.n :].max()
         found[at.free :] = free
         return found
+
+
+def points(mesh: Array, nodes: Array) -> Array:
+    """Places (k, s) of s nodes of a scheme in each of k intervals with these edges."""
+    return np.asarray(mesh[:-1, None] + np.diff(mesh)[:, None] * nodes)
 
 
 class Assembly:
@@ -210,7 +221,8 @@ def _arc(one: Assembly, arc: int) -> None:
     at, d, k, law = problem.layout, 2 * problem.n, problem.intervals[arc], problem.laws[arc]
     gauss, times, p, first = scheme(STAGES), problem.times(v), problem.given(v), int(problem.layout.arcs[arc])
     table = np.vstack([gauss.matrix, gauss.weights])
-    h, share = (times[arc + 1] - times[arc]) / k, problem.places(arc)
+    widths, share = np.diff(problem.meshes[arc])[:, None, None], problem.places(arc)
+    h = (times[arc + 1] - times[arc]) * widths
     t = (times[arc] + (times[arc + 1] - times[arc]) * share).ravel()
     rows, z = problem.values(v, arc)
     inner = rows[:-1].reshape(k, STAGES + 1, d)
@@ -226,7 +238,7 @@ def _arc(one: Assembly, arc: int) -> None:
         stage = begin[:, None, :] + (np.arange(1, STAGES + 2) * d)[None, :, None]
         one.put(lines, stage, 1.0)
         one.put(lines, begin[:, None, :], -1.0)
-        products = -h * table[None, :, :, None, None] * by_state[:, None]
+        products = -h[:, :, :, None, None] * table[None, :, :, None, None] * by_state[:, None]
         one.put(lines[:, :, None, :, None], stage[:, None, :STAGES, None, :], products)
         lasts = arc == len(problem.laws) - 1
         begins = None if arc == 0 else at.junctions + arc - 1
@@ -234,7 +246,7 @@ def _arc(one: Assembly, arc: int) -> None:
         for place, sign, weight in ((begins, -1.0, 1.0 - share), (ends, 1.0, share)):
             if place is not None:
                 drift = np.einsum("ij,kjd->kid", table, by_time * weight[:, :, None])
-                one.put(lines, place, -(sign * moved / k + h * drift))
+                one.put(lines, place, -(sign * moved * widths + h * drift))
         for number in range(by_free.shape[-1]):
             one.put(lines, at.free + number, -h * np.einsum("ij,kjd->kid", table, by_free[..., number]))
     one.height += k * (STAGES + 1) * d
@@ -267,10 +279,9 @@ def _by_free(one: Assembly) -> None:
     total = np.zeros(len(places))
     rows = one.height + np.arange(len(places))[:, None]
     for arc, law in enumerate(problem.laws):
-        k = problem.intervals[arc]
-        h, share = (times[arc + 1] - times[arc]) / k, problem.places(arc)
+        k, h, share = problem.intervals[arc], times[arc + 1] - times[arc], problem.places(arc)
         _, z = problem.values(v, arc)
-        weights = np.tile(gauss.weights, k)
+        weights = (np.diff(problem.meshes[arc])[:, None] * gauss.weights).ravel()
 
         def along(y: Array, law: Law = law) -> Array:
             """(f, M) derivatives of H at rows of values, time and free parameters."""
@@ -298,7 +309,7 @@ def _by_free(one: Assembly) -> None:
         ends = (at.end if problem.open else None) if lasts else at.junctions + arc
         for place, sign, weight in ((begins, -1.0, 1.0 - share.ravel()), (ends, 1.0, share.ravel())):
             if place is not None:
-                one.put(rows[:, 0], place, sign * value.sum(axis=1) / k + (slopes[:, d] * weight).sum(axis=1))
+                one.put(rows[:, 0], place, sign * value.sum(axis=1) + (slopes[:, d] * weight).sum(axis=1))
     last = int(at.arcs[-1]) - d
     nu = len(instance.model.spec.multipliers)
 
@@ -343,11 +354,11 @@ def cost(problem: Problem, v: Array) -> float:
     times, p, total, instance, n = problem.times(v), problem.given(v), 0.0, problem.instance, problem.n
     weights = scheme(STAGES).weights
     for arc, law in enumerate(problem.laws):
-        k = problem.intervals[arc]
         _, z = problem.values(v, arc)
         t = (times[arc] + (times[arc + 1] - times[arc]) * problem.places(arc)).ravel()
         running = np.broadcast_to(instance.model.running_cost_batch(t, z[:n], law.control(t, z, p), p), t.shape)
-        total += float(running @ np.tile(weights, k)) * (times[arc + 1] - times[arc]) / k
+        mean = float(running @ (np.diff(problem.meshes[arc])[:, None] * weights).ravel())
+        total += mean * (times[arc + 1] - times[arc])
     if instance.model.spec.has_terminal_cost:
         last = problem.values(v, len(problem.laws) - 1)[0][-1]
         total += float(instance.model.terminal_cost(float(times[-1]), tuple(last[:n].tolist()), p))
@@ -365,17 +376,17 @@ def begun(problem: Problem, times: Array, z: Array, edges: Array, multipliers: A
         Where arcs begin and end.
     """
     own, parts = np.concatenate([[0.0], scheme(STAGES).nodes]), []
-    for (a, b), k in zip(pairwise(edges.tolist()), problem.intervals, strict=True):
-        t = a + (b - a) * np.append(((np.arange(k)[:, None] + own) / k).ravel(), 1.0)
+    for (a, b), mesh in zip(pairwise(edges.tolist()), problem.meshes, strict=True):
+        t = a + (b - a) * np.append(points(mesh, own).ravel(), 1.0)
         parts.append(np.array([np.interp(t, times, row) for row in z]).T.ravel())
     return np.concatenate([*parts, edges[1:-1], edges[-1:] if problem.open else [], multipliers, free])
 
 
 def between(problem: Problem, v: Array, arc: int, shares: Array) -> Array:
     """Values (2n, M) at shares of an arc's length."""
-    k, d = problem.intervals[arc], 2 * problem.n
+    mesh = problem.meshes[arc]
     rows, _ = problem.values(v, arc)
-    known = rows[:-1].reshape(k, STAGES + 1, d)
-    which = np.minimum((shares * k).astype(int), k - 1)
-    basis = lagrange(STAGES, shares * k - which)
+    known = rows[:-1].reshape(len(mesh) - 1, STAGES + 1, 2 * problem.n)
+    which = np.clip(np.searchsorted(mesh, shares, side="right") - 1, 0, len(mesh) - 2)
+    basis = lagrange(STAGES, (shares - mesh[which]) / np.diff(mesh)[which])
     return np.asarray(np.einsum("ts,tsd->dt", basis, known[which]))

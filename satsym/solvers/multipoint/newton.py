@@ -14,7 +14,7 @@ from satsym.arrays import Array
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
-from satsym.solvers.multipoint.equations import Problem, between, cost, system
+from satsym.solvers.multipoint.equations import Problem, between, cost, points, system
 
 SOLVED = 1e-11
 """Size of the last step, relative to the sizes of what is unknown."""
@@ -60,7 +60,7 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
             return None
         try:
             residual, slopes = system(problem, v)
-            inverse = splu(slopes)
+            inverse = splu(slopes, permc_spec="NATURAL")  # arcs are in order, with few columns after them
             step = inverse.solve(residual)
         except (*FAILURES, RuntimeError):  # which says that the derivatives are singular
             return None
@@ -100,10 +100,10 @@ def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
 def _refined(found: Extremal) -> tuple[Problem, Array]:
     """The unknowns on intervals of half the length."""
     old, v = found.problem, found.unknown
-    problem = replace(old, intervals=tuple(2 * k for k in old.intervals))
+    problem = replace(old, meshes=tuple(np.sort(np.append(one, 0.5 * (one[:-1] + one[1:]))) for one in old.meshes))
     own, parts = np.concatenate([[0.0], scheme(STAGES).nodes]), []
-    for arc, k in enumerate(problem.intervals):
-        shares = np.append(((np.arange(k)[:, None] + own) / k).ravel(), 1.0)
+    for arc, mesh in enumerate(problem.meshes):
+        shares = np.append(points(mesh, own).ravel(), 1.0)
         rows = between(old, v, arc, shares).T
         rows[-1] = old.values(v, arc)[0][-1]
         parts.append(rows.ravel())

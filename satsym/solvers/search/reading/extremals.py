@@ -100,8 +100,7 @@ def _solved(instance: Instance, at: Motion, arcs: Arcs, limits: Limits) -> Extre
     """What Newton's method finds from a motion and its arcs."""
     laws, junctions, edges = arcs
     span = float(edges[-1] - edges[0])
-    density = DENSITY * (len(at.times) - 1) / 3.0
-    intervals = tuple(max(FEWEST, int(np.ceil(density * (b - a) / span))) for a, b in pairwise(edges.tolist()))
+    meshes = tuple(_mesh(at, a, b) for a, b in pairwise(edges.tolist()))
     z = np.concatenate([at.x, at.lam])
     size = np.abs(z).max(axis=1)
     n = len(at.x)
@@ -109,9 +108,19 @@ def _solved(instance: Instance, at: Motion, arcs: Arcs, limits: Limits) -> Extre
         half[:] = np.maximum(half, SMALL_SIZE * half.max() or 1.0)
     own = replace(instance, initial=at.instance.initial, parameters=at.instance.parameters, t0=at.instance.t0)
     free = np.array([one.of(own) for one in own.free if one.place.value == "parameters"])
-    problem = Problem(own, laws, junctions, intervals, (size, span, np.abs(free)))
+    problem = Problem(own, laws, junctions, meshes, (size, span, np.abs(free)))
     multipliers = np.zeros(len(instance.model.spec.multipliers))
     return solved(problem, begun(problem, at.times, z, edges, multipliers, free), limits)
+
+
+def _mesh(at: Motion, begin: float, end: float) -> Array:
+    """Edges from 0 to 1 of the intervals of an arc, as dense as those of the programme that found the motion."""
+    edges = at.times[::DEGREE]
+    count = np.arange(len(edges)) * DENSITY
+    first, last = np.interp((begin, end), edges, count)
+    intervals = max(FEWEST, int(np.ceil(last - first)))
+    inner = np.interp(np.linspace(first, last, intervals + 1), count, edges)
+    return np.asarray((inner - inner[0]) / (inner[-1] - inner[0]))
 
 
 def _minimises(found: Extremal) -> bool:
