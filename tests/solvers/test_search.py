@@ -362,7 +362,10 @@ def test_derivatives_on_uneven_intervals_are_those_of_residuals() -> None:
     """Two arcs of which the junction's time is unknown, the final time, and a free parameter."""
     case = replace(instances.load("soft-return"), tf=None)
     law, n = laws.derived(case, case.control_set.arguments), len(case.initial)
-    junction, meshes = laws.Junction(lambda t, z, p: z[0] - t), (np.array([0.0, 0.1, 0.4, 1.0]), np.array([0.0, 0.7, 1.0]))
+    junction, meshes = (
+        laws.Junction(lambda t, z, p: z[0] - t),
+        (np.array([0.0, 0.1, 0.4, 1.0]), np.array([0.0, 0.7, 1.0])),
+    )
     problem = equations.Problem(case, (law, law), (junction,), meshes, (np.ones(2 * n), 1.0, np.ones(0)))
     rng, times = np.random.default_rng(5), np.linspace(0.0, 1.3, 30)
     z = rng.uniform(0.5, 1.0, (2 * n, 1)) + 0.1 * np.sin(times)

@@ -124,7 +124,9 @@ class EnclosedCursor(RefusalCursor):
         begin, groups = self._i, 0
         while True:
             if self._peek() is None:
-                raise Unread("a vertical bar without a closing one, as in an evaluation at a point, is not supported", token.at)
+                raise Unread(
+                    "a vertical bar without a closing one, as in an evaluation at a point, is not supported", token.at
+                )
             inside = self._take()
             groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
             if groups == 0 and inside.text == closing and inside.kind == token.kind:
@@ -141,7 +143,9 @@ class EnclosedCursor(RefusalCursor):
         if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
             return Call("det", (inner,))
         if single and isinstance(inner, Add) and "I" in symbols(inner):
-            raise Unread("bars around a matrix could mean its determinant or its norm; write \\det for the determinant", token.at)
+            raise Unread(
+                "bars around a matrix could mean its determinant or its norm; write \\det for the determinant", token.at
+            )
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
         if not single and self._is("_"):

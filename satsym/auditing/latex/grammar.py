@@ -88,7 +88,9 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
                 raise Unread("a bracket with a comma, which may be one of operators, is not read", line.sides[0][0].at)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
-                raise Unread("braces could enclose a set here; write round brackets around a product", line.sides[0][0].at)
+                raise Unread(
+                    "braces could enclose a set here; write round brackets around a product", line.sides[0][0].at
+                )
             if Sym("nabla") in (one, other):
                 raise Unread("a sign of derivatives by itself is no quantity", line.sides[0][0].at)
             if reading.differential >= 0 and not (sign == "=" and is_differential_of(one) and has_differentials(other)):
@@ -172,7 +174,9 @@ class Parser(SumCursor):
         chain.append(self._signed_factor())
         scalar = any(constant(side) is not None for side in (before, chain[-1]))
         if sign.text == "times" and not scalar and not isinstance(before, Grid):
-            raise Unread("this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot", sign.at)
+            raise Unread(
+                "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot", sign.at
+            )
         return crossed
 
     def _over(self, slash: Token, chain: Sequence[Node]) -> Node:

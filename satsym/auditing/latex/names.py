@@ -105,4 +105,6 @@ def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
                 isinstance(part, Pow) and isinstance(part.base, Sym) and part.base.name in numbered
                 for _, part in walk(side)
             ):
-                raise Unread("a letter that has superscript indices is also raised to a power, which is ambiguous", start)
+                raise Unread(
+                    "a letter that has superscript indices is also raised to a power, which is ambiguous", start
+                )

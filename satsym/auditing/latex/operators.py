@@ -298,7 +298,9 @@ class OperatorCursor(QuotientCursor):
         if isinstance(base, Call) and base.function == "raised" and all(map(self._place, places)):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if words_inside in words.AT_A_TIME or self._place(inside) is not None or self._is_taken(inside):
-            raise Unread("a power between a function and its argument, as in x^2(t), is not supported", self._found[begin].at)
+            raise Unread(
+                "a power between a function and its argument, as in x^2(t), is not supported", self._found[begin].at
+            )
         self._i = begin
         return base
 

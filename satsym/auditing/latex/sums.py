@@ -16,7 +16,8 @@ class SumCursor(EnclosedCursor):
         self._depth += 1
         if self._depth > MAX_DEPTH:
             raise Unread(
-                f"brackets are nested more than {MAX_DEPTH} levels deep", self._found[min(self._i, len(self._found) - 1)].at
+                f"brackets are nested more than {MAX_DEPTH} levels deep",
+                self._found[min(self._i, len(self._found) - 1)].at,
             )
         terms: list[Node] = []
         summed: set[str] = set()
