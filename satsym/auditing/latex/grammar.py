@@ -67,7 +67,7 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
         if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
             reading = _read(kept, Reading([], known=reading.places), start)
     except RecursionError:
-        raise Unread("signs in front of signs, nested too deep", start) from None
+        raise Unread("the formula is nested too deeply", start) from None
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
@@ -85,19 +85,21 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         reading.statements += sides if line.bare else []
         for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
-                raise Unread("a bracket with a comma, which may be one of operators, is not read", line.sides[0][0].at)
+                raise Unread(
+                    "a bracket with a comma is not supported here, as it could be a commutator", line.sides[0][0].at
+                )
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
                 raise Unread(
                     "braces could enclose a set here; write round brackets around a product", line.sides[0][0].at
                 )
             if Sym("nabla") in (one, other):
-                raise Unread("a sign of derivatives by itself is no quantity", line.sides[0][0].at)
+                raise Unread("a nabla on its own is not a quantity", line.sides[0][0].at)
             if reading.differential >= 0 and not (sign == "=" and is_differential_of(one) and has_differentials(other)):
                 raise Unread("a differential is not supported", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
             if sign == "=" and taken and _stands_in(one, other):
-                raise Unread("this letter is taken at a place, and stands without one", line.sides[0][0].at)
+                raise Unread("this letter occurs both with and without an argument", line.sides[0][0].at)
             reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
     return reading
 
@@ -153,7 +155,7 @@ class Parser(SumCursor):
                 self._refuse_behind(chain[-1], token)
                 last = self._found[self._i - 1]
                 if token.kind == "number" and last.kind == "letter" and token.at == last.at + 1:
-                    raise Unread("a number behind a letter, which may be an index or a power", token.at)
+                    raise Unread("a number after a letter could be an index or a power", token.at)
                 if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
                     raise Unread("an ellipsis between factors is not supported", token.at)
                 chain.append(self._factor())

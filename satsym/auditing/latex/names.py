@@ -82,7 +82,7 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
     named = "".join(t.text for t in side[:end])
     if begin == 0 and end == len(side) and named in _GROUPS:
-        raise Unread(f"{named} may be one name, \\mathrm{{{named}}}, or a product", side[0].at)
+        raise Unread(f"{named} could be one name, \\mathrm{{{named}}}, or a product", side[0].at)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)

@@ -327,7 +327,7 @@ class OperatorCursor(QuotientCursor):
         if value is None:  # a power, or an index above
             letters = [t.kind == "letter" or t.text in GREEK for t in script]
             if (len(letters) > 1 and all(letters)) or (isinstance(exponent, Call) and exponent.function != "transpose"):
-                raise Unread("an exponent of several letters is not read", at)
+                raise Unread("an exponent of several letters is not supported", at)
             return Call("raised", (base, exponent))
         if value == 0:
             raise Unread("an exponent of zero could be an index", at)

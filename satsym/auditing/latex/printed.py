@@ -138,7 +138,7 @@ class LetterCursor(Cursor):
         if not rest or exponential or not (upright or sign[0].text in TRANSPOSED):
             return
         if sign[0].text == "T" and not all(t.kind == "number" or t.text in ("-", "prime", "'", *STARS) for t in rest):
-            raise Unread("a T in an exponent of several letters", sign[0].at)
+            raise Unread("it is not clear whether T in this exponent means the transpose", sign[0].at)
         at = self._found[self._i].at
         rest += [Token("number", "1", at)] if [t.text for t in rest] == ["-"] else []
         end = group_end(self._found, self._i + 1)

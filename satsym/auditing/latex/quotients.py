@@ -36,13 +36,13 @@ class QuotientCursor(LetterCursor):
         """A partial derivative that is printed with an index."""
         by = self._letter_in(self._script())
         if by is None:
-            raise Unread("a derivative by this index is not read", sign.at)
+            raise Unread("a derivative with respect to this index is not supported", sign.at)
         times = 1
         if self._is("^"):
             self._i += 1
             digits = "".join(t.text for t in self._script())
             if digits not in ("1", "2", "3", "4"):
-                raise Unread("a derivative of this order is not read", sign.at)
+                raise Unread("a derivative of this order is not supported", sign.at)
             times = int(digits)
         what = self._factor()
         for _ in range(times):

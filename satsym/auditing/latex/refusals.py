@@ -61,10 +61,10 @@ class RefusalCursor(OperatorCursor):
                 raise Unread("this notation for a power of ten is not supported; write \\cdot 10^{...}", token.at)
         said = "".join(t.text for t in self._found[self._i : self._i + 4])
         if isinstance(last, Num) and last.value.denominator > 1 and said.startswith(("m/s", "km/s", "rad/", "kg/")):
-            raise Unread("a unit that is not set upright, or letters", token.at)
+            raise Unread("this could be a unit or a product of letters; set units upright", token.at)
         raised = isinstance(last, Pow) or (isinstance(last, Call) and last.function == "power")
         if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
-            raise Unread("a unit, or a factor, behind a power of ten", token.at)
+            raise Unread("this could be a unit or a factor after a power of ten; set units upright", token.at)
         stem = last.base if isinstance(last, Pow) else last
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         if letter is not None and letter.base == "L" and letter.index in FIELDS:

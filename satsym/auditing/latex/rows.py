@@ -86,7 +86,7 @@ def _refuse_arrow(line: Line) -> None:
     """Refuse an arrow that may say what tends to something, what follows from something, or what a map is between."""
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
         if sign == "unequal" and len(line.signs) > 1:
-            raise Unread("an inequality in a chain of relations is not read", (after or before)[0].at)
+            raise Unread("an inequality in a chain of relations is not supported", (after or before)[0].at)
         if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
             raise Unread("an arrow between more than two expressions is not supported", (after or before)[0].at)
 

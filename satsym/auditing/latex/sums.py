@@ -30,7 +30,7 @@ class SumCursor(EnclosedCursor):
             at = self._found[min(self._i, len(self._found) - 1)].at
             term = self._product()
             if summed & self._indices(term):
-                raise Unread("where a sum ends is not clear without brackets", at)
+                raise Unread("without brackets, it is not clear where the sum ends", at)
             summed |= _summed_over(term)
             term = Call(double, (term,)) if double else term
             terms.append(Neg(term) if negative else term)
