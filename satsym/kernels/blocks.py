@@ -23,12 +23,14 @@ from satsym.kernels.batch.workspace import (
     stored,
 )
 from satsym.kernels.core import Kernels
+from satsym.kernels.plain import weights
+from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 
 
 @lru_cache(maxsize=32)
-def block_step(kernels: Kernels) -> Any:
-    """Steps by RK4 for the columns of arrays, under constant controls.
+def block_step(kernels: Kernels, symplectic: bool = False) -> Any:
+    """Steps for the columns of arrays, by RK4 or by kicks and drifts.
 
     Raises
     ------
@@ -37,6 +39,11 @@ def block_step(kernels: Kernels) -> Any:
     """
     if kernels.backend != "numba":
         raise BadInput(f"{kernels.spec.name}: a block step requires compiled kernels: call compiled() first")
+    return kicks_and_drifts(kernels) if symplectic else rk4(kernels)
+
+
+def rk4(kernels: Kernels) -> Any:
+    """RK4 under constant controls."""
     writer = _Writer(kernels)
     n = range(writer.n)
     body = [
@@ -53,6 +60,29 @@ def block_step(kernels: Kernels) -> Any:
         ["half, sixth = 0.5 * h, h / 6.0"],
         ["now = t + i * h", "middle, end = now + half, now + h", *over_lanes(body)],
     )
+
+
+def kicks_and_drifts(kernels: Kernels) -> Any:
+    """The symplectic composition of a separable motion, without control."""
+    writer = _Writer(kernels)
+    body = writer.rates("a", "t", [writer.at(i) for i in range(writer.n)])
+    for q, v in pairs(kernels.spec):
+        body += [f"{writer.at(v)} += kick * a_{v}", f"{writer.at(q)} += drift * {writer.at(v)}"]
+    kicks, drifts = weights()
+    return writer.compiled(
+        [f"kicks, drifts = {tuple(kicks)!r}, {(*drifts, 0.0)!r}"],
+        [
+            f"for k in range({len(kicks)}):",
+            "    kick, drift = h * kicks[k], h * drifts[k]",
+            *indented(over_lanes(body)),
+        ],
+    )
+
+
+def pairs(spec: ProblemSpec) -> list[tuple[int, int]]:
+    """Numbers of each coordinate and of its velocity among the states of a separable motion."""
+    place = {name: k for k, name in enumerate(spec.state_names)}
+    return [(place[q], place[v]) for q, v in zip(spec.coordinates, spec.velocities, strict=True)]
 
 
 class _Writer:

@@ -75,6 +75,18 @@ def test_the_error_falls_with_the_fourth_power(orbit: Kernels):
         assert 12.0 <= coarse / fine <= 20.0
 
 
+def test_the_symplectic_method_is_the_generated_loop_for_each_and_of_sixth_order(orbit: Kernels):
+    x0, mu = starts(7), np.linspace(0.9, 1.1, 7)
+    exact = np.vstack(kepler.propagate(x0[:3], x0[3:], mu, TIMES[-1]))
+    for kernels in backends(orbit):
+        x = batch.simulate(kernels, TIMES[[0, 2]], x0, (mu,), STEPS, method="symplectic")[:, 1]
+        nodes = np.linspace(TIMES[0], TIMES[2], STEPS + 1)
+        alone = [orbit.symplectic(nodes, tuple(x0[:, k]), (mu[k],))[:, -1] for k in range(7)]
+        assert np.abs(x - np.transpose(alone)).max() <= 1e-13
+        finer = batch.simulate(kernels, TIMES[[0, 2]], x0, (mu,), 2 * STEPS, method="symplectic")[:, 1]
+        assert 45.0 <= np.abs(x - exact).max() / np.abs(finer - exact).max() <= 90.0
+
+
 def test_models_with_explicit_time_see_it(orbit: Kernels):
     model = load("time_varying")
     n, p = len(model.spec.states), tuple(v.default or 1.0 for v in model.spec.parameters)
@@ -98,11 +110,12 @@ def test_models_without_controls_and_parameters_fly_too():
     )
     pendulum = from_text(module.render(derived(motion), "a test"), "motion")
     x0, times = np.array([[0.5, 1.0], [0.0, 0.1]]), [0.0, 3.0, 1.0]
-    found = batch.simulate(pendulum, times, x0, (), 60)[:, 2]
+    simulations = [batch.simulate(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
     tail = pendulum.forward(np.linspace(0.0, 1.0, 201), (1.0, 0.1), np.zeros((0, 201)), np.zeros((0, 200)), ())[0][
         :, -1
     ]
-    assert np.abs(found[:, 1] - tail).max() <= 1e-6
+    assert max(np.abs(simulated[:, 1] - tail).max() for simulated in simulations) <= 1e-6
+    assert np.ptp(simulations, axis=0).max() <= 1e-6
 
 
 def test_more_columns_than_a_block_holds_are_all_there_and_the_starts_untouched(orbit: Kernels):
@@ -136,6 +149,8 @@ def test_beyond_the_centre_is_nan_and_the_others_go_on(orbit: Kernels):
         ({"steps": 0}, "steps: 0; use at least one step"),
         ({"p": (1.0, 2.0)}, "p: 2 components; the model has 1"),
         ({"p": ([1.0, 2.0, 3.0],)}, "p: each component must be a number or an array of 2"),
+        ({"u": (1.0, 0.0, 0.0), "method": "symplectic"}, "u: the symplectic method supports uncontrolled motions only"),
+        ({"method": "simplectic"}, 'method: "simplectic"; did you mean "symplectic"'),
         ({"u": (1.0,)}, "u: 1 components; the model has 3"),
     ],
 )
@@ -143,6 +158,11 @@ def test_bad_input_is_refused(orbit: Kernels, given: dict, message: str):
     sound = {"times": [0.0, 1.0], "x0": np.ones((6, 2)), "p": (1.0,), "steps": 3}
     with pytest.raises(BadInput, match=f"^{message}"):
         batch.simulate(orbit, **sound | given)
+
+
+def test_a_model_that_is_not_separable_has_no_symplectic_method():
+    with pytest.raises(BadInput, match=r"^polar_orbit: there is no symplectic integrator"):
+        batch.simulate(load("polar_orbit"), [0.0, 1.0], np.ones((4, 2)), (1.0,) * 8, 3, method="symplectic")
 
 
 def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):

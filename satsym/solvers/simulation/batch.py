@@ -17,8 +17,12 @@ from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.kernels.batch.factored import Unsuited
 from satsym.kernels.batch.runge_kutta import BLOCK, OnTape
-from satsym.kernels.blocks import block_step
+from satsym.kernels.blocks import block_step, pairs
+from satsym.kernels.plain import weights
 from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+METHODS = ("RK4", "symplectic")
 
 COMPILED_BLOCK = 512
 """Columns at a time for compiled code, to which calls cost nothing; on arrays they are more."""
@@ -31,8 +35,9 @@ def simulate(
     p: Sequence[ArrayLike],
     steps: int,
     u: ArrayLike | None = None,
+    method: str = "RK4",
 ) -> Array:
-    """States of many motions at given times, by RK4 with equal steps between each two of them.
+    """States of many motions at given times, with equal steps between each two of them.
 
     Parameters
     ----------
@@ -46,6 +51,9 @@ def simulate(
         Parameters, in the model's order; each a number or an array of shape (N,).
     u
         Constant controls, shape (m,) or (m, N); none by default.
+    method
+        One of :data:`METHODS`. ``"symplectic"``: kicks and drifts of sixth order, twelve evaluations a step, for
+        separable models without control.
 
     Returns
     -------
@@ -55,16 +63,24 @@ def simulate(
     Raises
     ------
     BadInput
-        For arrays of other shapes, numbers that are not finite, or no step.
+        For arrays of other shapes, numbers that are not finite, no step, or a method that is not the model's.
     """
     nodes, start, parameters, controls = _checked(kernels, times, x0, p, u)
     if steps < 1:
         raise BadInput(f"steps: {steps}; use at least one step between two times")
-    count = start.shape[1]
-    if kernels.backend == "numba":
-        advance, block = block_step(kernels), COMPILED_BLOCK
+    if method not in METHODS:
+        raise BadInput(f"method: {shown(method)}; {suggestion(method, METHODS)}")
+    count, symplectic, compiled = start.shape[1], method == "symplectic", kernels.backend == "numba"
+    if symplectic:
+        kernels.require_separable()
+        if controls.any():
+            raise BadInput(
+                f"u: the symplectic method supports uncontrolled motions only; use RK4 for {kernels.spec.name}"
+            )
+    if compiled:
+        advance, block = block_step(kernels, symplectic), COMPILED_BLOCK
     else:
-        stepping = _runge_kutta(kernels)
+        stepping = _Kicks(kernels) if symplectic else _runge_kutta(kernels)
         advance, block = stepping.advance, stepping.block
     x = np.empty((len(start), len(nodes), count))
     with np.errstate(all="ignore"):
@@ -137,6 +153,27 @@ class _RungeKutta:
             total += slope
             total *= h / 6.0
             y += total
+
+
+class _Kicks:
+    """Kicks and drifts with the generated batch form."""
+
+    block = BLOCK
+
+    def __init__(self, kernels: Kernels) -> None:
+        self.dynamics = kernels.functions["dynamics_batch"]
+        self.coordinates, self.velocities = np.array(pairs(kernels.spec)).T
+        kicks, drifts = weights()
+        self.weights = tuple(zip(kicks, [*drifts, 0.0], strict=True))
+
+    def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
+        """So many steps of size h, in place."""
+        slope, q, v, parameters = np.empty(y.shape), self.coordinates, self.velocities, tuple(p)
+        for _ in range(steps):
+            for kick, drift in self.weights:
+                self.dynamics(t, y, u, parameters, out=slope)
+                y[v] += (kick * h) * slope[v]
+                y[q] += (drift * h) * y[v]
 
 
 def _rows(name: str, values: ArrayLike | Sequence[ArrayLike], count: int, columns: int) -> Array:
