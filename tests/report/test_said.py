@@ -162,7 +162,10 @@ def test_every_status_and_verdict_has_a_word(word: Enum) -> None:
         assert message(word.value) == INDONESIAN[word.value]
 
 
-@given(st.sampled_from(sorted(said.group("id", "messages"))), st.text("abc xyz", min_size=1, max_size=6).filter(str.strip))
+@given(
+    st.sampled_from(sorted(said.group("id", "messages"))),
+    st.text("abc xyz", min_size=1, max_size=6).map(str.strip).filter(bool),
+)
 def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None:
     """Unless it is what another text says as well, filled in otherwise."""
     holes = {name: value if not name.startswith("said_") else "converged" for name in HOLE.findall(text)}
