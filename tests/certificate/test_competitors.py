@@ -20,6 +20,9 @@ from satsym.solvers.certificate.competitors.comparing import none_conceivable
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED, Compared, Comparison
 from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.improving import improved, starting_from
+from satsym.solvers.search import solving
+from satsym.solvers.search.order import Tried
+from satsym.solvers.search.starts import Plan
 from satsym.solvers.symmetry import symmetric
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
@@ -317,3 +320,31 @@ def test_a_single_competitor_that_was_solved_is_something_to_compare_with() -> N
     assert failing(tried(Kind.STARTS, 0), tried(Kind.DURATIONS, 1)) == []
     assert failing(replace(tried(Kind.STARTS, 0), enough=True)) == []
     assert failing(tried(Kind.STARTS, 0, interrupted=True)) == ["time was up before: seeded starts"]
+
+
+@pytest.mark.parametrize("guessed", [False, True])
+def test_the_first_cheaper_extremal_ends_the_comparison_unless_a_guess_decides(
+    monkeypatch: pytest.MonkeyPatch, guessed: bool
+) -> None:
+    """What is cheaper is compared with all starts itself; the answer to a guess stays, and the cheapest is told."""
+    found = solve(instance.load("return-to-orbit"), examined=False)
+    costs = [share * found.objective for share in (1.0, 0.9, 0.8)]
+    tried = [Tried(Plan(), cost, replace(found, objective=cost) if cost < costs[0] else None) for cost in costs]
+    monkeypatch.setattr(solving, "others", lambda *_: iter(tried))
+    given = replace(found, instance=starting_from(found)) if guessed else found
+    seen, better = examined(given, np.inf)
+    assert seen is not None
+    assert better is not None
+    assert better.objective == costs[2 if guessed else 1]
+    assert seen.verdict is Verdict.EXTREMAL_ONLY
+    assert seen.competitors[0].tried == (3 if guessed else 2)
+
+
+def test_starts_are_not_checked_where_a_cheaper_motion_is_unsettled(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = solve(instance.load("return-to-orbit"), examined=False)
+    tried = [Tried(Plan(), found.objective), Tried(Plan(), np.nan, unsettled=True)]
+    monkeypatch.setattr(solving, "others", lambda *_: iter(tried))
+    seen, _ = examined(found, np.inf)
+    assert seen is not None
+    assert seen.verdict is Verdict.CERTIFIED
+    assert Kind.STARTS in seen.not_checked

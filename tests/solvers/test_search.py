@@ -24,7 +24,7 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import motion, nlp, order, solving, starts
+from satsym.solvers.search import mesh, motion, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
@@ -362,10 +362,8 @@ def test_derivatives_on_uneven_intervals_are_those_of_residuals() -> None:
     """Two arcs of which the junction's time is unknown, the final time, and a free parameter."""
     case = replace(instances.load("soft-return"), tf=None)
     law, n = laws.derived(case, case.control_set.arguments), len(case.initial)
-    junction, meshes = (
-        laws.Junction(lambda t, z, p: z[0] - t),
-        (np.array([0.0, 0.1, 0.4, 1.0]), np.array([0.0, 0.7, 1.0])),
-    )
+    junction = laws.Junction(lambda t, z, p: z[0] - t)
+    meshes = np.array([0.0, 0.1, 0.4, 1.0]), np.array([0.0, 0.7, 1.0])
     problem = equations.Problem(case, (law, law), (junction,), meshes, (np.ones(2 * n), 1.0, np.ones(0)))
     rng, times = np.random.default_rng(5), np.linspace(0.0, 1.3, 30)
     z = rng.uniform(0.5, 1.0, (2 * n, 1)) + 0.1 * np.sin(times)
@@ -377,8 +375,8 @@ def test_derivatives_on_uneven_intervals_are_those_of_residuals() -> None:
 
 def test_values_between_points_of_uneven_intervals_are_those_of_the_motion() -> None:
     case = instances.load("soft-return")
-    law, n, mesh = laws.derived(case, case.control_set.arguments), len(case.initial), np.array([0.0, 0.05, 0.3, 1.0])
-    problem = equations.Problem(case, (law,), (), (mesh,), (np.ones(2 * n), 1.0, np.ones(0)))
+    law, n, edges = laws.derived(case, case.control_set.arguments), len(case.initial), np.array([0.0, 0.05, 0.3, 1.0])
+    problem = equations.Problem(case, (law,), (), (edges,), (np.ones(2 * n), 1.0, np.ones(0)))
     times = np.linspace(0.0, case.tf, 4001)
     z = np.array([np.sin(k + times / case.tf) for k in range(2 * n)])
     v = equations.begun(problem, times, z, times[[0, -1]], np.zeros(0), np.zeros(0))
@@ -460,6 +458,30 @@ def test_a_motion_that_costs_less_counts_even_if_no_extremal_is_found_near_it(na
     assert next(dear).cost == pytest.approx(cost, rel=1e-4)
     near = order.others(case, work, lambda at, limits: None, cost * (1.0 + 3e-5), lambda one: one)
     assert next(near).cost == cost * (1.0 + 3e-5)
+
+
+@pytest.mark.parametrize(("name", "unsettled"), [("return-to-orbit", True), ("bryson-denham", False)])
+def test_a_cheaper_motion_is_unsettled_where_no_mesh_decides(
+    monkeypatch: pytest.MonkeyPatch, name: str, unsettled: bool
+) -> None:
+    """With path constraints it steps over one, mostly."""
+    monkeypatch.setattr(order, "_followed", lambda *_: (np.nan, None))
+    one = next(order.others(instances.load(name), replace(LIMITS, work=solving.WORK), lambda *_: None, 1e3, float))
+    assert np.isnan(one.cost)
+    assert one.unsettled is unsettled
+
+
+@pytest.mark.parametrize(("residual", "pieces"), [(0.9, mesh.MOST_PIECES), (1.1, mesh.HALVES)])
+def test_intervals_are_halved_at_most_where_a_mesh_does_not_resolve_its_motion(
+    monkeypatch: pytest.MonkeyPatch, residual: float, pieces: int
+) -> None:
+    programme = programme_of(instances.load("return-to-orbit"))
+    with np.errstate(all="ignore"):
+        found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+    monkeypatch.setattr(mesh, "_residuals", lambda _: np.where(np.arange(programme.intervals) == 3, residual, 0.0))
+    (edges,), largest = mesh.refined(found)
+    assert largest == residual
+    assert len(edges) - 1 == programme.intervals - 1 + pieces
 
 
 def test_a_motion_that_steps_over_a_constraint_is_seen_to_violate_it() -> None:

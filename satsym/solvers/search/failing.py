@@ -1,4 +1,4 @@
-"""Why a search has no answer: longer is always cheaper, the end is out of reach, or path constraints contradict it."""
+"""Why a search has no answer: longer is always cheaper, motions escape, or the end is out of reach."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import coarse, nlp, starts
 from satsym.solvers.search.controls import controls_of
+from satsym.solvers.search.escaping import HELD, escape
 from satsym.solvers.search.nearest import nearest
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
@@ -66,6 +67,8 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
     message, limits = NOT_FOUND, replace(limits, meter=Meter())
     if instance.tf is None:
         message += f"; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
+    if endless := tried(partial(escape, instance)):
+        return Status.NO_MINIMISER, f"{endless}; {HELD}"
     if instance.tf is not None and (separated := tried(partial(unreachable, instance, limits))):
         return Status.INFEASIBLE, separated
     if stated_constraints(instance.model.spec):

@@ -14,6 +14,10 @@ from satsym.solvers.search.transcription import DEGREE, NODES, RADAU, basis
 TOLERANCE, MOST_PIECES = 1e-5, 6
 """Residual that is small enough, relative to the sizes of states; pieces into which an interval is cut at most."""
 
+UNRESOLVED, HALVES = 1.0, 2
+"""Residual, relative to these sizes, from which a mesh does not resolve its motion, and into how many pieces intervals
+are cut at most then: a much finer mesh is another problem, whose motion is somewhere else."""
+
 JUMP, PIECES = 0.15, 4
 """Change of a control within an interval, as a share of what it may do, that is a jump; how often it is cut then."""
 
@@ -48,7 +52,8 @@ def refined(found: Found) -> tuple[list[Array], float]:
     """Edges of finer intervals, phase by phase, and the largest residual that was found."""
     programme = found.programme
     errors, jumps = _residuals(found), _jumps(found)
-    pieces = np.clip(np.ceil((errors / TOLERANCE) ** (1.0 / (DEGREE + 1))), 1, MOST_PIECES).astype(int)
+    most = MOST_PIECES if errors.max() < UNRESOLVED else HALVES
+    pieces = np.clip(np.ceil((errors / TOLERANCE) ** (1.0 / (DEGREE + 1))), 1, most).astype(int)
     pieces = np.where(jumps, np.maximum(pieces, PIECES), pieces)
     meshes, k = [], 0
     for mesh in programme.meshes:

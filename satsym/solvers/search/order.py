@@ -1,13 +1,11 @@
 """The order of the search: starts one after the other, each on finer meshes, then its arcs, then Newton's method.
 
-1. A list of starts that is fixed for an instance (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved
-   on a coarse mesh.
+1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved on a coarse mesh.
 2. The arcs of a solution are read on the coarse mesh, then on finer ones until its cost settles
    (:mod:`~satsym.solvers.search.reading`).
 3. The first arcs that Newton's method makes exact are the answer: :func:`searched`. The search ends without one after
    so many starts that fail, or so many costs of which none could be made exact.
-4. The same starts give competitors of an answer, whichever method found it: :func:`others`. The list ends after so many
-   starts in a row that show nothing new; that number grows with the number of different costs found.
+4. The same starts give competitors of an answer, whichever method found it, until nothing new shows: :func:`others`.
 """
 
 from __future__ import annotations
@@ -49,8 +47,8 @@ BESIDE, ON_FINER_MESH = 120, 200
 """Iterations of the interior-point code for a competitor, and for a finer mesh."""
 
 MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.2, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
-"""Number of finer meshes at most, share of the work that those of one start may take (a wild motion needs ever more
-intervals), relative change of cost from one to the next at which they end, and smoothings of norms on each."""
+"""Number of finer meshes at most, share of the work that those of one start may take, relative change of cost from one
+to the next at which they end, and smoothings of norms on each."""
 
 CHEAPER = 1e-9
 """Relative difference from which one exact cost is less than another."""
@@ -83,11 +81,14 @@ class Tried(Generic[Answer]):
         nor finer meshes confirm that its motion is cheaper.
     exact
         The extremal, if it costs less than the answer.
+    unsettled
+        Whether its motion seems to cost less, but no mesh settles that.
     """
 
     plan: Plan
     cost: float
     exact: Answer | None = None
+    unsettled: bool = False
 
 
 def searched(
@@ -162,7 +163,7 @@ def others(
     """
     seen: list[tuple[float, float]] = []  # costs on the coarse mesh, and the cost that each came to
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
-    quiet, solved, begun, spent = 0, 0, limits.meter.spent, limits.meter.spent
+    quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
@@ -186,7 +187,8 @@ def others(
             quiet = 0
             came, answer = _followed(found, _part(limits), cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
-            yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
+            unsettled = not constrained and bool(np.isnan(came))  # with constraints it steps over one, mostly
+            yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None, unsettled)
         spent = limits.meter.spent
         # starts with other turns and durations are tried whatever the first ones lead to
         further = plan.turns is not None or plan.timed or plan.arriving
@@ -232,9 +234,8 @@ def _followed(
 ) -> tuple[float, Answer | None]:
     """What a motion on a coarse mesh comes to beside an answer, and an extremal near it if it seems cheaper.
 
-    A motion that costs more is solved on finer meshes as long as these make it much cheaper: it may only seem dear
-    because the coarse mesh does not resolve it. A motion that costs less and whose cost finer meshes hardly change is
-    cheaper, even if no extremal was found near it.
+    A motion that costs more is solved on finer meshes as long as these make it much cheaper. One that costs less, and
+    whose cost finer meshes hardly change, is cheaper even if no extremal is found near it.
     """
     margin, costs = SIMILAR * abs(cost), list[float]()
     meshes, residual = refined(found)

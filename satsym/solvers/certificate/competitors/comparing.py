@@ -54,7 +54,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
     activity.tell("certificate: comparing with other starts of the search ...")
     unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
     with np.errstate(all="ignore"):
-        costs, exact = searched(solution, limits, seed, free)
+        costs, exact, unsettled = searched(solution, limits, seed, free)
         if unhindered and not limits.late and (quicker := _shorter_costs(solution, limits)) and not limits.late:
             costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
     found = dict[Kind, Compared]()
@@ -65,7 +65,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
     enough = {kind for kind, one in found.items() if one.summary.solved and not limits.late}
     if switches and not limits.late and linear_motion(instance) is not None:  # nothing of it arrives anywhere else
         enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
-    missing = tuple(kind for kind in possible if kind not in enough)
+    missing = tuple(kind for kind in possible if kind not in enough - unsettled)
     if not switches and Kind.STARTS in found and found[Kind.STARTS].margin >= 0.0 and not limits.late:
         drawn, led = _from_controls(solution, seed, limits, free)
         starts = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)

@@ -35,7 +35,7 @@ def kinds(instance: Instance) -> list[Kind]:
 
 def searched(
     solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()
-) -> tuple[dict[Kind, list[float]], Solution | None]:
+) -> tuple[dict[Kind, list[float]], Solution | None, set[Kind]]:
     """Compare an answer with what the search's starts come to; starts that the clock ends are left out.
 
     Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
@@ -53,7 +53,10 @@ def searched(
     dict
         Costs of each kind that was tried, NaN where a start led to nothing.
     Solution
-        The cheapest extremal that costs less than the answer, if any.
+        An extremal that costs less than the answer, if any: the first that is found, for that is compared with all of
+        them in turn; of an answer to a guess, which stays the answer, the cheapest.
+    set
+        Kinds of which a motion seems to cost less, but no mesh settles that.
     """
     from satsym.solvers.search import solving
 
@@ -61,15 +64,20 @@ def searched(
     within = replace(limits, work=limits.meter.spent + WORK, watch=None)
     costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
     better: Solution | None = None
+    unsettled = set[Kind]()
     for one in solving.others(instance, solution, within, seed):
         if limits.late:
             break
         kind = Kind.REVOLUTIONS if one.plan.turns is not None else Kind.STARTS
         kind = Kind.DURATIONS if instance.tf is None and one.plan.scale != 1.0 and one.plan.turns is None else kind
         kind = Kind.TIMES if one.plan.parts else kind
-        costs[kind if kind in costs else Kind.STARTS].append(one.cost)
+        kind = kind if kind in costs else Kind.STARTS
+        costs[kind].append(one.cost)
+        unsettled |= {kind} if one.unsettled else set()
         if one.exact is not None and (better is None or one.exact.objective < better.objective):
             better = one.exact
+            if not solution.instance.guess:
+                return {kind: own for kind, own in costs.items() if own}, better, unsettled
     for turned in _turned(instance):
         within = replace(within, work=limits.meter.spent + TURNED)
         found = None if limits.late else solving.searched(turned, within)
@@ -85,7 +93,7 @@ def searched(
             break
     if instance.tf is None and math.isfinite(cost := _at_once(solution)):
         costs[Kind.DURATIONS].append(cost)
-    return {kind: own for kind, own in costs.items() if own}, better
+    return {kind: own for kind, own in costs.items() if own}, better, unsettled
 
 
 def _angles(instance: Instance) -> list[str]:
