@@ -33,7 +33,7 @@ TENFOLD, LAST = 10.0, 3
 """Factor by which the fall of the cost grows from one of these to the next, at least, for the last ones."""
 
 TOLERANCE = 1e-9
-"""Of integration."""
+"""Error that the integration allows, relative and absolute."""
 
 HELD = "constrain the final state, or bound the control"
 """What keeps motions from escaping."""

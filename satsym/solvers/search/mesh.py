@@ -15,7 +15,7 @@ TOLERANCE, MOST_PIECES = 1e-5, 6
 """Residual that is small enough, relative to the sizes of states; pieces into which an interval is cut at most."""
 
 UNRESOLVED, HALVES = 1.0, 2
-"""Residual, relative to these sizes, from which a mesh does not resolve its motion, and into how many pieces intervals
+"""Residual, in sizes of states, from which a mesh does not resolve its motion, and into how many pieces intervals
 are cut at most then: a much finer mesh is another problem, whose motion is somewhere else."""
 
 JUMP, PIECES = 0.15, 4
