@@ -11,7 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
-from satsym.solvers.simulation.together import together
+from satsym.solvers.simulation.together import costs_together
 
 SIZES = np.geomspace(1e-2, 1e4, 13)
 """Sizes of constant controls that are tried."""
@@ -68,9 +68,8 @@ def _likely(instance: Instance) -> list[tuple[Array, float, float]]:
     controls = np.einsum("s,dm->mds", sizes, directions).reshape(m, -1)
     assert instance.tf is not None
     lasting = np.full(controls.shape[1], instance.tf - instance.t0)
-    motions = together(instance, lambda *_: (controls, controls, controls), lasting, STEPS, costing=False)
-    with np.errstate(invalid="ignore"):
-        finite = (np.abs(motions.states) < INFINITE).all(axis=(0, 1)).reshape(len(directions), -1)
+    held = np.broadcast_to(controls[:, None], (m, 2 * STEPS + 1, len(lasting)))
+    finite = np.isfinite(costs_together(instance, held, lasting)).reshape(len(directions), -1)
     first = (~finite).argmax(axis=1)  # 0 as well where all are finite
     return [(one, float(sizes[k - 1]), float(sizes[k])) for one, k in zip(directions, first, strict=True) if k]
 

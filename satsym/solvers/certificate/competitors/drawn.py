@@ -21,6 +21,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
+from satsym.solvers.simulation.together import costs_together
 from satsym.solvers.spare_time import frequency, longest, rates_by_states
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 
@@ -146,45 +147,7 @@ def _costs(solution: Solution, drawn: Array) -> Array:
     waves = np.moveaxis(changes[:, :-1].reshape(-1, m, WAVES) @ _waves(tau), 0, -1)
     controls = _stated(solution, tau)[:, :, None] + waves
     lasting = (solution.times[-1] - solution.times[0]) * np.exp(changes[:, -1])
-    return _simulated_costs(solution.instance, controls, lasting).reshape(drawn.shape[:-1])
-
-
-def _simulated_costs(instance: Instance, controls: Array, lasting: Array) -> Array:
-    """Costs of S motions from the initial state, shape (S,); infinite where a motion leaves its domain.
-
-    They are simulated all at once by the classical Runge-Kutta method; controls are cut to their bounds.
-
-    Parameters
-    ----------
-    controls
-        At the nodes and midpoints of N steps, shape (m, 2 N + 1, S).
-    lasting
-        Durations, shape (S,).
-    """
-    model, p, kept = instance.model, instance.parameters, instance.control_set.project
-    states = [np.repeat(np.array(instance.initial)[:, None], len(lasting), axis=1)]
-    steps = controls.shape[1] // 2
-    total, h = np.zeros(len(lasting)), lasting / steps
-
-    def running(t: Array, x: Array, u: Array) -> Array:
-        return np.asarray(model.running_cost_batch(t, x, u, p))
-
-    with np.errstate(all="ignore"):
-        for k in range(steps):
-            x, u = states[-1], [kept(controls[:, j]) for j in range(2 * k, 2 * k + 3)]
-            t, z, slopes = [instance.t0 + (k + share) * h for share in (0.0, 0.5, 1.0)], [x], list[Array]()
-            for at, share in ((0, 0.5), (1, 0.5), (1, 1.0), (2, 0.0)):
-                slopes.append(np.asarray(model.dynamics_batch(t[at], z[-1], u[at], p)))
-                z.append(x + share * h * slopes[-1])
-            total += h / 6.0 * (running(t[0], z[0], u[0]) + running(t[2], z[3], u[2]))
-            total += h / 3.0 * (running(t[1], z[1], u[1]) + running(t[1], z[2], u[1]))
-            states.append(x + h / 6.0 * (slopes[0] + 2.0 * (slopes[1] + slopes[2]) + slopes[3]))
-        found = np.array(states)
-        positive = [i for i, state in enumerate(model.spec.states) if state.positive]
-        inside = np.isfinite(found).all(axis=(0, 1)) & (found[:, positive] > 0.0).all(axis=(0, 1))
-        ends = zip(instance.t0 + lasting, states[-1].T, inside, strict=True)
-        total += [model.terminal_cost(float(t), tuple(end.tolist()), p) if ok else np.inf for t, end, ok in ends]
-    return np.where(inside & np.isfinite(total), total, np.inf)
+    return costs_together(solution.instance, controls, lasting).reshape(drawn.shape[:-1])
 
 
 def natural(solution: Solution) -> Array:
