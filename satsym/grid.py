@@ -86,20 +86,6 @@ class Grid:
         """Simpson weights of values at the midpoints, shape (N,)."""
         return _sealed(self.widths * (2.0 / 3.0))
 
-    def integrate(self, at_nodes: Array, at_midpoints: Array) -> Array:
-        """Simpson's rule over the last axis; exact for cubics within each step.
-
-        Parameters
-        ----------
-        at_nodes, at_midpoints
-            Values, shapes (..., N+1) and (..., N).
-
-        Returns
-        -------
-        Integrals from t0 to tf, shape (...).
-        """
-        return np.asarray(at_nodes @ self.node_weights + at_midpoints @ self.midpoint_weights)
-
     def with_corners(self, points: Iterable[float], closest: float = CLOSEST) -> Grid:
         """The grid in which each of the points is a node, as far as the spacing allows.
 
@@ -136,10 +122,6 @@ class Grid:
             corners.add(point)
             fixed.add(point)
         return Grid(np.array(nodes), tuple(sorted(corners)))
-
-    def refine(self) -> Grid:
-        """The grid with every step halved: its even nodes are the nodes of this one."""
-        return Grid(interleave(self.nodes, self.midpoints), self.corners)
 
 
 def interleave(at_nodes: Array, at_midpoints: Array) -> Array:

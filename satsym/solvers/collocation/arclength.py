@@ -85,8 +85,6 @@ class Point:
     fraction: float
     curve: Curve
     """Where on it, and the curve."""
-    taken: int = 0
-    """Linearisations that it took to come here."""
     known: Linearised | None = None
     """The equations next to it, if they are at hand."""
 
@@ -152,7 +150,6 @@ class Point:
 
 def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None, float]:
     """The next extremal, and the length of the step after it."""
-    taken = 1
     while length >= SHORTEST:
         step = tangent.times(length)
         arrives = here.fraction != 1.0 and (here.fraction - 1.0) * (here.fraction + step.fraction - 1.0) <= 0.0
@@ -162,9 +159,7 @@ def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None,
             there, needed = _corrected(here, tangent, step, arrives)
         except np.linalg.LinAlgError:
             there, needed = None, CORRECTIONS
-        taken += needed
         if there is not None:
-            there = replace(there, taken=taken)
             return there, length * (1.7 if needed <= FEW_CORRECTIONS else 0.7 if needed >= MANY_CORRECTIONS else 1.0)
         length /= 2.0
     return None, length

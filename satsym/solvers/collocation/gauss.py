@@ -36,20 +36,15 @@ class Scheme:
     barycentric: Array
     """Weights of Lagrange's formula through 0 and the stages, shape (s + 1,)."""
 
-    @property
-    def stages(self) -> int:
-        """Number s of stages."""
-        return len(self.nodes)
-
 
 @lru_cache
 def interpolation(stages: int, onto: int) -> Array:
-    """From values at 0 and at the stages of a scheme to those at the stages of another, shape (onto, stages + 1)."""
+    """The matrix from values at 0 and at a scheme's stages to those at another's stages, shape (onto, stages + 1)."""
     return lagrange(stages, scheme(onto).nodes)
 
 
 def lagrange(stages: int, places: Array) -> Array:
-    """From values at 0 and at the stages to those at places in [0, 1], shape (M, stages + 1).
+    """The matrix from values at 0 and at the stages to those at places in [0, 1], shape (M, stages + 1).
 
     By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
     """

@@ -23,8 +23,8 @@ from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_
 ROUNDING = 1e-10
 """Share of a control by which rounding may seem to move it beyond a bound."""
 
-PLACES, EQUAL_DERIVATIVES = 8, 1e-9
-"""Times at which derivatives are compared, and the relative difference of numbers that may be rounding."""
+ROUNDED_MISS = 1e-9
+"""Scaled miss of the end that may be rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +204,7 @@ class TwoPoint:
         end, theta = np.concatenate([self.initial, np.zeros(self.states)]), np.zeros(self.unknowns)
         constrained = np.ones(self.unknowns - self.free_time, dtype=bool)
         missed = self.boundary(end, theta)[: self.unknowns - self.free_time + self.states]
-        if (np.abs(missed[np.concatenate([self.fixed, constrained])]) > EQUAL_DERIVATIVES).any():
+        if (np.abs(missed[np.concatenate([self.fixed, constrained])]) > ROUNDED_MISS).any():
             return float("inf")
         return self.terminal_cost(end, theta) * self.scale.cost
 
@@ -234,19 +234,6 @@ class TwoPoint:
             if part.kind not in ("free", "box"):
                 within[list(places)] = 0.0
         return np.asarray(law - within)
-
-    @cached_property
-    def linear(self) -> bool:
-        """Whether canonical equations and ends are linear: their derivatives are the same at places that are drawn.
-
-        An extremal that is no minimum then has no minimum beside it either: the cost has none.
-        """
-        rng, tau = np.random.default_rng(0), np.linspace(0.0, 1.0, PLACES)
-        places = rng.uniform(0.5, 1.5, (2, 2 * self.states, PLACES))
-        here, there = (self.jacobian(tau, place, self.theta) for place in places)
-        ends = [self.boundary_slopes(place[:, -1], self.theta + k) for k, place in enumerate(places)]
-        pairs = [(here, there), *zip(*ends, strict=True)]
-        return all((np.abs(a - b) <= EQUAL_DERIVATIVES * np.abs(a).max(initial=0.0)).all() for a, b in pairs)
 
     def boundary(self, end: Array, theta: Array) -> Array:
         """Residuals at the right end, scaled, shape (n + e,).

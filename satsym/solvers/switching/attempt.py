@@ -68,8 +68,6 @@ class Exact:
     origin: Origin = Origin.STRUCTURE
     smoothing: float = 0.0
     """From where it was found, and by how much that was smoothed."""
-    passed: tuple[tuple[float, float], ...] = ()
-    """Cost and residual, one by one, on the way here, where that is one way and nobody else watched it."""
 
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
@@ -221,7 +219,7 @@ def _dropped(found: Refined, control: int, arc: int) -> Guess:
 
 
 def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory] | None:
-    """Without arcs that have no length, if what is left still solves the equations."""
+    """The extremal less arcs that have no length, if what is left still solves the equations."""
     start, end = instance.t0, found.at.end
     while True:
         shortest = _shortest(found, start)
@@ -241,7 +239,7 @@ def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory]
 
 
 def _inserted(found: Refined, trajectory: Trajectory, fault: Violation) -> Guess:
-    """With an arc at the better level where the control is at a worse one."""
+    """A guess with an arc at the better level where the control is at a worse one."""
     own = found.structure.by_control(found.at.times)
     times, row = own[fault.control], found.structure.levels[fault.control]
     middle = (fault.start + fault.end) / 2.0

@@ -173,7 +173,7 @@ def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, se
 
 
 def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
-    """With what else may lead to an answer where magnitudes cost: singular arcs are recognised without a weight."""
+    """The failure with advice where magnitudes cost: singular arcs are recognised only without a weight."""
     if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
     advice = (
@@ -331,7 +331,7 @@ def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exac
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
     else:
         message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message)
     if shows(looks) and not limits.expired:
         return replace(last_seen, chattering=tuple(levels))
     for one, smoothing in unlikely:

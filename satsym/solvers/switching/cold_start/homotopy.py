@@ -17,7 +17,7 @@ from satsym.solvers.cold_start.swept import on_mesh
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.continuation import corners, through
-from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -76,9 +76,6 @@ class Stopped(Exception):
     status: Status
     message: str
     """What came of it."""
-    problem: TwoPoint | None = None
-    curve: Path | None = None
-    """The last regularised problem that was solved, if any."""
     chattering: tuple[Smoothed, ...] = ()
     """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
@@ -141,7 +138,7 @@ def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int
                 break
         if near is None:
             message = f"a regularisation below {last.problem.control_set.smoothing:.1e} was not reached"
-            raise Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+            raise Stopped(Status.NOT_CONVERGED, message)
         passed.append(near)
         yield near
 
