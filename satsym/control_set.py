@@ -135,7 +135,7 @@ class ControlSet:
         return not self.directed and any(map(math.isfinite, (*self.lower, *self.upper, self.radius)))
 
     def relaxed(self, by: float) -> ControlSet:
-        """With relaxed bounds: every one moved outwards, in the controls' units; that of a direction if regularised."""
+        """The set with every bound moved outwards, in the controls' units; that of a direction if regularised."""
         if self.kind == "product":
             eased = self.smoothing > UNSMOOTHED
             parts = tuple((at, part.relaxed(by) if eased or not part.directed else part) for at, part in self.parts)

@@ -57,7 +57,7 @@ class Calculus(Engine[Node]):
         return self._weighed(substituted(expression, values))
 
     def determinant(self, matrix: Matrix[Node]) -> Node:
-        """By minors of the first row."""
+        """The determinant of a matrix, by minors of the first row."""
         if matrix.shape[0] != matrix.shape[1]:
             raise BadInput("a determinant requires a square matrix")
         if matrix.shape == (1, 1):

@@ -233,7 +233,7 @@ class Engine(ABC, Generic[S]):
         """Refuse what is not ``slope*by + rest`` with a slope other than zero."""
 
     def inverse(self, matrix: Matrix[S]) -> Matrix[S]:
-        """By cofactors."""
+        """The inverse of a matrix, by cofactors."""
         n = square(matrix)
         over = self.power(self.determinant(matrix), Fraction(-1))
         return Matrix(

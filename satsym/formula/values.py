@@ -24,7 +24,7 @@ class Matrix(Generic[S]):
 
     @property
     def entries(self) -> list[S]:
-        """All of them, row by row."""
+        """All entries of the matrix, row by row."""
         return [entry for row in self.rows for entry in row]
 
     def mapped(self, function: Callable[[S], S]) -> Matrix[S]:

@@ -27,7 +27,7 @@ class Varied:
     end: float
 
     def value(self, share: float) -> float:
-        """At a share of the way: of its logarithm where that is long."""
+        """The number at a share of the way: a share of its logarithm where the way is long."""
         if share in (0.0, 1.0):
             return self.end if share else self.begin
         if self.begin * self.end > 0.0 and max(self.begin / self.end, self.end / self.begin) >= LARGE:

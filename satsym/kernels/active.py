@@ -25,7 +25,7 @@ class Active(Kernels):
     """Names of the constraints that are active."""
 
     def compiled(self) -> Kernels:
-        """As of any kernels; rows are left out in Python."""
+        """The compiled kernels; rows are left out in Python."""
         return self if self.backend == "numba" else with_active(stated(self).compiled(), self.names)
 
 
@@ -82,6 +82,6 @@ def _with_fewer_in_batches(function: Function, count: int, kept: list[int], want
 
 
 def _padded(nu: Any, count: int, kept: list[int]) -> tuple[Any, ...]:
-    """With zeros as the multipliers of what is left out."""
+    """Multipliers of all rows, zero for those that are left out."""
     given = dict(zip(kept, nu, strict=True))
     return tuple(given.get(k, 0.0) for k in range(count))

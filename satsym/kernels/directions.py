@@ -60,7 +60,7 @@ def slope_terms(of: Evaluation, law: Array) -> tuple[Array, Array]:
 
 
 def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlSet) -> Array:
-    """Against the slope of H by a vector, as long as its slope, less what the norm adds, and the smoothing make it."""
+    """The vector against the slope of H, as long as that slope, less what the norm adds, and the smoothing make it."""
     unit = np.zeros_like(of.at["u"])
     unit[rows[0]] = 1.0
     ahead, back = (of("stationarity", u=side * unit)[rows] for side in (1.0, -1.0))
@@ -71,7 +71,7 @@ def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlS
 
 
 def _at_levels(of: Evaluation, rows: list[int], part: ControlSet, within: ControlSet) -> Array:
-    """Against the slope of H by a single control in a box, as far as the smoothing and its bounds let it."""
+    """The single control in a box against the slope of H, as far as the smoothing and its bounds let it."""
     law = of("control_law")
     slope = of("stationarity", u=law)[rows]
     if part.turned_by is not None:  # of what does not turn only a share counts

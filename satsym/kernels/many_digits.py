@@ -278,7 +278,7 @@ class _Watched(ast.NodeTransformer):
         self.count = 0
 
     def visit_For(self, node: ast.For) -> ast.AST:
-        """Nothing in an iteration is watched."""
+        """Leave a loop as it is: nothing in an iteration is watched."""
         return node
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:

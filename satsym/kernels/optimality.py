@@ -247,7 +247,7 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
 
 
 def _constrained_law(of: Evaluation) -> Array:
-    """Without bounds; where the law is not in closed form any controls, as what is looked at holds for all of these."""
+    """Controls of the law without bounds; any controls where it has no closed form, for which all looks hold."""
     closed = of.has("boundary_control") and not of.kernels.spec.switching
     return of("control_law", bounds=_none(of)) if closed else np.asarray(of.at["u"])
 

@@ -64,7 +64,7 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
 
 
 def _solved_in_steps(instance: Instance, progress: Progress | None, last: Solver) -> Solution:
-    """By continuation."""
+    """Solve an instance by continuation."""
     from satsym.solvers import continued
 
     quick = _with_free if instance.free else _uncertified
@@ -72,7 +72,7 @@ def _solved_in_steps(instance: Instance, progress: Progress | None, last: Solver
 
 
 def _with_free(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
-    """With what the instance leaves free besides its end, if it does."""
+    """Solve an instance, and for what it leaves free besides its end, if it does."""
     found = partial(_found, examined=examined)
     if instance.end_limits:
         from satsym.solvers import end_limits
@@ -138,7 +138,7 @@ def _in_full(found: Solution, instance: Instance) -> Solution:
 
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
-    """By the method alone."""
+    """Solve an instance by its method alone, without a certificate."""
     return _in_time(_named(instance))(instance, progress)
 
 
@@ -213,7 +213,7 @@ def _nearly(solution: Solution) -> bool:
 
 
 def _solved(method: Method, instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
-    """By a method, with its certificate if it has one and is examined."""
+    """Solve an instance by a method, with its certificate if it has one and is examined."""
     solver = _in_time(method)
     if not (method.certified and examined):
         return solver(instance, progress)

@@ -142,6 +142,6 @@ def _label(names: tuple[str, ...], powers: list[int]) -> str:
 
 
 def _tidied(labels: list[str], powers: Array, coefficients: Array) -> Conserved:
-    """Without what is rounding, the first coefficient being one."""
+    """A conserved quantity less what is rounding, its first coefficient being one."""
     seen = np.flatnonzero(np.abs(coefficients) > SEEN * np.abs(coefficients).max())
     return Conserved(tuple(labels[i] for i in seen), powers[seen], coefficients[seen] / coefficients[seen[0]])

@@ -118,7 +118,7 @@ def _stepped(instance: Instance, reached: _Reached, progress: Progress | None, q
 
 
 def _past_folds(instance: Instance, reached: _Reached, progress: Progress | None, quick: Solver) -> _Reached:
-    """On along the arc length; the same where that leads nowhere, or has no meaning."""
+    """Go on along the arc length past folds; what was reached stays where that leads nowhere, or has no meaning."""
     spec = instance.model.spec
     if spec.switching or spec.directional or instance.free:
         return reached

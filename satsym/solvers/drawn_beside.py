@@ -180,7 +180,7 @@ class _Field:
     backwards: Bundle
 
     def joined(self, first: Array, last: Array, rng: np.random.Generator) -> _Field:
-        """With those that have such costates, sized so that H vanishes where durations are free."""
+        """The field with extremals that have such costates, sized so that H vanishes where durations are free."""
         problem, steps = self.problem, len(self.onwards.z) - 1
         if not self.free:
             onwards = _from_start(problem, first, steps)
@@ -196,7 +196,7 @@ class _Field:
         return replace(self, onwards=self.onwards.joined(onwards), backwards=self.backwards.joined(backwards))
 
     def refined(self, size: float, rng: np.random.Generator) -> _Field:
-        """With others about the cheapest pairs, and the closest as well, so far away relative to their costates."""
+        """The field with others about the cheapest and the closest pairs, so far away relative to their costates."""
         n, pairs = self.problem.states, self.cheapest(NEAR_GAP)
         pairs = pairs[:PARENTS]
         if not len(pairs):
@@ -325,7 +325,7 @@ def _from_start(problem: TwoPoint, costates: Array, steps: int) -> Bundle:
 
 
 def _to_end(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.Generator, steps: int) -> Bundle:
-    """To the end; where a final state is free it is that of a motion from the start, and transversality holds."""
+    """Extremals to the end; a free final state is that of a motion from the start, and transversality holds for it."""
     n, free, reached = problem.states, ~problem.fixed, np.flatnonzero(np.isfinite(onwards.costs[-1]))
     count = costates.shape[1]
     end, terminal = np.repeat(straight(problem)[:, 1:], count, axis=1), np.zeros(count)

@@ -69,24 +69,24 @@ class Exponential(Arcs):
     """Arcs of an autonomous linear system, by matrix exponentials."""
 
     def variations(self) -> tuple[Array, Array]:
-        """As of :class:`Arcs`."""
+        """Ends of the arcs, and how they follow their beginnings."""
         flows = self.flows(np.diff(self.mesh))
         ends = flows[:, :-1, :-1] @ self.nodes.T[:-1, :, None] + flows[:, :-1, -1:]
         return ends[:, :, 0].T, flows[:, :-1, :-1]
 
     def ends(self) -> Array:
-        """As of :class:`Arcs`."""
+        """Ends of the arcs."""
         return self.variations()[0]
 
     def __call__(self, tau: Array) -> Array:
-        """As of :class:`Arcs`."""
+        """States and costates at times in [0, 1]."""
         arc = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
         flows = self.flows(tau - self.mesh[arc])
         values: Array = (flows[:, :-1, :-1] @ self.nodes.T[arc, :, None] + flows[:, :-1, -1:])[:, :, 0].T
         return values
 
     def cost(self) -> float:
-        """As of :class:`Arcs`, by Gauss quadrature."""
+        """The cost of the motion, by Gauss quadrature."""
         points, weights = np.polynomial.legendre.leggauss(GAUSS)
         widths = np.diff(self.mesh)[:, None]
         tau = (self.mesh[:-1, None] + widths * (points + 1.0) / 2.0).ravel()

@@ -66,7 +66,7 @@ class Redundant:
 
     @property
     def towards(self) -> Instance:
-        """With the straight line to the end that is asked for as a guess: the others may leave a sign open."""
+        """The instance with the straight line to its end as a guess: the final states left may leave a sign open."""
         names, whole = self.instance.model.spec.state_names, {**self.instance.final, self.state: self.given}
         line = {
             name: (x, float(whole[name]) if isinstance(whole.get(name), float | int) else x)

@@ -137,7 +137,7 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Atte
 
 
 def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-    """From an extremal of low order to an accurate one within the bounds."""
+    """Make an extremal of low order an accurate one within the bounds."""
     tolerance = problem.instance.solver.tolerance
     free, steps = problem.relaxed(float("inf")), start.steps
     refined = start.found

@@ -152,7 +152,7 @@ def _peaks(span: Span, signals: Callable[[Array], Array]) -> Array:
 
 
 def _integral(span: Span, function: Callable[[Array], Array]) -> Array:
-    """By Gauss between the nodes, which are joined by the zeros of the controls."""
+    """Integrate a function over a span by Gauss's rule between its nodes, joined by the zeros of the controls."""
     nodes = np.unique(np.concatenate([span.times, _zeros(span)]))
     places, weights = np.polynomial.legendre.leggauss(POINTS)
     half = np.diff(nodes) / 2.0

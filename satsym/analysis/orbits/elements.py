@@ -235,7 +235,7 @@ class _Attitude:
 
     @classmethod
     def of(cls, states: States, conic: Conic, anomaly: float) -> _Attitude:
-        """From the true anomaly, which a circle does not have."""
+        """Where a body is on its conic, from the true anomaly, which a circle does not have."""
         outward = states.position[:, 0] / np.linalg.norm(states.position[:, 0])
         if conic is Conic.RECTILINEAR:
             return cls(None, None, None, None, outward, _across(outward))

@@ -245,7 +245,7 @@ def _anomaly(start: _Motion, rate: Array, w: Array, waves: Waves) -> Array:
 
 
 def _bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
-    """On an ellipse, for at most half a revolution: where to begin, and an upper bound.
+    """Where Kepler's equation of an ellipse begins to be solved, for at most half a revolution, and an upper bound.
 
     Outward from the start, no term of Kepler's equation is negative, and w s is at most half a turn. There each of
     the three bounds s; together they leave a factor of a few.
@@ -259,7 +259,7 @@ def _bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
 
 
 def _open_bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
-    """On a parabola or hyperbola, outward: each of the three terms of Kepler's equation bounds s."""
+    """Where Kepler's equation of an open orbit begins to be solved, outward, and a bound: each term of it bounds s."""
     duration, mean = start.duration, w**3 * start.duration / start.mu
     cubic = np.cbrt(6.0 * duration / start.mu)
     flat = np.minimum(duration / start.radius, cubic)

@@ -26,7 +26,7 @@ class States:
     """Shape of the caller's arrays behind their first axis, once they are broadcast."""
 
     def part(self, chosen: Any) -> States:
-        """Some of the columns."""
+        """The states of some of the columns."""
         arrays = (self.position[:, chosen], self.velocity[:, chosen], self.mu[chosen], self.duration[chosen])
         return States(*arrays, self.shape)
 

@@ -86,7 +86,7 @@ def _by_subspace(A: Array, B: Array, Q: Array, R: Array) -> Array:
 
 
 def _by_scipy(A: Array, B: Array, Q: Array, R: Array) -> Array:
-    """From an extended pencil, which does without B R^-1 B' and is a better start where that is large."""
+    """Solve Riccati's equation from an extended pencil, which does without B R^-1 B': better where that is large."""
     from scipy.linalg import solve_continuous_are
 
     with warnings.catch_warnings():

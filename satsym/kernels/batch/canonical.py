@@ -90,7 +90,7 @@ class _Writer:
         self.n, self.parameters = len(spec.states), len(spec.parameters)
 
     def workspace(self) -> Workspace:
-        """With what all functions share at the same places."""
+        """A workspace in which what all functions share is at the same places."""
         found = Workspace()
         for name, rows in (("p", self.parameters), ("t", 1), ("h", 1), ("slopes", 4 * self.n**2)):
             found.place(name, rows)

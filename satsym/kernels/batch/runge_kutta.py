@@ -315,7 +315,7 @@ class Arranged:
     turns: tuple[Bound, ...]
 
     def begin(self, ends: Array, unit: float) -> None:
-        """Before the first of some steps."""
+        """Prepare for the first of some steps."""
         self.given[UNIT][()], self.given[INVERSE][()] = unit, 1.0 / unit
         for group in self.groups:
             for weights, states, rows in zip(group.weights, group.states, group.rows, strict=True):
@@ -324,7 +324,7 @@ class Arranged:
             turn.begin()
 
     def states(self, steps: int) -> list[Array]:
-        """After so many steps, in the model's order."""
+        """Rows of the states after so many steps, in the model's order."""
         found = dict[int, Array]()
         for group in self.groups:
             for states, part in zip(group.states, (group.now, group.after)[steps % 2], strict=True):

@@ -109,7 +109,7 @@ def _eased(many: Many, z: Array) -> tuple[Array, NDArray[np.object_]]:
 
 
 def _moved_outwards(many: Many, by: Array) -> Many:
-    """With wider bounds, shape (b, M)."""
+    """The problems with their bounds moved outwards by so much, shape (b, M)."""
     if many.problem.control_set.kind == "ball":
         return replace(many, radius=many.radius + by[0])
     m = len(many.lower)
@@ -190,7 +190,7 @@ def _polished(
 
 
 def _laid(many: Many, z: Array, met: Met) -> tuple[Many, Array, NDArray[np.intp]]:
-    """With nodes where bounds are met as well, the nodes' values, and where the others are among them."""
+    """The problems with nodes where bounds are met as well, the nodes' values, and where the others are among them."""
     first, lasting, count = many.instance.t0, many.problem.duration, many.count
     base = np.broadcast_to(many.mesh, (len(many.mesh), count))
     share = np.where(np.isfinite(met.times), (met.times - first) / lasting, 1.0)

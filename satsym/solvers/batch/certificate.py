@@ -227,7 +227,7 @@ def _without_conjugate_points(many: Many, z: Array, halvings: int = HALVINGS) ->
 
 
 def _halved(many: Many, z: Array) -> tuple[Many, Array]:
-    """On a mesh with twice as many segments, and the nodes there."""
+    """The problems on a mesh with twice as many segments, and the values at its nodes."""
     t, start, h, p = many.segments(z)
     costing = np.concatenate([start, np.zeros((1, len(t)))])
     middles = many.motion.leap(t, costing, h / 2.0, p, len(SUBSTEPS))[0][:-1]

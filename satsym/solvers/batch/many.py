@@ -102,7 +102,7 @@ class Many:
         return found
 
     def only(self, chosen: NDArray[np.intp]) -> Many:
-        """Some of them."""
+        """Some of the problems."""
         if len(chosen) == self.count:
             return self
         columns: dict[str, Any] = {

@@ -55,7 +55,7 @@ def motion(kernels: Kernels, bounds: tuple[float, ...] | None, compiled: bool) -
 
 
 class _Compiled:
-    """By machine code."""
+    """Steps of extremals by machine code."""
 
     def __init__(self, kernels: Kernels, bounds: tuple[float, ...]) -> None:
         a, b, c = tableau()
@@ -104,7 +104,7 @@ def _costing(z: Array) -> Array:
 
 
 class _OnArrays:
-    """By the batch forms, block by block."""
+    """Steps of extremals by the batch forms, block by block."""
 
     def __init__(self, kernels: Kernels, bounds: tuple[float, ...] | None) -> None:
         self._kernels, self._bounds, self._n = kernels, bounds, len(kernels.spec.states)

@@ -73,7 +73,7 @@ class Nodes:
 
 
 def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
-    """From a start to near an extremal: nodes, and how each problem ended, shape (M,).
+    """Lead each problem from a start to near an extremal: nodes, and how each ended, shape (M,).
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
 
 
 def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> Nodes:
-    """From nodes that are near to the extremal, with what is known of those that are not.
+    """Make nodes accurate that are near to the extremal, and report what is known of those that are not.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ def solved_together(many: Many) -> Answers:
 
 
 def to_rounding(many: Many, nodes: Nodes, chosen: NDArray[np.intp]) -> Nodes:
-    """With some made as accurate as rounding allows: where controls hardly move the end, it takes more digits."""
+    """Make some solutions as accurate as rounding allows: where controls hardly move the end, it takes more digits."""
     if not len(chosen):
         return nodes
     near = np.full(len(chosen), Outcome.SOLVED, dtype=object)
@@ -72,7 +72,7 @@ def _open(nodes: Nodes) -> NDArray[np.bool_]:
 
 
 def _blank(many: Many) -> Nodes:
-    """Nothing solved yet."""
+    """The nodes of problems of which none is solved yet."""
     count = many.count
     return Nodes(
         np.full((2 * many.states, len(many.mesh), count), np.nan),
@@ -83,7 +83,7 @@ def _blank(many: Many) -> Nodes:
 
 
 def _put(found: Nodes, chosen: NDArray[np.intp], some: Nodes) -> None:
-    """Into what was found, in place."""
+    """Put the nodes of some problems into those of all, in place."""
     found.z[:, :, chosen] = some.z
     found.cost[chosen], found.error[chosen], found.outcome[chosen] = some.cost, some.error, some.outcome
 

@@ -72,7 +72,7 @@ def others_asked(solution: Solution) -> dict[str, Side] | None:
 
 
 def _after_jump(solution: Solution) -> Solution:
-    """With costates at the end after the jump that a path constraint makes there."""
+    """The solution with costates at the end after the jump that a path constraint makes there."""
     if solution.method != BOUNDARY_ARCS:
         return solution
     from satsym.solvers.certificate.constrained.replay import replay

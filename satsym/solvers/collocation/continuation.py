@@ -49,7 +49,7 @@ NOTHING = 1e-14
 
 
 def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
-    """From the extremal without bounds to the one with them.
+    """Lead the extremal without bounds to the one with them.
 
     Parameters
     ----------

@@ -251,13 +251,13 @@ class Together:
 
 
 def _derivative(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
-    """Along a direction, by a complex step."""
+    """The derivative of rates along a direction, by a complex step."""
     step = COMPLEX_STEP
     return np.imag(function(t + 1j * step * dt, z + 1j * step * dz)) / step
 
 
 def _difference(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
-    """Along a direction, by central differences."""
+    """The derivative of rates along a direction, by central differences."""
     n = len(z) // 2
     size = np.abs(z).max(axis=1, keepdims=True)
     for half in (slice(0, n), slice(n, 2 * n)):

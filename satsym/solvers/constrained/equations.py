@@ -45,12 +45,12 @@ class System:
 
     @property
     def residual(self) -> Array:
-        """All of them."""
+        """All equations, as one vector that is zero at a solution."""
         return np.concatenate(self.residuals)
 
     @property
     def jacobian(self) -> csc_matrix:
-        """By all unknowns."""
+        """The derivatives of all equations by all unknowns."""
         from scipy.sparse import csc_matrix
 
         places = np.concatenate(self.rows), np.concatenate(self.columns)

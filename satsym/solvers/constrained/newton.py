@@ -174,7 +174,7 @@ def _sizes(arcs: Arcs) -> Array:
 
 
 def _refined(arcs: Arcs) -> Arcs:
-    """On twice as many intervals."""
+    """The arcs on twice as many intervals."""
     parts: list[Array] = []
     for k, count in enumerate(arcs.intervals):
         a, b = arcs.times[k : k + 2]

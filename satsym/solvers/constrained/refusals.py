@@ -51,7 +51,7 @@ def _stands(instance: Instance, which: NDArray[np.bool_]) -> bool:
 
 
 def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
-    """At a state that is known as a whole; what is rounding of its terms is nothing."""
+    """Refuse a path constraint that is violated at a state which is known as a whole, by more than rounding."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
     t, x, rest = np.array([time]), np.array(state)[:, None], np.zeros((len(model.spec.controls), 1))

@@ -160,7 +160,7 @@ def _opposed(arcs: Arcs, one: int, other: int) -> bool:
 
 
 def _joined(arcs: Arcs, one: int, other: int) -> Structure | None:
-    """With no free arc between two contacts, of constraints that hold controls and cannot be active at once."""
+    """The structure without a free arc between two contacts, of constraints that cannot be active at once."""
     first, second = contacts(arcs)[one], contacts(arcs)[other]
     if first.constraint == second.constraint or not _opposed(arcs, first.constraint, second.constraint):
         return None
@@ -280,7 +280,7 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) -> Structure | None:
-    """With a constraint active in place of another while it is violated, which hold the same controls."""
+    """The structure with a constraint active where it is violated, in place of another that holds the same controls."""
     for place, one in enumerate(contacts(arcs)):
         if one.touches or not one.start <= 0.5 * (start + end) <= one.end:
             continue
@@ -294,7 +294,7 @@ def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) ->
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:
-    """With one arc in place of two contacts with a constraint between which it is violated."""
+    """Structures with one arc in place of two contacts with a constraint between which it is violated."""
     known = contacts(arcs)
     own = [k for k, one in enumerate(known) if one.constraint == constraint]
     place = sum(known[k].middle < 0.5 * (start + end) for k in own)

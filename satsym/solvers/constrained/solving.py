@@ -74,7 +74,7 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
 
 
 def _lean(arcs: Arcs, limits: Limits) -> Arcs:
-    """Without arcs that nothing needs, where what is left is an extremal as well."""
+    """The extremal less arcs that nothing needs, where what is left is an extremal as well."""
     if (structure := without_idle(arcs)) is None:
         return arcs
     found = solved(from_arcs(arcs, structure), limits)
@@ -82,7 +82,7 @@ def _lean(arcs: Arcs, limits: Limits) -> Arcs:
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:
-    """With one arc as a touch point, or without it where its order is one."""
+    """Structures with one arc as a touch point, or without it where its order is one."""
     found = []
     for k, one in enumerate(structure.contacts):
         second = instance.model.spec.path_constraints[one.constraint].order > 1

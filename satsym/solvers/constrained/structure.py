@@ -68,7 +68,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Junction:
-    """Between two arcs."""
+    """What happens between two arcs."""
 
     event: Event
     contact: int

@@ -66,7 +66,7 @@ class Saltation:
 
     @property
     def gap(self) -> Array:
-        """Between both sides at a node that is not yet where the jump is, shape (2n,)."""
+        """The gap between both sides at a node that is not yet where the jump is, shape (2n,)."""
         return np.asarray(self.leap * (self.excess / self.speed))
 
 

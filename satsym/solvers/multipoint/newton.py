@@ -111,7 +111,7 @@ def _refined(found: Extremal) -> tuple[Problem, Array]:
 
 
 def _change(found: Extremal, finer: Extremal) -> float:
-    """From one mesh to the next: of initial and final values, of times, of what is free, and of the cost."""
+    """The change from one mesh to the next: of initial and final values, of times, of what is free, and of the cost."""
     both, duration, _ = found.problem.sizes
     pairs = [(one.problem.layout, one.unknown) for one in (found, finer)]
     d = len(both)

@@ -298,7 +298,7 @@ class _ByCollocation:
         return two_point.from_cold_start(guessed(case, limits), limits, self._within)
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
-        """Nothing is missing."""
+        """The extremal as it was found: nothing is missing."""
         return found
 
     def _sound(self, problem: TwoPoint, found: Attempt, limits: Limits) -> Extremal | None:

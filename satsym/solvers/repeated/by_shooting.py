@@ -82,7 +82,7 @@ class ByShooting:
         return found
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
-        """With nodes where bounds are met: compiled arcs step onto these times, but do not tell them."""
+        """The extremal with nodes where bounds are met: compiled arcs step onto these times, but do not tell them."""
         if not found.problem.control_set.bounded:
             return found
         return extremal(found.problem, found.path, limits)

@@ -132,7 +132,7 @@ class Programme(Transcription):
         return target, len(unique)
 
     def _passed(self, rows: slice, y: Array) -> Array:
-        """Some of the conditions at points on the way."""
+        """Values of some of the conditions at points on the way."""
         return self.points.on_the_way(y)[rows]
 
     @cached_property

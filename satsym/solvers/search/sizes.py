@@ -208,7 +208,7 @@ def _of_controls(instance: Instance, controls: Controls, duration: float, rest: 
 
 
 def _needed(instance: Instance, controls: Controls, duration: float, x: Array, missed: Array) -> Array:
-    """By each variable alone, the least that makes up for some part of the end that is missed; zero where none does."""
+    """The least of each variable alone that makes up for some part of the end that is missed; zero where none does."""
     found = np.zeros(controls.count)
     for k in range(controls.count):
         moved = np.full(controls.count, 0.1 + 0.0j)

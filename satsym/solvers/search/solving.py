@@ -217,7 +217,7 @@ def _beside_poles(z: Array, n: int, open_ones: NDArray[np.bool_]) -> Array:
 
 
 def _with_values(instance: Instance, extremal: Extremal) -> Instance:
-    """With what was found for what is free besides the end."""
+    """The instance with what was found for what is free besides the end."""
     problem, v = extremal.problem, extremal.unknown
     parameters = tuple(float(np.real(value)) for value in problem.given(v))
     initial = list(instance.initial)

@@ -112,7 +112,7 @@ def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
 
 
 def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-    """From an extremal of low order without bounds to an accurate one within them."""
+    """Make an extremal of low order without bounds an accurate one within them."""
     bounded = inside(problem, start, start.found.curve, limits)
     steps = start.steps + bounded.iterations
     if bounded.reason is Reason.BLOCKED:

@@ -83,7 +83,7 @@ class Sweep:
 
     @property
     def step(self) -> Array:
-        """From the control to the one that the sweep asks for; zero at an extremal."""
+        """The change from the control to the one that the sweep asks for; zero at an extremal."""
         return self.law - self.u
 
     @property

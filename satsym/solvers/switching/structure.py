@@ -102,11 +102,11 @@ class Structure:
         return [event for _, _, event in sorted(keyed, key=lambda entry: entry[:2])]
 
     def with_levels(self, control: int, row: tuple[int, ...]) -> Structure:
-        """With other levels of one control."""
+        """The structure with other levels of one control."""
         return Structure((*self.levels[:control], row, *self.levels[control + 1 :]))
 
     def without_arc(self, control: int, arc: int) -> tuple[Structure, list[int]]:
-        """Without one arc of a control, and the columns of the times that are left.
+        """The structure less one arc of a control, and the columns of the times that are left.
 
         Neighbours at the same level become one.
         """
@@ -132,7 +132,7 @@ class Course:
     """Shapes (N,) and (2n, N)."""
 
     def at(self, time: float) -> Array:
-        """Between its times, shape (2n,)."""
+        """States and costates between the times, shape (2n,)."""
         return np.array([np.interp(time, self.times, row) for row in self.z])
 
     def sizes(self) -> Array:

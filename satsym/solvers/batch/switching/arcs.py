@@ -80,7 +80,7 @@ def outermost(costate: Array, rates: Array, table: Array) -> float:
 
 
 def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Array, count: int, final: Array) -> int:
-    """With a switch of a single control next to the end at which its switching function is smaller; how many then."""
+    """Add a switch of a single control next to the end at which its switching function is smaller; how many then."""
     if outermost(costate, rates, powers[0]) < outermost(costate, rates, whole):
         for s in range(count, 0, -1):
             times[s] = times[s - 1]
@@ -197,7 +197,7 @@ def magnitude(values: Array) -> float:
 
 
 def scaled(values: Array, unit: float) -> None:
-    """In other units."""
+    """Bring values into other units, in place."""
     for i in range(len(values)):
         values[i] /= unit
 

@@ -49,7 +49,7 @@ class Arrivals:
     """Switches in the order of time, and which control, shape (S, M): after the last one come the end and -1."""
 
     def only(self, chosen: NDArray[np.intp]) -> Arrivals:
-        """Some of them."""
+        """The arrivals of some of the motions."""
         arrays = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "instances"}
         own = {name: table[..., chosen] for name, table in arrays.items()}
         return replace(self, instances=[self.instances[k] for k in chosen], **own)

@@ -90,7 +90,7 @@ def minima(found: Arrivals) -> NDArray[np.bool_]:
 
 
 def _flow(found: Arrivals) -> _Flow:
-    """From the initial states and costates alone, but for the times of the switches, which are judged afterwards."""
+    """Integrate arcs from the initial states and costates and the times of switches, which are judged afterwards."""
     many, (n, count) = _Many(found), found.costates.shape
     initial = np.array([one.initial for one in found.instances]).T
     start = np.array([one.t0 for one in found.instances])

@@ -254,7 +254,7 @@ def rounding(powers: Array, steps: int, box: Array) -> Array:
 
 
 def towards(lower: Array, point: Array) -> None:
-    """Into the coordinates in which the set is round."""
+    """Bring a point into the coordinates in which the set is round, in place."""
     for i in range(len(point)):
         for j in range(i):
             point[i] -= lower[i, j] * point[j]

@@ -49,7 +49,7 @@ class Compared:
         return [*([cheaper] if math.isfinite(self.margin) else []), *([late] if self.interrupted else [])]
 
     def joined(self, other: Compared) -> Compared:
-        """With what others of the kind came to."""
+        """This comparison with what others of the kind came to."""
         least = min(self, other, key=lambda one: one.margin)
         count, solved = (getattr(self.summary, name) + getattr(other.summary, name) for name in ("tried", "solved"))
         summary = Competitors(self.summary.kind, count, solved, least.summary.cheapest)
@@ -70,7 +70,7 @@ class Comparison:
     """Why there are no others, where that is known."""
 
     def joined(self, other: Comparison) -> Comparison:
-        """With what another has compared."""
+        """This comparison with what another has compared."""
         kinds, missing = self.kinds + other.kinds, self.not_checked + other.not_checked
         return Comparison(kinds, missing, self.better or other.better, self.proved + other.proved)
 

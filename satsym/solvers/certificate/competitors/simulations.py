@@ -38,7 +38,7 @@ class Simulations:
     """The final time."""
 
     def grid(self, longer: float = 0.0) -> Grid:
-        """To a final time that much later."""
+        """The grid of a motion to a final time that much later."""
         return Grid.uniform(self.instance.t0, self.end + longer, self.steps)
 
     def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:

@@ -17,7 +17,7 @@ its time, relative to the terms of H."""
 
 
 def places(solution: Solution) -> list[int]:
-    """After which arcs points are passed."""
+    """The arcs after which points on the way are passed, by their numbers."""
     return [k for k, group in enumerate(within(solution)) if any(one.kind == "interior" for one in group)]
 
 

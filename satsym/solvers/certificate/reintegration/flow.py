@@ -152,7 +152,7 @@ def costing(solution: Solution) -> Callable[[Array, Array], Array]:
 
 
 def sizes(solution: Solution) -> Array:
-    """To which errors of steps are held, shape (2n,)."""
+    """Sizes to which errors of steps are held, shape (2n,)."""
     return np.maximum(np.concatenate(typical(solution, FAINT_COSTATE)), _resolved(solution) / STATIONS)
 
 

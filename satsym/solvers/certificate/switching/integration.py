@@ -46,7 +46,7 @@ class Span:
 
 @dataclass(frozen=True, eq=False)
 class Integration:
-    """With as many digits as SciPy can."""
+    """Integration of arcs with as many digits as SciPy can."""
 
     sizes: Array
     """Typical ones of states and costates, shape (2n,)."""

@@ -81,7 +81,7 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
 
 
 def _merged(met: list[Jump]) -> list[Jump]:
-    """Without jumps that leave nothing between them: where a curve is torn at a node, its law may jump to and fro."""
+    """Jumps less those with nothing between them: where a curve is torn at a node, its law may jump to and fro."""
     left: list[Jump] = []
     for jump in met:
         if left and jump.time - left[-1].time < CLOSE_JUMPS:
@@ -95,7 +95,7 @@ def _merged(met: list[Jump]) -> list[Jump]:
 
 
 def _stepped(system: System, curve: Curve) -> tuple[Curve, float] | None:
-    """After a step of Newton's method, and how large that was."""
+    """The curve after a step of Newton's method, and how large the step was."""
     residual = system.residual(curve)
     try:
         step = linearise(system, curve, residual, system.jacobian(curve)).step(residual)

@@ -239,7 +239,7 @@ def _correct_defects(curve: Curve, linearised: Linearised, tolerance: float, poi
 
 
 def _resolved(problem: TwoPoint, curve: Curve, rough: float) -> _Corrected | None:
-    """By Newton's method on all points, where polynomials of low order already leave out little.
+    """Correct a curve by Newton's method on all points, where polynomials of low order already leave out little.
 
     On intervals that are long beside the decay of neighbouring extremals a linearisation of low order is worthless even
     where hardly anything is left of these: it leads corrections nowhere, and more points still follow them.

@@ -88,7 +88,7 @@ def _levelled(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
 
 
 def _with_events(instance: Instance, exact: Exact, solution: Solution) -> Solution:
-    """With entries to boundaries and exits from them."""
+    """The solution with the events of entering and leaving boundaries."""
     names, events = [one.name for one in instance.model.spec.path_constraints], list[Event]()
     structure, at = exact.refined.structure, exact.refined.at
     for row, own in zip(structure.levels, structure.by_control(at.times), strict=True):

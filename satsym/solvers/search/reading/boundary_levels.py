@@ -57,7 +57,7 @@ def read(at: Motion, shortest: int) -> Guess:
 
 
 def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
-    """With a brief arc to a boundary that the start is not on, and one away from a boundary that the end is not on."""
+    """Levels with a brief arc to a boundary that the start is not on, and one from a boundary that the end is off."""
     instance, x, end = held.instance, held.at.x, float(held.times[-1])
     for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
         level, brief = row[place], SHORT_ARC * float(held.reaches[place])
@@ -74,7 +74,7 @@ def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[in
 
 
 def _with_jumps(held: Along, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
-    """With jumps where a boundary is left for the bound that pushes beyond it, or reached from that which pulls away.
+    """Levels with jumps where a boundary is left for the bound that pushes beyond it, or reached from the other one.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _active(held: Along) -> NDArray[np.bool_]:
 
 
 def _without_brief(levels: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:
-    """Without brief runs of no bound and no boundary: each half is taken for what is beside it."""
+    """Levels less brief runs of no bound and no boundary: each half is taken for what is beside it."""
     found = levels.copy()
     for first, last in runs(levels == SINGULAR):
         if last - first < shortest and last - first + 1 < len(levels):

@@ -48,7 +48,7 @@ class Along:
 
     @property
     def instance(self) -> Instance:
-        """With the values that were found for what it leaves free."""
+        """The instance with the values that were found for what it leaves free."""
         return self.at.instance
 
     @property
@@ -124,14 +124,14 @@ def _passages(at: Motion) -> tuple[Passage, ...]:
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """With single gaps closed."""
+    """Flags whose single gaps are closed."""
     found = flags.copy()
     found[1:-1] |= flags[:-2] & flags[2:]
     return found
 
 
 def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """From the first to the last place that counts, in each run of those that are near."""
+    """Pairs of the first and the last place that counts, in each run of those that are near."""
     inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
     return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 
@@ -164,7 +164,7 @@ def _with_ends(held: Along, contact: Contact) -> Contact:
 
 
 def _meeting(held: Along, contacts: list[Contact]) -> list[Contact]:
-    """Without the gaps of a step between constraints that hold controls and follow each other.
+    """Contacts less the gaps of a step between constraints that hold controls and follow each other.
 
     Those do that cannot be active at once: they push controls the same way, or against each other.
     """
