@@ -359,6 +359,11 @@ class Parser(SumCursor):
         short = name in words.UPRIGHT and letter in (Letter("s"), Letter("c"))
         if short and after is not None and after.kind == "macro" and after.text in GREEK:
             raise Unread("s and c could be abbreviations of sine and cosine", token.at)
+        plain = name.startswith(("text", "mbox")) and len(letter.base) > 3 and letter == Letter(letter.base)
+        if plain and after is not None and self._begins_factor(after) and after.text != "(":
+            raise Unread("words inside a formula are not supported", token.at)
+        if name in words.UPRIGHT and len(letter.base) > 1 and letter.base in words.UNITS:
+            raise Unread("a unit in a formula is not supported", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)

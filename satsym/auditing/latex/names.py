@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from satsym.auditing.latex.cursor import Reading
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import CONSTANT, SAID
+from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
 from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
@@ -56,6 +56,9 @@ def capitals(found: Sequence[Token]) -> list[str]:
 def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     """Refuse what is a name or a product: capitals side by side that are defined, or in front of a number: SO(3)."""
     for part in line:
+        unit = [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS
+        if unit and part[1].at > part[0].at + len(part[0].text) + 1:  # set apart
+            raise Unread("this could be a unit or a factor; set units upright", part[1].at)
         for first, last in _runs(part):
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
@@ -72,6 +75,9 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
             if called and behind and behind[0].text == "(":
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+            free = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])} <= {"(", ")", ","}
+            if (name in _GROUPS and free) or (len(name) > 2 and name.isupper() and len(name) == len(part)):
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
             numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
             beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
             multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
@@ -80,9 +86,6 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
-    named = "".join(t.text for t in side[:end])
-    if begin == 0 and end == len(side) and named in _GROUPS:
-        raise Unread(f"{named} could be one name, \\mathrm{{{named}}}, or a product", side[0].at)
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)

@@ -211,6 +211,12 @@ class OperatorCursor(QuotientCursor):
                 self._i += 1
                 self._script()
                 return Call("skew", (arguments[0],))
+        vectors = inner.factors[-1] if isinstance(inner, Mul) else inner
+        letter = self._reading.letters.get(vectors.name) if isinstance(vectors, Sym) else None
+        if square and letter and letter.bold and not letter.marks and (not self._is("^") or self._is("2", 1, "number")):
+            raise Unread("a vector in square brackets is not supported, as it could mean its matrix", at)
+        if square and isinstance(inner, Sym) and inner.name.islower() and begin == 0 and self._peek() is None:
+            raise Unread("a letter in square brackets is not supported, as it could mean its dimension", at)
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])

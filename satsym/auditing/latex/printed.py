@@ -214,9 +214,9 @@ class LetterCursor(Cursor):
         while i < len(script):
             token = script[i]
             i += 1
-            if token.kind == "macro" and token.text in ACCENTS:
+            if token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS):
                 end = group_end(script, i) if i < len(script) and script[i].kind == "open" else i + 1
-                said.append(f" {self._said(script[i:end])} {token.text} ")
+                said.append(f" {self._said(script[i:end])} {MARKS.get(token.text, token.text)} ")
                 i = end
             elif token.kind == "macro" and (token.text in GREEK or token.text in INDICES):
                 said.append(f" {token.text} ")

@@ -69,10 +69,10 @@ class RefusalCursor(OperatorCursor):
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         if letter is not None and letter.base == "L" and letter.index in FIELDS:
             raise Unread("a derivative along a vector field is not supported", token.at)
-        applied = token.text in FIELDS and token.at == before.at + 1 and self._is("(", 1)
+        applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)
-        if letter is not None and token.text in ("[", "{") and token.kind in ("sign", "macro"):
+        if letter is not None and token.text in ("[", "{", "lbrace") and token.kind in ("sign", "macro"):
             alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
             if letter.style == "cal" or alone:
                 raise Unread("arguments in brackets of this kind are not supported", token.at)

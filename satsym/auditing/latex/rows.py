@@ -120,10 +120,6 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 line += 1
                 rows.append([])
             broken = depth > 0
-            if i < len(found) and found[i].text == "[":
-                while i < len(found) and found[i].text != "]":
-                    i += 1
-                i += 1
         elif token.kind == "sign" and token.text == "&" and not inside:
             if not systems:
                 raise Unread('an "&" stands outside aligned lines', token.at)
