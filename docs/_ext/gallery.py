@@ -57,7 +57,7 @@ COLUMNS = 86
 """Letters of a line of code on a page."""
 SIGNS = re.compile(r"\\(?:[a-zA-Z]+|.)|[{}^_\s]+")
 """Macros, and what LaTeX needs besides the signs of a formula."""
-TAKEN = re.compile(r", [\d.]+ m?s(?=\))")
+TAKEN = re.compile(r",\s+[\d.]+\s+m?s(?=\))")
 """How long solving took, which is another time each time."""
 
 
