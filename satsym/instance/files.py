@@ -97,7 +97,7 @@ def finite(tree: dict[str, Any]) -> dict[str, Any]:
     """
     for key, value in _leaves(tree):
         if not _finite(value):
-            raise BadInput(f"{key}: the value {_excess(value)} is not finite; write a finite number")
+            raise BadInput(f"{key}: the number is {_excess(value)}; write a finite number")
     return tree
 
 
