@@ -201,8 +201,16 @@ ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, 1.0)
         (0, (0.0, 0.0, 0.0), "position is the centre itself; start somewhere else"),
         (0, (1.0, float("nan"), 0.0), "position is not finite; give numbers"),
         (1, (1.0, float("inf"), 0.0), "velocity is not finite; give numbers"),
-        (1, (1.0, 0.0), r"velocity: has shape \(2,\); give an array whose first axis has length 3"),
-        (0, 1.0, r"position: has shape \(\); give an array whose first axis has length 3"),
+        (
+            1,
+            (1.0, 0.0),
+            r"velocity: has shape \(2,\); give an array whose first axis has length 3, one entry for each component",
+        ),
+        (
+            0,
+            1.0,
+            r"position: has shape \(\); give an array whose first axis has length 3, one entry for each component",
+        ),
         (2, 0.0, "mu is not positive; give the gravitational parameter of the centre"),
         (2, -1.0, "mu is not positive; give the gravitational parameter of the centre"),
         (2, float("nan"), "mu is not finite; give numbers"),

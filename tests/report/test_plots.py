@@ -602,4 +602,4 @@ def test_long_texts_are_broken_at_words_and_cut_only_after_the_last_line() -> No
 def test_times_go_on_through_the_nodes(soft_return: Solution) -> None:
     scene = Scene.of(soft_return)
     assert all(a < b for a, b in pairwise(scene.times))
-    assert scene.time_unit == "s"
+    assert scene.time_unit == "1"
