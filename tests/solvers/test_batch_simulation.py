@@ -161,7 +161,7 @@ def test_bad_input_is_refused(orbit: Kernels, given: dict, message: str):
 
 
 def test_a_model_that_is_not_separable_has_no_symplectic_method():
-    with pytest.raises(BadInput, match=r"^polar_orbit: no symplectic integrator applies"):
+    with pytest.raises(BadInput, match=r"^polar_orbit: no symplectic integrator applies to this model"):
         batch.simulate(load("polar_orbit"), [0.0, 1.0], np.ones((4, 2)), (1.0,) * 8, 3, method="symplectic")
 
 

@@ -80,7 +80,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
 
 def _metrics(simulation: Simulation) -> dict[str, float]:
     """Metrics by name; one of a variable is zero where it is nothing beside the largest value of that variable."""
-    names = spec_of(simulation.instance).state_names
+    names = simulation.instance.model.spec.state_names
     sizes = {name: float(np.abs(row).max(initial=0.0)) for name, row in zip(names, simulation.x, strict=True)}
     found = {}
     for key, value in simulation.metrics.items():
