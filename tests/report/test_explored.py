@@ -50,7 +50,7 @@ def test_panels_hold_the_states_controls_and_costates_of_the_answer(returned: So
     for panel, row in zip(answer["panels"], returned.x, strict=False):
         np.testing.assert_allclose(panel["values"], np.interp(answer["t"], returned.times, row), atol=2e-5)
     assert answer["panels"][0]["label"] == "r"
-    assert answer["panels"][3]["label"] == "θ\N{COMBINING DOT ABOVE} [rad/s]"
+    assert answer["panels"][3]["label"] == "θ\N{COMBINING DOT ABOVE}"
     assert answer["cost"].startswith("0.00319465"), "as satsym solve has it"
 
 

@@ -235,8 +235,8 @@ def test_summary_tells_outcome_states_bounds_and_switches(solution: Solution) ->
     assert "the message" in told
     assert "0.3333333333" in told
     (line,) = [line for line in told.splitlines() if line.split()[:1] == ["u1"]]
-    assert line.split() == ["u1", "0", "1", "[0,", "1]", "75", "%", "km/s**2"]
-    assert "u1  from 0 to 15.25, from 30.5 to 60 s" in told
+    assert line.split() == ["u1", "0", "1", "[0,", "1]", "75", "%"]
+    assert "u1  from 0 to 15.25, from 30.5 to 60" in told
     assert "\x1b" not in told
 
 
