@@ -221,16 +221,3 @@ def test_every_shipped_module_names_its_model() -> None:
         text = (Path(__file__).parents[2] / "generated" / f"{name}.py").read_text(encoding="utf-8")
         (source, *_) = re.findall(r"^Source: \.\./(\S+) \w{32}$", text, re.MULTILINE)
         assert f"satsym derive {source}\n" in text
-
-
-def test_a_derivation_file_is_not_overwritten_by_what_is_derived_from_it(
-    derived: Callable[..., list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    source = tmp_path / "walk.py"
-    source.write_text(OTHER, encoding="utf-8")
-    assert main(["derive", str(source), "--out", str(tmp_path)]) == 3
-    assert capsys.readouterr().err.endswith(
-        "walk.py is a derivation file and would be overwritten; choose another folder\n"
-    )
-    assert source.read_text(encoding="utf-8") == OTHER
-    assert main(["derive", str(source), "--out", str(tmp_path / "made")]) == 0

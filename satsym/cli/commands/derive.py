@@ -14,7 +14,7 @@ from satsym.cli.options import place_option
 from satsym.cli.output import Live, complain, emit, live, tell
 from satsym.cli.requirements import refuse_other_versions
 from satsym.report.said import say
-from satsym.status import BadInput, ExitCode
+from satsym.status import ExitCode
 
 EXAMPLES = """\b
 Examples:
@@ -66,10 +66,6 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
             differences = artefacts.differences(rendered, folder, whole)
             return _compare(differences, folder, _command(files, out))
         renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh, max_seconds=max_seconds)
-    sources = {path.resolve() for path in paths}
-    for path in (folder / name for name in renewed):
-        if path.resolve() in sources:
-            raise BadInput(f"--out: {path} is a derivation file and would be overwritten; choose another folder")
     changed = {name: text for name, text in renewed.items() if text is not None and not _holds(folder / name, text)}
     artefacts.write(changed, folder)
     done = [f"{folder / name}  {say('written' if name in changed else 'unchanged')}" for name in renewed]
