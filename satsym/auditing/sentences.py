@@ -70,7 +70,7 @@ def measured_in_indonesian(text: str) -> str:
 
 
 def property_in_indonesian(value: str) -> str:
-    """The value of a term: a property that textbooks name in Indonesian, anything else as it is."""
+    """Translate a property that textbooks name in Indonesian; return any other value as it is."""
     return _pairs("properties").get(value, value)
 
 

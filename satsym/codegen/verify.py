@@ -274,7 +274,7 @@ def _same_values(
     places: Sequence[Arguments],
     expected: Sequence[Sequence[Any]],
 ) -> None:
-    """Compare both forms on floats with the expression; where they are further apart than that, their very text."""
+    """Compare both forms of a function with its expression, on floats, or else their text with many digits."""
     function = of.function
     batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
     # a function of the parameters of a model that has none is one and the same at all places

@@ -233,7 +233,7 @@ def named(text: str, instance: Instance, place: str, without: Table | None = Non
     for key in keys:
         if text in (key.text, key.short):
             return key
-    raise BadInput(f"{place}: {instance.called} has no such number; {_instead(text, keys)}")
+    raise BadInput(f"{place}: {instance.called} has no numerical quantity of this name; {_instead(text, keys)}")
 
 
 def _instead(text: str, keys: list[Key]) -> str:

@@ -293,9 +293,9 @@ class _Field:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """States at which drawn extremals are at given nodes, divided by the sizes of the known solution's states.
+    """States through which randomly drawn extremals pass at given nodes, divided by the sizes of the known solution's.
 
-    The costs are those of these extremals up to there.
+    ``costs`` are the costs of these extremals up to those nodes.
     """
 
     states: Array

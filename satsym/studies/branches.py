@@ -145,7 +145,10 @@ class Branches:
         return found
 
     def scouts(self) -> list[Scout]:
-        """The first, the middle and the last answered row, but for those of closed forms, which have one minimum."""
+        """The first, the middle and the last answered row, from which other minima are sought.
+
+        Rows that are answered in closed form are left out, because they have a single minimum.
+        """
         numbers = [number for number in self.known if number not in self.closed]
         places = sorted({0, len(numbers) // 2, len(numbers) - 1}) if numbers else []
         return [Scout(self.known[numbers[place]]) for place in places]

@@ -140,7 +140,7 @@ class Parts:
         return Part(found["chunk"], found["start"], rows)
 
     def size(self, number: int) -> int:
-        """Bytes of the trajectories of a chunk."""
+        """Bytes of the trajectories of the chunk with this number."""
         return self.done[number].size
 
     def trajectories(self, number: int) -> dict[int, dict[str, Array]]:

@@ -152,7 +152,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
     ("said", "line"),
     [
         ({}, "the study varies no key"),
-        ({"vary": {"initial.q": "1:2:3"}}, "initial.q: return-to-orbit has no such number"),
+        ({"vary": {"initial.q": "1:2:3"}}, "initial.q: return-to-orbit has no numerical quantity of this name"),
         ({"vary": {"r": "1:2:3"}}, 'did you mean "initial.r"'),
         ({"vary": {"initial.r": "-1:2:3"}}, "outside the domain"),
         ({"vary": {"initial.r": "1:2"}}, "is not a range"),
@@ -222,7 +222,7 @@ def test_what_a_command_has_not_is_refused_unless_the_table_says_it_of_another(t
     assert asked(written, written.instance(), {"command": "solve"}).feedback is None
     with pytest.raises(BadInput, match="one of"):
         load(NAME).with_(study={"command": "drive"})
-    with pytest.raises(BadInput, match=r"initial\.q: .* has no such number"):
+    with pytest.raises(BadInput, match=r"initial\.q: .* has no numerical quantity of this name"):
         load(NAME).with_(study={"vary": {"initial.q": "1:2:3"}})
 
 
@@ -350,7 +350,7 @@ def test_a_study_takes_numbers_that_all_rows_have(tmp_path: Path, capsys: pytest
             "--set initial.r: is varied in this study, so it cannot be set as well",
         ),
         (["--set", "c1=50", "--set", "parameters.c1=50"], "is given twice"),
-        (["--set", "initial.q=1"], "has no such number"),
+        (["--set", "initial.q=1"], "has no numerical quantity of this name"),
     ):
         assert main(["study", NAME, *varied, *other, "--resume", "--out", out]) == 3
         assert line in capsys.readouterr().err

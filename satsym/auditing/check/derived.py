@@ -258,7 +258,7 @@ def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = Mapping
 
 
 def says_nothing(tree: Node, derived: Derived) -> bool:
-    """Whether something is zero whatever its names are."""
+    """Whether an expression is zero for all values of its symbols."""
     try:
         return all(point.value(tree) == 0 for point in points_for((tree,), "identity", derived.positive, 2))
     except Undecided:

@@ -184,7 +184,10 @@ def _growth() -> Record:
 
 
 def _components(rate: Callable[..., Array], sizes: Sequence[int]) -> Mapping[str, Callable[..., Array]]:
-    """``f1``, ``f2``, ... of single numbers or of curves."""
+    """The components of ``rate`` as functions named ``f1``, ``f2``, ..., which take numbers or arrays along a curve.
+
+    ``sizes`` are the numbers of components of the arguments of ``rate``.
+    """
 
     def component(k: int) -> Callable[..., Array]:
         def f(*arguments: Any) -> Array:

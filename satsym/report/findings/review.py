@@ -286,7 +286,7 @@ def measured(row: Judged) -> str:
 
 
 def correction(row: Judged) -> str:
-    """What is right there, where what is said of it does not say so."""
+    """The right formula of a judged row; empty where its explanation already has it."""
     said = row.why or row.diagnosis
     return "" if (row.why and not row.by_formula) or row.derived in said else row.derived
 

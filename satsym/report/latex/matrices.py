@@ -34,7 +34,7 @@ _LETTER = re.compile(r"(?:\\[a-z]+\{)?[A-Za-z]\}?")
 def with_matrices(
     derivation: Derivation, step: Step, texts: Texts, typeset: Typesetter
 ) -> tuple[str, list[str]] | None:
-    """The equations of a step that are entries of matrices, and the addresses that got numbers of their own.
+    """Typeset, as matrices, the equations of a step that define entries of matrices; and list those with own numbers.
 
     ``None`` if there are no matrices. Entries without a number of their own share that of their matrix.
     """

@@ -74,7 +74,10 @@ def page(cases: Sequence[Case]) -> Figure | None:
 
 
 def panel(axes: Axes, cases: Sequence[Case]) -> None:
-    """Draw one quantity that the cases share, the first whose differences one curve would hide, if there is one."""
+    """Draw one quantity that the cases share.
+
+    It is the first in which they differ so little that their curves would look like one; else the first of all.
+    """
     shared = _shared(cases)
     hidden = ((variable, apart) for variable in shared if (apart := _differences(cases, variable)))
     shown: tuple[Variable, Mapping[int, Array]] = next(hidden, (shared[0], {}))

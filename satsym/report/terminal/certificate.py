@@ -58,7 +58,7 @@ _HOLDS = {
     "derivative of the cost with respect to the times of the points on the way": (
         "cost stationary with respect to the times of the points on the way"
     ),
-    "second variation in arc lengths and directions": "second variation positive in arc lengths and directions",
+    "second variation in arc lengths and directions": "second variation positive in lengths and directions of arcs",
     "second variation in the switching times": "second variation positive in the switching times",
     "second variation with fixed active arcs": "second variation positive with fixed active arcs",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",

@@ -28,7 +28,7 @@ MEANINGS = {
     "_energy": "integral of the power; infinite with an impulse",
     "_final": "value at the final time",
     "_driven": "largest deviation from the undriven motion",
-    "_share": "rate caused by the driving control, relative to the largest such rate",
+    "_share": "rate of the constraint caused by the control that keeps to it, relative to the largest along the arc",
 }
 """What metrics measure, by their names or by what these end with."""
 

@@ -56,7 +56,7 @@ def regulator_text(design: Design) -> str:
     found, about, system = design.regulator, design.about, design.regulator.system
     over = say("u = -K x for an infinite horizon")
     if found.horizon is not None:
-        over = say("u = -K x for a horizon of <time>, at its beginning", time=figure(found.horizon))
+        over = say("u = -K x, with K at the beginning of a horizon of <time>", time=figure(found.horizon))
     name = about.model.spec.name if design.instance is None else design.instance.name
     facts = [(say("Riccati residual"), figure(found.residual, 2))]
     if found.error is not None:

@@ -187,10 +187,12 @@ def _passed(values: Array) -> NDArray[np.intp]:
 
 
 def second_order_at_end(frame: Array, end: EndForm) -> float:
-    """The least curvature of the cost in what is free at the end, relative; infinite where nothing is.
+    """The smallest curvature of the cost along the free directions of the final state; infinite if it is fixed.
 
-    In the directions of the eigenvectors of W, the cost to come is curved by the cotangent of half a phase, if no
-    conjugate time has passed. Directions that are hardly reached are measured by what they cost.
+    The curvatures are those of the quadratic form whose diagonal is scaled to 1. Along an eigenvector of the unitary
+    matrix of ``frame``, of which the phase is the argument of the eigenvalue, the cost of arriving there has the
+    curvature cot(phase / 2), as long as no conjugate time has passed. Directions that are hardly reached have their
+    unit from this cost.
 
     Parameters
     ----------

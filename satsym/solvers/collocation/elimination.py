@@ -62,12 +62,12 @@ class Nodes:
     transition
         From each node to the next, shape (N, 2n, 2n).
     final
-        Final residuals by the last node, shape (n, 2n).
+        Derivatives of the final residuals with respect to the last node, shape (n, 2n).
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        If it is singular.
+        If the system is singular; when it is constructed.
     """
 
     def __init__(self, transition: Array, final: Array) -> None:

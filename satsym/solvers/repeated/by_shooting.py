@@ -82,7 +82,10 @@ class ByShooting:
         return found
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
-        """The extremal with nodes where bounds are met: compiled arcs step onto these times, but do not tell them."""
+        """Compute an extremal again so that the times at which it meets bounds are among its nodes.
+
+        Compiled arcs step onto these times, but do not return them.
+        """
         if not found.problem.control_set.bounded:
             return found
         return extremal(found.problem, found.path, limits)

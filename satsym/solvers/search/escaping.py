@@ -35,7 +35,7 @@ TENFOLD, LAST = 10.0, 3
 TOLERANCE = 1e-9
 """Error that the integration allows, relative and absolute."""
 
-HELD = "constrain the final state, or bound the control"
+REMEDY = "constrain the final state, or bound the control"
 """What keeps motions from escaping."""
 
 

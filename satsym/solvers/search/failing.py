@@ -17,7 +17,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import coarse, nlp, starts
 from satsym.solvers.search.controls import controls_of
-from satsym.solvers.search.escaping import HELD, escape
+from satsym.solvers.search.escaping import REMEDY, escape
 from satsym.solvers.search.nearest import nearest
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
@@ -68,7 +68,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
     if instance.tf is None:
         message += f"; give {'a' if instance.tf_guess is None else 'another'} tf_guess"
     if endless := tried(partial(escape, instance)):
-        return Status.NO_MINIMISER, f"{endless}; {HELD}"
+        return Status.NO_MINIMISER, f"{endless}; {REMEDY}"
     if instance.tf is not None and (separated := tried(partial(unreachable, instance, limits))):
         return Status.INFEASIBLE, separated
     if stated_constraints(instance.model.spec):

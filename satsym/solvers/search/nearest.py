@@ -77,12 +77,12 @@ class Nearest:
 
     @property
     def arrives(self) -> bool:
-        """Whether that is no miss, as far as can be told."""
+        """Whether the motion reaches the end, as far as rounding lets this be told."""
         return self.distance <= ARRIVED
 
     @property
     def undecided(self) -> bool:
-        """Whether it may be no miss, or that of others is none."""
+        """Whether the motion may reach the end, or too few starts led to the same distance from it."""
         return self.distance <= CLOSE_MISS or self.agreeing < AGREEING * self.starts
 
     @property

@@ -84,7 +84,7 @@ def _squared(total: sp.Expr) -> sp.Expr:
 
 
 def _sum(total: sp.Expr, terms: Sequence[sp.Expr]) -> sp.Expr:
-    """The sum as it was if it has these terms, for summing up anew would multiply numbers into sums within it."""
+    """The sum of terms; ``total`` itself if it has these, as sympy would multiply numbers into sums within it."""
     return total if len(terms) == len(total.args) else sp.Add(*terms, evaluate=len(terms) == 1)
 
 

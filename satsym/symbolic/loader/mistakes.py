@@ -46,7 +46,11 @@ def said(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | 
             return line, f"{found[1]} needs {found[2]}; its fields are {', '.join(known)}"
         if (found := _TOO_MANY_ARGUMENTS.match(text)) and (known := _fields(found[1], names)):
             ordered = ", ".join(name for name, keyword in known.items() if not keyword)
-            instead = f"its positional fields are {ordered}" if ordered else "name its fields, such as name=..."
+            instead = (
+                f"its positional fields are {ordered}"
+                if ordered
+                else "pass its fields by keyword, for example name=..."
+            )
             return line, f"{found[1]} was given more values than it has fields; {instead}"
     if isinstance(error, SyntaxError):
         return line, f"{type(error).__name__}: {error.msg}"

@@ -60,7 +60,7 @@ class _Many:
         return self.found.instances[0].model
 
     def parameters(self, times: int = 1) -> tuple[Array, ...]:
-        """Parameters of each, so many times one after the other."""
+        """The parameters of all instances, an array for each parameter, repeated so many times one after the other."""
         rows = np.array([one.parameters for one in self.found.instances]).reshape(len(self.found.instances), -1)
         return tuple(np.tile(rows.T, times))
 

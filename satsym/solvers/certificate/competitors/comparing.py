@@ -40,9 +40,9 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
     Parameters
     ----------
     limits
-        Of time; what the clock ends is not checked.
+        Limits of time; competitors that are not solved within them count as not checked.
     seed
-        Of controls that are drawn: another one where a solution was found from such a control.
+        Seed of the controls that are drawn; a solution that was found from a drawn control needs another one.
     free
         What competitors may choose besides the end.
     """

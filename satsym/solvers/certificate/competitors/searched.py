@@ -36,7 +36,9 @@ def kinds(instance: Instance) -> list[Kind]:
 def searched(
     solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()
 ) -> tuple[dict[Kind, list[float]], Solution | None, set[Kind]]:
-    """Compare an answer with what the search's starts come to; starts that the clock ends are left out.
+    """Solve again from each start of the search and compare the costs with that of an answer.
+
+    Starts that run out of time are left out.
 
     Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
     more, is compared as well; where an end can be met at once, so is the cost of that.
@@ -44,7 +46,7 @@ def searched(
     Parameters
     ----------
     seed
-        Of what is drawn; also how many dearer answers led here, each with a cost of its own.
+        Seed of random starts: the number of dearer answers that have been replaced on the way to this one.
     free
         What the starts may choose besides the end.
 
@@ -53,10 +55,10 @@ def searched(
     dict
         Costs of each kind that was tried, NaN where a start led to nothing.
     Solution
-        An extremal that costs less than the answer, if any: the first that is found, for that is compared with all of
-        them in turn; of an answer to a guess, which stays the answer, the cheapest.
+        A cheaper extremal, if one is found: the first, which is then compared with all starts in turn; if the answer
+        belongs to a guess, which it keeps to, the cheapest.
     set
-        Kinds of which a motion seems to cost less, but no mesh settles that.
+        Kinds with a motion that seems to cost less, although its cost does not settle as the mesh is refined.
     """
     from satsym.solvers.search import solving
 

@@ -43,7 +43,7 @@ def condition(name: str) -> sp.Symbol:
 
 
 def multiplier(name: str) -> sp.Symbol:
-    """The symbol for its multiplier."""
+    """The symbol for the multiplier of the condition with this name."""
     return sp.Symbol(f"pi_{name}", real=True)
 
 
