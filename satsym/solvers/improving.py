@@ -20,7 +20,7 @@ from satsym.solvers.certificate.competitors.simulations import Simulations, simu
 from satsym.solvers.certificate.end_limits import others_asked
 from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, scaled_units
 from satsym.solvers.certificate.verdict import examined
-from satsym.solvers.search.escaping import HELD, escape
+from satsym.solvers.search.escaping import REMEDY, escape
 from satsym.status import Status, Verdict
 
 ROUNDS = 3
@@ -73,7 +73,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
     deadline = iteration.deadline_of(instance)
     solution = solver(instance, progress)
     if solution.status.answered and (endless := escape(instance)):
-        return without_minimiser(solution, f"{endless}; {HELD}")
+        return without_minimiser(solution, f"{endless}; {REMEDY}")
     certificate, better = examined(solution, deadline)
     if better is not None and instance.guess:
         less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to obtain that extremal"

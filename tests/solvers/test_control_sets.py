@@ -206,7 +206,7 @@ def test_what_nothing_limits_is_refused(tmp_path: Path):
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("[control.jet]\nmax_norm = -1.0\n", r"\[control\.jet\] max_norm: with -1, no control remains"),
+        ("[control.jet]\nmax_norm = -1.0\n", r"\[control\.jet\] max_norm: a bound of -1 admits no control"),
         ("[control.jet]\nmin_norm = 1.0\n", r"\[control\.jet\] min_norm"),
         ("[control.slow]\nmax_norm = 1.0\n", r"\[control\.slow\]: the model takes"),
         ("z = [0.0, 1.0]\n[control.jet]\nmax_norm = 1.5\n", r"\[control\] z: the model takes"),

@@ -195,8 +195,8 @@ def test_a_beam_under_a_ceiling_has_twice_the_effort():
 @pytest.mark.parametrize(
     ("of", "given", "message"),
     [
-        (WALL, {"initial": {"x": 0.2, "v": 1.0}}, "initial: path constraint wall has the value 0.1 there"),
-        (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall has the value 0.1 there"),
+        (WALL, {"initial": {"x": 0.2, "v": 1.0}}, "initial: path constraint wall has the value 0.1 at that point"),
+        (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall has the value 0.1 at that point"),
         (WALL, {"initial": {"x": 0.1, "v": 1.0}}, "violated just after the start"),
         (WALL, {"final": {"x": 0.1, "v": -1.0}}, "violated just before the end"),
         (WALL, {"parameters": {"l": "free"}}, "cannot be combined with path constraints"),
