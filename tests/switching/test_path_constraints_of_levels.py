@@ -217,7 +217,9 @@ def test_two_controls_that_move_a_constraint_together_are_refused():
 
 
 def test_a_start_beyond_the_limit_is_refused():
-    with pytest.raises(BadInput, match=r"initial: path constraint limit has the value 0\.5 at that point, but must not be"):
+    with pytest.raises(
+        BadInput, match=r"initial: path constraint limit has the value 0\.5 at that point, but must not be"
+    ):
         satsym.solve(satsym.Instance.of(CAR, **(ACROSS | {"initial": {"x": 0.0, "v": 1.5}})))
 
 

@@ -311,6 +311,19 @@ def test_a_wrong_singular_arc_is_caught(monkeypatch: pytest.MonkeyPatch, problem
         redo(found, "generalised_legendre_clebsch" if field == "slope" else "singular_arcs")
 
 
+@pytest.mark.parametrize("more", [-1, 1])
+def test_a_search_that_ends_elsewhere_than_in_the_step_before_is_caught(
+    monkeypatch: pytest.MonkeyPatch, more: int
+) -> None:
+    """With an odd number of derivatives, nothing would be said of the control at all."""
+    found = derived(ROCKET)
+    (search,) = singular.searches(found)
+    taken = search.derivatives[:-1] if more < 0 else (*search.derivatives, search.derivatives[-1])
+    monkeypatch.setattr(singular, "searches", lambda so_far: [replace(search, derivatives=taken)])
+    with pytest.raises(DerivationError, match="failed its check"):
+        redo(found, "generalised_legendre_clebsch")
+
+
 def test_derivatives_of_the_functions_of_switches() -> None:
     value, width = sp.symbols("value width", real=True)
     assert sp.diff(Shrink(value, width), value) == Side(value, width) ** 2

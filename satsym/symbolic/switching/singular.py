@@ -10,11 +10,13 @@ has two thresholds: sigma = -w, where it is positive, and sigma = w, where it is
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import sympy as sp
 
+from satsym.agreement import LIMIT
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import Check, Point, compare, numeric, partial
 from satsym.symbolic.convention import sign, worded
@@ -63,9 +65,11 @@ def singular_arcs(so_far: Derivation) -> Step:
 def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
     """What a singular arc needs in order to minimise; nothing where no derivative contains the control."""
     assert so_far.problem is not None
-    equations, checks, conclusions = [], [], []
+    equations, checks, conclusions = [], list[Check](), []
     found = searches(so_far)
     for search in found:
+        if not _is_found_before(so_far, search, _suffix(found, search)):
+            checks.append(Check("slope of differences", math.inf, LIMIT))
         if search.outcome != "order" or search.order % 2:
             continue
         value = _kelley(search)
@@ -80,12 +84,19 @@ def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
                 {"level": _level(so_far, search), "value": symbol},
             )
         )
-    if not equations:
+    if not (equations or checks):
         return None
     rule = worded("generalised Legendre-Clebsch", so_far.problem)
     return Step(
         "generalised_legendre_clebsch", rule, tuple(equations), ("singular_arcs",), tuple(checks), tuple(conclusions)
     )
+
+
+def _is_found_before(so_far: Derivation, search: Search, suffix: str) -> bool:
+    """Whether the step ``singular_arcs`` took as many derivatives and came to the same end."""
+    stated, name = {equation.name for equation in so_far.step("singular_arcs").equations}, search.control.name
+    taken = [f"{name}{suffix}_{count}" in stated for count in (search.order, search.order + 1)]
+    return taken == [True, False] and (f"{name}{search.branch}" in stated) == (search.outcome == "order")
 
 
 def chattering(so_far: Derivation) -> tuple[str, ...]:
