@@ -110,7 +110,7 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("way", "message"),
     [
-        ({"b": [1, 2]}, r"\[continuation\] b: .*has no such number"),
+        ({"b": [1, 2]}, r"\[continuation\] b: .*has no numerical quantity of this name"),
         ({"a": [1, 2], "parameters.a": [1, 3]}, r"\[continuation\] parameters.a: is given twice, as a and as param"),
         ({"a": [1, 1]}, r"\[continuation\] a: both values are 1"),
         ({"a": 1}, r"\[continuation\] a: got 1; write the first and the last value"),

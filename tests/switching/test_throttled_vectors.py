@@ -420,7 +420,7 @@ def test_what_no_competitor_that_arrived_was_compared_with_is_not_certified(
 ) -> None:
     found = shipped("transfer-fuel")
     cheapest = found.objective if arrived else math.nan
-    monkeypatch.setattr(comparing, "searched", lambda *_: ({Kind.STARTS: [math.nan, cheapest]}, None))
+    monkeypatch.setattr(comparing, "searched", lambda *_: ({Kind.STARTS: [math.nan, cheapest]}, None, set()))
     again = certify(found)
     assert again is not None
     assert [check.name for check in again.checks if not check.passed] == ([] if arrived else [UNCOMPARED])
