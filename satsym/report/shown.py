@@ -1,4 +1,4 @@
-"""The units that results are shown in: those of the model, or none where its numbers are those of no real orbit."""
+"""The units that results are shown in: those of the model, or none where its gravitational parameter is 1."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ ROUNDING = 1e-12
 def spec_of(instance: Instance) -> ProblemSpec:
     """What the model of an instance states, without units where its gravitational parameter is 1.
 
-    No body attracts so weakly, in any unit of a model: the numbers of such an instance are multiples of those of a
-    circular orbit, and units would be misleading. Files and JSON keep the units of the model.
+    By convention the numbers of such an instance are multiples of those of a circular orbit, so that units would
+    mislead; a body whose parameter is exactly 1 in the units of its model loses them as well. Files and JSON keep the
+    units of the model.
     """
     model = instance.model
     if "inertial_state" not in model.functions:

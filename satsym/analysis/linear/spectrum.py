@@ -96,9 +96,9 @@ def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, 
 
 
 def _faint_as_given(size: Array) -> NDArray[np.bool_]:
-    """Entries that rounding may have left, by the units in which it happened: no others make it large.
+    """Whether entries, in the units in which they were rounded, are faint beside both entries of the diagonal.
 
-    In other units 1e-16 above the diagonal of a unit matrix is as large as any entry.
+    Other units can make such an entry as large as any, for example 1e-16 above the diagonal of a unit matrix.
     """
     diagonal = size.diagonal()
     return size <= SMALLEST_ENTRY * np.minimum(diagonal[:, None], diagonal)

@@ -24,20 +24,8 @@ from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.sums import SumCursor
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
-from satsym.formula.tree import (
-    Call,
-    Div,
-    Equality,
-    Grid,
-    Mul,
-    Neg,
-    Node,
-    Num,
-    Pow,
-    Sym,
-    children,
-    constant,
-)
+from satsym.formula.reading import MAX_DEPTH
+from satsym.formula.tree import Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, children, constant
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -62,12 +50,9 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
         At the first thing that is not in the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
-    try:
-        reading = _read(kept, Reading([]), start)
-        if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
-            reading = _read(kept, Reading([], known=reading.places), start)
-    except RecursionError:
-        raise Unread("the formula is nested too deeply", start) from None
+    reading = _read(kept, Reading([]), start)
+    if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
+        reading = _read(kept, Reading([], known=reading.places), start)
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
@@ -216,7 +201,17 @@ class Parser(SumCursor):
         return any(token.text in names for names in known) or token.text in ATOMS
 
     def _factor(self) -> Node:
-        """One factor with its powers."""
+        """One factor with its powers; everything that nests is read by factors, so that depth is counted here."""
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            at = self._found[min(self._i, len(self._found) - 1)].at
+            raise Unread(f"the formula is nested more than {MAX_DEPTH} levels deep", at)
+        try:
+            return self._factor_within()
+        finally:
+            self._depth -= 1
+
+    def _factor_within(self) -> Node:
         token = self._peek()
         if token is None:
             self._take()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from satsym.auditing.latex import words
 from satsym.auditing.latex.enclosed import EnclosedCursor
 from satsym.auditing.latex.tokens import Unread
-from satsym.formula.reading import MAX_DEPTH
 from satsym.formula.tree import Add, Call, Neg, Node, children, symbols
 
 
@@ -13,12 +12,6 @@ class SumCursor(EnclosedCursor):
     """Reads sums."""
 
     def _sum(self) -> Node:
-        self._depth += 1
-        if self._depth > MAX_DEPTH:
-            raise Unread(
-                f"brackets are nested more than {MAX_DEPTH} levels deep",
-                self._found[min(self._i, len(self._found) - 1)].at,
-            )
         terms: list[Node] = []
         summed: set[str] = set()
         while True:
@@ -36,7 +29,6 @@ class SumCursor(EnclosedCursor):
             terms.append(Neg(term) if negative else term)
             if not self._additive():
                 break
-        self._depth -= 1
         return terms[0] if len(terms) == 1 else Add(tuple(terms))
 
     def _additive(self) -> str:

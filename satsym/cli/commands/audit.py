@@ -54,10 +54,9 @@ def audit(
 ) -> ExitCode:
     """Judge what documents print.
 
-    Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives. LEDGER
-    is a document that comes with satsym, or a TOML file that lists what a document prints and what each item is to
-    be checked against. Verdicts are computed, never read. The exit code is 0 whatever the
-    verdicts.
+    Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives.
+    LEDGER is a document that comes with satsym, or a TOML file that lists what a document prints and what each item
+    is to be checked against. Verdicts are computed, never read. The exit code is 0 whatever the verdicts.
     """
     from satsym import auditing
     from satsym.auditing import cache

@@ -103,7 +103,7 @@ class Finding:
 
 
 def _examine(announce: Callable[[str], None]) -> list[Finding]:
-    """Examine everything, in the order in which a reader wants it; `announce` is told what comes next."""
+    """Examine everything in the order of the report; `announce` is called with the name of what comes next."""
     import platform
 
     home = checkout()

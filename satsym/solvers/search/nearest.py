@@ -77,7 +77,7 @@ class Nearest:
 
     @property
     def arrives(self) -> bool:
-        """Whether the motion reaches the end, as far as rounding lets this be told."""
+        """Whether the motion reaches the end to within rounding."""
         return self.distance <= ARRIVED
 
     @property

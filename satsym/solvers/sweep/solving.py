@@ -244,8 +244,9 @@ class _Relaxation:
 
     Near an extremal without active bounds the law responds to a change v of the control by -K v with K >= 0, so an
     error shrinks by 1 - rho (1 + k) for each eigenvalue k of K: relaxation is stable only if rho < 2/(1 + max k). K
-    grows quickly with the horizon. Far from the extremal K is another one, so what a failed relaxation is told is
-    measured at the extremal, which a method without this limit finds. The motion it starts from must be usable.
+    grows quickly with the horizon. Far from the extremal K is another one, so the limit that is reported when a
+    relaxation fails is measured at the extremal, which a method without this limit finds. The motion it starts from
+    must be usable.
     """
 
     problem: SweepProblem

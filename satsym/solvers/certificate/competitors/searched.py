@@ -46,7 +46,7 @@ def searched(
     Parameters
     ----------
     seed
-        Seed of random starts: the number of dearer answers that have been replaced on the way to this one.
+        Seed of random starts; the caller raises it by one each time a cheaper answer replaces the last.
     free
         What the starts may choose besides the end.
 
