@@ -21,6 +21,7 @@ from satsym.solvers.certificate.end_limits import others_asked
 from satsym.solvers.certificate.second_variation import Arc, Quadratic, quadratic, scaled_units
 from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.search.escaping import REMEDY, escape
+from satsym.solvers.search.tried import Past
 from satsym.status import Status, Verdict
 
 ROUNDS = 3
@@ -74,27 +75,29 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
     solution = solver(instance, progress)
     if solution.status.answered and (endless := escape(instance)):
         return without_minimiser(solution, f"{endless}; {REMEDY}")
-    certificate, better = examined(solution, deadline)
+    past = Past()
+    certificate, better = examined(solution, deadline, past)
     if better is not None and instance.guess:
         less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to obtain that extremal"
         message = f"{solution.message}; {less}"
         solution, better = replace(solution, message=message), None
     first = solution.objective
-    for seed in range(1, ROUNDS + 1):
+    for number in range(1, ROUNDS + 1):
         if better is None or others_asked(better) is not None:
             break
         message = f"{better.message}; the first extremal found costs {first:.6g}"
         own = solution.instance
+        past = replace(past, answers=number) if better.instance.met == own.met else Past(number)
         own = own if better.instance.met == own.met else own.meeting(better.instance.met)
         solution = replace(better, instance=_begun(own, better), message=message, history=solution.history)
-        certificate, better = examined(solution, deadline, seed)
+        certificate, better = examined(solution, deadline, past)
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != BOUNDARY_ARCS:
         fallen = bottomless(solution)
         if fallen is not None:
             return fallen
         lower = None if instance.guess else _departed(solver, solution, progress, deadline)
         if lower is not None:
-            solution, certificate = lower, examined(lower, deadline, ROUNDS + 1)[0]
+            solution, certificate = lower, examined(lower, deadline, replace(past, answers=ROUNDS + 1))[0]
     return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
 
 

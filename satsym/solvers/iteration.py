@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -50,9 +51,26 @@ class TimeUp(Exception):
     """The time is over in the midst of what does not iterate, such as a long trajectory."""
 
 
+class _Helpers(threading.local):
+    """Seconds of a processor that threads of libraries have had, which worked for the thread that asks."""
+
+    seconds = 0.0
+
+
+_HELPERS = _Helpers()
+
+
 def computed() -> float:
-    """Seconds of a processor that this thread has had: what else a machine does at the time must change no answer."""
-    return time.thread_time()
+    """Seconds of a processor that this thread has had, and threads of libraries for it.
+
+    It is not the time of day: what else a machine does must change no answer.
+    """
+    return time.thread_time() + _HELPERS.seconds
+
+
+def count_helpers(seconds: float) -> None:
+    """Count what threads of a library have computed for this thread."""
+    _HELPERS.seconds += max(seconds, 0.0)
 
 
 def deadline_of(instance: Instance) -> float:

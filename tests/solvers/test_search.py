@@ -24,12 +24,13 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import mesh, motion, nlp, order, solving, starts
+from satsym.solvers.search import following, mesh, motion, nlp, order, solving, starts
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.reading import extremals, levels
 from satsym.solvers.search.sizes import sizes_of
+from satsym.solvers.search.tried import Past
 from satsym.status import Status, Verdict
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, symbols_of, t
 
@@ -443,9 +444,51 @@ def test_a_motion_that_only_a_coarse_mesh_makes_dear_is_followed(
 ) -> None:
     """Beside an answer of cost 1; the first of the costs is on a mesh with that residual."""
     found: Any = SimpleNamespace(objective=costs[0])
-    monkeypatch.setattr(order, "_finer", lambda *_: (SimpleNamespace(cost=cost) for cost in costs))
-    monkeypatch.setattr(order, "refined", lambda _: ([], residual))
-    assert order._followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact")) == came
+    monkeypatch.setattr(following, "finer", lambda *_: (SimpleNamespace(cost=cost) for cost in costs))
+    monkeypatch.setattr(following, "motion", lambda one: one)
+    monkeypatch.setattr(following, "refined", lambda _: ([], residual))
+    assert following.followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact")) == (*came, False)
+
+
+@pytest.mark.parametrize(
+    ("residuals", "meshes", "unsettled"),
+    [([60.0, 70.0, 1e-3], 2, False), ([60.0, 0.5, 0.4], 3, True), ([60.0, 3.0, 2.0], 3, False)],
+    ids=["steps over something", "is resolved, but settles nowhere", "is not resolved"],
+)
+def test_a_motion_that_no_mesh_resolves_is_no_evidence_of_a_cheaper_one(
+    monkeypatch: pytest.MonkeyPatch, residuals: list[float], meshes: int, unsettled: bool
+) -> None:
+    """Beside an answer of cost 1; costs change so much from mesh to mesh that nothing follows from the last."""
+    made = [SimpleNamespace(cost=cost, residual=one) for cost, one in zip((0.5, 0.9, 0.6), residuals, strict=True)]
+    looked: list[Any] = []
+    monkeypatch.setattr(following, "finer", lambda *_: iter(made))
+    monkeypatch.setattr(following, "motion", lambda one: looked.append(one) or one)
+    monkeypatch.setattr(following, "refined", lambda one: ([], one.residual))
+    found: Any = SimpleNamespace(objective=0.5, residual=60.0, programme=SimpleNamespace(intervals=40))
+    cost, answer, left = following.followed(found, LIMITS, 1.0, lambda at: None)
+    assert np.isnan(cost)
+    assert answer is None
+    assert left is unsettled
+    assert looked[:meshes] == made[:meshes]
+    assert made[meshes:] == [one for one in made if one not in looked]
+
+
+def test_a_comparison_goes_on_where_the_one_with_a_dearer_answer_ended() -> None:
+    case, past = instances.load("return-to-orbit"), Past()
+    exact = partial(solving.exact, case)
+
+    def beside(cost: float) -> Any:
+        work = replace(LIMITS, work=solving.WORK)
+        return order.others(case, work, exact, cost, lambda one: one.objective, past=past)
+
+    cheaper = next(beside(1e3))
+    assert cheaper.exact is not None
+    again = list(beside(cheaper.exact.objective))
+    plans = [one.plan for one in again]
+    assert again[0].plan == cheaper.plan
+    assert again[0].exact is None
+    assert len(plans) == len(set(plans)) > 3
+    assert [one.plan for one in past.tried] == plans
 
 
 @pytest.mark.parametrize(("name", "cost"), [("return-to-orbit", None), ("bryson-denham", 4.0)])
@@ -465,7 +508,7 @@ def test_a_cheaper_motion_is_unsettled_where_no_mesh_decides(
     monkeypatch: pytest.MonkeyPatch, name: str, unsettled: bool
 ) -> None:
     """With path constraints it steps over one, mostly."""
-    monkeypatch.setattr(order, "_followed", lambda *_: (np.nan, None))
+    monkeypatch.setattr(order, "followed", lambda *_: (np.nan, None, True))
     one = next(order.others(instances.load(name), replace(LIMITS, work=solving.WORK), lambda *_: None, 1e3, float))
     assert np.isnan(one.cost)
     assert one.unsettled is unsettled

@@ -26,6 +26,7 @@ from satsym.solvers.certificate.scope import with_scope
 from satsym.solvers.certificate.start import settled, with_start
 from satsym.solvers.certificate.stated_times import with_stated_times
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of
+from satsym.solvers.search.tried import Past
 
 CROSSED = 1e-9
 """Least rate at which one minimiser of H overtakes another, in units of what the jump changes of the rates."""
@@ -57,7 +58,7 @@ def certify(solution: Solution, compared: bool = True) -> Certificate | None:
 
 
 def examined(
-    solution: Solution, deadline: float, seed: int = 0, *, compared: bool = True
+    solution: Solution, deadline: float, past: Past | None = None, *, compared: bool = True
 ) -> tuple[Certificate | None, Solution | None]:
     """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
 
@@ -65,15 +66,15 @@ def examined(
     ----------
     deadline
         On the clock of :func:`~satsym.solvers.iteration.computed`; what is not compared by then is said.
-    seed
-        Of starts that are drawn.
+    past
+        What was found beside earlier answers; what is found now is added.
     compared
         Whether competitors are looked for.
     """
     if not solution.status.answered:
         return None, None
     given = settled(solution)
-    certificate, competitor = _judged(given, deadline, seed, compared, solution.instance.free)
+    certificate, competitor = _judged(given, deadline, past, compared, solution.instance.free)
     certificate = with_stated_times(with_limits(with_kernels_examined(certificate, given), given), given)
     if solution.instance.free:
         certificate = with_start(certificate, solution, free_start.curvature(solution).checks)
@@ -81,7 +82,7 @@ def examined(
 
 
 def _judged(
-    solution: Solution, deadline: float, seed: int, compared: bool, free: tuple[Unknown, ...]
+    solution: Solution, deadline: float, past: Past | None, compared: bool, free: tuple[Unknown, ...]
 ) -> tuple[Certificate, Solution | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor.
 
@@ -102,11 +103,11 @@ def _judged(
         from satsym.solvers.certificate.switching import conditions as of_arcs
 
         with np.errstate(all="ignore"):
-            return of_arcs.certify(solution, deadline, compared, seed)
+            return of_arcs.certify(solution, deadline, compared, past)
     if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 
-        return constrained.certify(solution, deadline, seed, compared)
+        return constrained.certify(solution, deadline, past, compared)
     with np.errstate(all="ignore"):
         along = segments(solution)
         first = _first_order(solution, along)
@@ -123,7 +124,7 @@ def _judged(
         if all(c.passed for c in first):
             second = _sufficient(solution, legendre, field)
             if compared:
-                others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed, free)
+                others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), past, free)
     certificate = concluded(
         first,
         second,

@@ -56,6 +56,7 @@ def started(
     most: int = ITERATIONS,
     way: tuple[Array, Array] | None = None,
     weak: bool = False,
+    first: int = 0,
 ) -> Iterator[tuple[Plan, Found]]:
     """What starts come to on a coarse mesh, which is even unless the way of a motion is known.
 
@@ -63,6 +64,8 @@ def started(
     ----------
     weak
         Whether some begin without bounds of controls.
+    first
+        Number of the start to begin with; those before it are left out.
     """
     controls = controls_of(instance)
     if controls is None:
@@ -80,7 +83,7 @@ def started(
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
     known = list[tuple[float, Found]]()
-    for number, plan in enumerate(plans):
+    for number, plan in enumerate(plans[first:], first):
         if limits.expired:
             return
         with np.errstate(all="ignore"):

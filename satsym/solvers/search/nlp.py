@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, count_helpers
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.transcription import Places
 
@@ -55,6 +56,7 @@ class _Watched:
 
     def __init__(self, programme: Programme, limits: Limits | None, most: int) -> None:
         self.programme, self.limits, self.iterations, self.most = programme, limits, 0, most
+        self.elsewhere = _elsewhere()
         self.objective, self.gradient, self.constraints = programme.objective, programme.gradient, programme.values
         self.jacobian = programme.jacobian
 
@@ -73,11 +75,24 @@ class _Watched:
     def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *_: object) -> bool:
         """Called once an iteration; whether to go on."""
         self.iterations += 1
+        elsewhere, before = _elsewhere(), self.elsewhere
+        self.elsewhere = elsewhere
+        if len(_WATCHED) == 1:  # of several at once nobody can tell whose threads have computed
+            count_helpers(elsewhere - before)
         if self.limits is None:
             return self.iterations < self.most
         self.limits.spend(self.programme.unknowns)
         self.limits.tell(objective * self.programme.sizes.cost, infeasibility)
         return self.iterations < self.most and not self.limits.expired
+
+
+_WATCHED: list[_Watched] = []
+"""Programmes that are being solved now, in whatever thread."""
+
+
+def _elsewhere() -> float:
+    """Seconds of a processor that other threads of this process have had: the code factors matrices in such."""
+    return time.process_time() - time.thread_time()
 
 
 def solve(
@@ -108,8 +123,12 @@ def solve(
         options["mu_init"] = 1e-4
     for name, value in options.items():
         problem.add_option(name, value)
-    with np.errstate(all="ignore"):
-        w, report = problem.solve(np.clip(start, low, high))
+    _WATCHED.append(watched)
+    try:
+        with np.errstate(all="ignore"):
+            w, report = problem.solve(np.clip(start, low, high))
+    finally:
+        _WATCHED.remove(watched)
     solved = report["status"] in (SOLVED, ACCEPTED)
     w, multipliers = np.asarray(w), np.asarray(report["mult_g"])
     return Found(

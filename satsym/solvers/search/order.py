@@ -11,8 +11,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,13 +20,12 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import nlp, starts
-from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR, STARTS, at_edge, same, started
-from satsym.solvers.search.mesh import refined
-from satsym.solvers.search.motion import Motion, motion, violates
+from satsym.solvers.search import starts
+from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
+from satsym.solvers.search.following import BESIDE, finer, followed, part
+from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
-from satsym.solvers.search.programme import Programme
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.tried import Past, Tried
 
 Answer = TypeVar("Answer")
 
@@ -43,13 +42,6 @@ PROBE, AROUND = 160_000, 600_000
 """Unknowns times iterations after which the list ends if at least two starts were solved and all led to one cost, but
 for starts with other turns or durations. With path constraints it is AROUND."""
 
-BESIDE, ON_FINER_MESH = 120, 200
-"""Iterations of the interior-point code for a competitor, and for a finer mesh."""
-
-MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.2, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
-"""Number of finer meshes at most, share of the work that those of one start may take, relative change of cost from one
-to the next at which they end, and smoothings of norms on each."""
-
 CHEAPER = 1e-9
 """Relative difference from which one exact cost is less than another."""
 
@@ -57,38 +49,10 @@ PARALLELS, SHOWN, ALIKE_RANGE = 3, 41, 0.05
 """At most so many motions at the cost of an answer that take another way are made exact. Ways are compared at SHOWN
 times, and differ where a state does by ALIKE_RANGE of its range."""
 
-FALLING, RESOLVED, UNCERTAIN = 1e-2, 1e-2, 10.0
-"""A motion that costs more than an answer is followed as long as each finer mesh makes it cheaper by the share FALLING,
-but not where the residual of its coarse mesh, relative to the sizes of states, is at most RESOLVED. A cost is uncertain
-by UNCERTAIN times its last change."""
-
 MOST_COSTS, KEPT_COST, ENDLESS = 3, 0.5, 2
 """The search ends after MOST_COSTS different costs of motions that could not be made exact; after twice as many if
 finer meshes change some by more than KEPT_COST, as the coarse mesh stepped over something there; and after ENDLESS
 motions with the shortest or the longest duration allowed."""
-
-
-@dataclass(frozen=True)
-class Tried(Generic[Answer]):
-    """What a start came to beside an answer.
-
-    Attributes
-    ----------
-    plan
-        How it began.
-    cost
-        That of the answer where both seem to be one. NaN where the start was not solved, and where neither an extremal
-        nor finer meshes confirm that its motion is cheaper.
-    exact
-        The extremal, if it costs less than the answer.
-    unsettled
-        Whether its motion seems to cost less, but no mesh settles that.
-    """
-
-    plan: Plan
-    cost: float
-    exact: Answer | None = None
-    unsettled: bool = False
 
 
 def searched(
@@ -120,8 +84,8 @@ def searched(
             if endless >= ENDLESS:
                 break
         elif found.solved and not any(same(found.objective, cost) for cost in costs):
-            one, last = _part(limits), found.objective
-            for at in _finer(found, one):
+            one, last = part(limits), found.objective
+            for at in map(motion, finer(found, one)):
                 answer, last = exact(at, one), at.cost
                 if answer is not None or limits.expired:
                     return answer
@@ -144,7 +108,7 @@ def others(
     loose: str = "",
     way: tuple[Array, Array] | None = None,
     hidden: float = 0.0,
-    known_costs: int = 0,
+    past: Past | None = None,
 ) -> Iterator[Tried[Answer]]:
     """Competitors of an answer: what each start leads to. Those that seem to cost less are made exact.
 
@@ -158,15 +122,35 @@ def others(
         Times and states of the answer, for the coarse mesh.
     hidden
         Difference up to which costs count as one, because the interior-point code tells no better.
-    known_costs
-        How many other costs are known already.
+    past
+        What was found beside earlier answers. It comes first, and what is found now is added.
     """
-    seen: list[tuple[float, float]] = []  # costs on the coarse mesh, and the cost that each came to
+    past = Past() if past is None else past
+    past.way = past.way or way
+    yield from past.tried
+    for one in _further(instance, limits, exact, cost, cost_of, loose, way, hidden, past):
+        past.tried.append(replace(one, exact=None))
+        yield one
+
+
+def _further(
+    instance: Instance,
+    limits: Limits,
+    exact: Callable[[Motion, Limits], Answer | None],
+    cost: float,
+    cost_of: Callable[[Answer], float],
+    loose: str,
+    way: tuple[Array, Array] | None,
+    hidden: float,
+    past: Past,
+) -> Iterator[Tried[Answer]]:
+    """Competitors from the starts that were not tried yet."""
+    seen, first = past.seen, len(past.tried)
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
-    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, way)):
+    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.way, first=first), first):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
         else:
@@ -174,10 +158,11 @@ def others(
         if not found.solved:
             yield Tried(plan, float("nan"))
         elif abs(found.objective - cost) <= hidden:
-            seen = seen or [(found.objective, cost)]  # so that the cost of the answer is among them
+            if not seen:  # so that the cost of the answer is among them
+                seen.append((found.objective, cost))
             yield Tried(plan, cost)
         elif _another_way(found, cost, shapes):
-            answer = next(filter(None, (exact(at, limits) for at in _finer(found, limits))), None)
+            answer = next(filter(None, (exact(motion(at), limits) for at in finer(found, limits))), None)
             came = cost if answer is None else cost_of(answer)
             seen.append((found.objective, came))
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None)
@@ -185,22 +170,19 @@ def others(
             yield Tried(plan, known)
         else:
             quiet = 0
-            came, answer = _followed(found, _part(limits), cost, lambda at: _costing(exact(at, limits), cost_of))
+            came, answer, unsettled = followed(
+                found, part(limits), cost, lambda at: _costing(exact(at, limits), cost_of)
+            )
             seen.append((found.objective, came))
-            unsettled = not constrained and bool(np.isnan(came))  # with constraints it steps over one, mostly
+            unsettled &= not constrained  # with constraints it steps over one, mostly
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None, unsettled)
         spent = limits.meter.spent
         # starts with other turns and durations are tried whatever the first ones lead to
         further = plan.turns is not None or plan.timed or plan.arriving
         alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
-        enough = (PATIENCE if patient else QUIET + FURTHER * (len(seen) - 1 + known_costs)) if seen else FAILING
+        enough = (PATIENCE if patient else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
         if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:
             break
-
-
-def _part(limits: Limits) -> Limits:
-    """Limits for the finer meshes of one start, which leave work for the others."""
-    return replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
 
 
 def _shape(times: Array, x: Array) -> Array:
@@ -227,73 +209,3 @@ def _another_way(found: Found, cost: float, shapes: list[Array]) -> bool:
 
 def _costing(answer: Answer | None, cost_of: Callable[[Answer], float]) -> tuple[float, Answer] | None:
     return None if answer is None else (cost_of(answer), answer)
-
-
-def _followed(
-    found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None]
-) -> tuple[float, Answer | None]:
-    """What a motion on a coarse mesh comes to beside an answer, and an extremal near it if it seems cheaper.
-
-    A motion that costs more is solved on finer meshes as long as these make it much cheaper. One that costs less, and
-    whose cost finer meshes hardly change, is cheaper even if no extremal is found near it.
-    """
-    margin, costs = SIMILAR * abs(cost), list[float]()
-    meshes, residual = refined(found)
-    for at in _finer(found, limits):
-        falling = at.cost < costs[-1] - FALLING * abs(costs[-1]) if costs else residual > RESOLVED
-        costs.append(at.cost)
-        if at.cost < cost - margin:
-            answer = exact(at)
-            if answer is not None:
-                return answer
-        elif at.cost <= cost + margin:
-            return cost, None
-        elif not falling:
-            return at.cost, None
-    finest = sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals
-    change = abs(costs[-1] - costs[-2]) if len(costs) > 1 else 0.0 if finest else np.inf
-    surely = costs[-1] + UNCERTAIN * change < cost - margin and not violates(at)
-    return (costs[-1] if surely or costs[-1] >= cost else float("nan")), None
-
-
-def _finer(found: Found, limits: Limits) -> Iterator[Motion]:
-    """What was found, on meshes that are ever finer."""
-    yield motion(found)
-    for number in range(MESHES):
-        meshes, _ = refined(found)
-        if sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals:
-            return
-        with np.errstate(all="ignore"):
-            one = _again(found, meshes, SMOOTHINGS[number], limits)
-        if not one.solved:
-            return
-        settled = abs(one.objective - found.objective) <= SETTLED_COST * abs(one.objective)
-        found = one
-        yield motion(found)
-        if settled:
-            return
-
-
-def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """Solve a programme again on other meshes, from a solution on its own.
-
-    If the solution was reached from a smoother problem, so is the new one: next to bounds, controls that are hardly
-    smoothed jump from point to point, and are no start for finer meshes.
-    """
-    begun = found if found.programme.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
-    smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
-    if smoother is not None and smoother.solved:
-        one = nlp.solve(
-            replace(smoother.programme, smoothing=smoothing, kinds={}), smoother.unknown, limits, BESIDE, True
-        )
-        return replace(one, smoother=smoother) if one.solved else smoother
-    return _carried(found, meshes, smoothing, limits)
-
-
-def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """Solve a programme on other meshes directly from a solution on its own."""
-    old = found.programme
-    programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
-    start = starts.carried(programme, old, found.unknown)
-    one = nlp.solve(programme, start, limits, ON_FINER_MESH, near=True)
-    return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)

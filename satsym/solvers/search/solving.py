@@ -24,9 +24,9 @@ from satsym.solvers.redundant_ends import Redundant, redundant
 from satsym.solvers.search import coarse, failing, order
 from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.nlp import ACCEPTABLE
-from satsym.solvers.search.order import Tried
 from satsym.solvers.search.reading import boundaries, collocated, extremals, levels
 from satsym.solvers.search.reading.limits import exact_within
+from satsym.solvers.search.tried import Past, Tried
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.structure import Course
 from satsym.status import Status
@@ -110,13 +110,15 @@ def guessed(instance: Instance, limits: Limits) -> Instance:
     return instance if found is None else collocated.guessing(instance, found.times, found.x, found.lam)
 
 
-def others(instance: Instance, solution: Solution, limits: Limits, known_costs: int = 0) -> Iterator[Tried[Solution]]:
+def others(
+    instance: Instance, solution: Solution, limits: Limits, past: Past | None = None
+) -> Iterator[Tried[Solution]]:
     """What other starts come to beside an answer to an instance, as :func:`order.others` has it."""
     less = redundant(instance)
     making, loose = (partial(exact, instance), "") if less is None else (partial(_met, less), less.state)
     way = solution.times, solution.x
     cost, hidden = solution.objective, _hidden(solution)
-    return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden, known_costs)
+    return order.others(instance, limits, making, cost, lambda one: one.objective, loose, way, hidden, past)
 
 
 def _hidden(solution: Solution) -> float:

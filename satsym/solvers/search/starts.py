@@ -127,7 +127,11 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
     if draws_ends(instance):
-        found[1:1] = [Plan(coasting=True, drawn=seed) for seed in range(1, DRAWS + 1)]
+        bent = (0.0, *WIDER)  # whatever is drawn, coasts next to one another may all lead to one motion
+        found[1:1] = [
+            Plan(coasting=True, drawn=seed, noise=bent[(seed - 1) % len(bent)], seed=seed)
+            for seed in range(1, DRAWS + 1)
+        ]
     if round_:
         places = [place for pair in round_[:2] for place in pair]
         speed = 0.5 * (_turn_rate(start, round_) + _turn_rate(np.where(np.isnan(end), start, end), round_))

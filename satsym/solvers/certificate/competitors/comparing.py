@@ -21,6 +21,7 @@ from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
+from satsym.solvers.search.tried import Past
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows
 
@@ -34,19 +35,22 @@ SEED, DURATIONS = 20012, 12
 """Seed of the shorter durations that are drawn, and how many there are."""
 
 
-def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()) -> Comparison:
+def compared(
+    solution: Solution, limits: Limits, past: Past | None = None, free: tuple[Unknown, ...] = ()
+) -> Comparison:
     """Compare a solution with competitors of every kind.
 
     Parameters
     ----------
     limits
         Limits of time; competitors that are not solved within them count as not checked.
-    seed
-        Seed of the controls that are drawn; a solution that was found from a drawn control needs another one.
+    past
+        What was found beside earlier answers, and how many these were: the seed of what is drawn, as a solution that
+        was found from a drawn control needs another one.
     free
         What competitors may choose besides the end.
     """
-    instance, switches = solution.instance, switching(solution)
+    instance, switches, past = solution.instance, switching(solution), past or Past()
     if not switches and none_conceivable(solution):
         return Comparison(proved=(Check("no cheaper competitor", 0.0, 0.0),))
     if not switches and convex(instance):
@@ -54,7 +58,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
     activity.tell("certificate: comparing with other starts of the search ...")
     unhindered = switches and not (instance.model.spec.throttled or instance.model.spec.in_arcs)
     with np.errstate(all="ignore"):
-        costs, exact, unsettled = searched(solution, limits, seed, free)
+        costs, exact, unsettled = searched(solution, limits, past, free)
         if unhindered and not limits.late and (quicker := _shorter_costs(solution, limits)) and not limits.late:
             costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
     found = dict[Kind, Compared]()
@@ -67,7 +71,7 @@ def compared(solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unkn
         enough, found = set(found), {kind: replace(one, enough=True) for kind, one in found.items()}
     missing = tuple(kind for kind in possible if kind not in enough - unsettled)
     if not switches and Kind.STARTS in found and found[Kind.STARTS].margin >= 0.0 and not limits.late:
-        drawn, led = _from_controls(solution, seed, limits, free)
+        drawn, led = _from_controls(solution, past.answers, limits, free)
         starts = found[Kind.STARTS] if drawn is None else found[Kind.STARTS].joined(drawn)
         found[Kind.STARTS], exact = replace(starts, enough=drawable(solution)), exact or led
     if limits.late or not (found or switches):  # nothing to compare with is said

@@ -15,6 +15,7 @@ from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, going
 from satsym.solvers.certificate.competitors.drawn import extremals_below
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
+from satsym.solvers.search.tried import Past
 
 WORK = 2_000_000
 """Unknowns times iterations that all starts together may take."""
@@ -34,7 +35,7 @@ def kinds(instance: Instance) -> list[Kind]:
 
 
 def searched(
-    solution: Solution, limits: Limits, seed: int = 0, free: tuple[Unknown, ...] = ()
+    solution: Solution, limits: Limits, past: Past, free: tuple[Unknown, ...] = ()
 ) -> tuple[dict[Kind, list[float]], Solution | None, set[Kind]]:
     """Solve again from each start of the search and compare the costs with that of an answer.
 
@@ -45,8 +46,8 @@ def searched(
 
     Parameters
     ----------
-    seed
-        Seed of random starts; the caller raises it by one each time a cheaper answer replaces the last.
+    past
+        What was found beside earlier answers, and how many these were: the seed of what is drawn.
     free
         What the starts may choose besides the end.
 
@@ -67,7 +68,7 @@ def searched(
     costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
     better: Solution | None = None
     unsettled = set[Kind]()
-    for one in solving.others(instance, solution, within, seed):
+    for one in solving.others(instance, solution, within, past):
         if limits.late:
             break
         kind = Kind.REVOLUTIONS if one.plan.turns is not None else Kind.STARTS
@@ -86,7 +87,7 @@ def searched(
         costs[Kind.REVOLUTIONS].append(math.nan if found is None else found.objective)
         if found is not None and found.objective < (solution if better is None else better).objective:
             better = found
-    for guess in [] if better else extremals_below(solution, seed):
+    for guess in [] if better else extremals_below(solution, past.answers):
         within = replace(within, work=limits.meter.spent + GUESSED)
         found = None if limits.late else solving.searched(replace(guess, free=free), within)
         costs[Kind.STARTS].append(math.nan if found is None else found.objective)

@@ -33,6 +33,7 @@ from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
+from satsym.solvers.search.tried import Past
 
 NAMES = {OF_FLOW: OF_SEGMENTS}
 """What is called otherwise where it is measured part by part."""
@@ -49,7 +50,7 @@ which nobody looks."""
 
 
 def certify(
-    solution: Solution, deadline: float, seed: int = 0, compared: bool = True
+    solution: Solution, deadline: float, past: Past | None = None, compared: bool = True
 ) -> tuple[Certificate, Solution | None]:
     """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.verdict.examined`."""
     with np.errstate(all="ignore"):
@@ -67,7 +68,7 @@ def certify(
             elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
-                    others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), seed)
+                    others = comparing.compared(solution, Limits(MOST_ITERATIONS, deadline), past)
                     if again.meets_a_boundary(solution):
                         others = others.joined(_of_other_structures(solution, deadline))
     return concluded(first, second, curved, others, compared=compared), others.better

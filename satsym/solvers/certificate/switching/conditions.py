@@ -27,6 +27,7 @@ from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_
 from satsym.solvers.control.slopes import undecided
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
+from satsym.solvers.search.tried import Past
 from satsym.solvers.switching.boundary import BoundaryField, off_boundary
 from satsym.solvers.switching.field import NUDGE, Field
 from satsym.solvers.switching.linear.linear_motion import linear_motion
@@ -62,7 +63,7 @@ CHANGED = 0.5
 
 
 def certify(
-    solution: Solution, deadline: float, compare: bool = True, seed: int = 0
+    solution: Solution, deadline: float, compare: bool = True, past: Past | None = None
 ) -> tuple[Certificate, Solution | None]:
     """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`. And an extremal that costs less, if any."""
     limits = Limits(MOST_ITERATIONS, deadline)
@@ -82,7 +83,7 @@ def certify(
     others = Comparison()
     if all(c.passed for c in first):
         second = _sufficient(solution, again, limits)
-        others = compared(solution, limits, seed) if compare else others
+        others = compared(solution, limits, past) if compare else others
     return concluded(first, second, _legendre(again), others, compared=compare), others.better
 
 

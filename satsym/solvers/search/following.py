@@ -1,0 +1,124 @@
+"""Motions on a coarse mesh followed on finer ones: what each comes to beside an answer, until its cost settles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.iteration import Limits
+from satsym.solvers.search import nlp, starts
+from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR
+from satsym.solvers.search.mesh import UNRESOLVED, refined
+from satsym.solvers.search.motion import Motion, motion, violates
+from satsym.solvers.search.nlp import Found
+from satsym.solvers.search.programme import Programme
+
+Answer = TypeVar("Answer")
+
+BESIDE, ON_FINER_MESH = 120, 200
+"""Iterations of the interior-point code for a competitor, and for a finer mesh."""
+
+MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
+"""Number of finer meshes at most, share of the work that those of one start may take, relative change of cost from one
+to the next at which they end, and smoothings of norms on each."""
+
+FALLING, RESOLVED, LOST, UNCERTAIN = 1e-2, 1e-2, 50.0, 10.0
+"""A motion that costs more than an answer is followed as long as each finer mesh makes it cheaper by the share FALLING,
+but not where the residual of its coarse mesh, relative to the sizes of states, is at most RESOLVED. None is followed
+further whose residual is above LOST on a finer mesh: it steps over something, such as the centre of a planet. A cost is
+uncertain by UNCERTAIN times its last change."""
+
+
+def part(limits: Limits) -> Limits:
+    """Limits for the finer meshes of one start, which leave work for the others."""
+    return replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
+
+
+def followed(
+    found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None]
+) -> tuple[float, Answer | None, bool]:
+    """What a motion on a coarse mesh comes to beside an answer, and an extremal near it if it seems cheaper.
+
+    A motion that costs more is solved on finer meshes as long as these make it much cheaper. One that costs less, and
+    whose cost finer meshes hardly change, is cheaper even if no extremal is found near it.
+
+    Returns
+    -------
+    float
+        The cost. NaN where the motion seems to be cheaper, but no mesh settles that.
+    Answer
+        The extremal, if one was looked for and found.
+    bool
+        Whether the cost is NaN although the last mesh resolves the motion. What no mesh resolves obeys no equations,
+        so that it is no evidence of anything cheaper.
+    """
+    margin, costs, last = SIMILAR * abs(cost), list[float](), found
+    meshes, _ = refined(found)
+    for last in finer(found, limits):
+        at, residual = motion(last), refined(last)[1]
+        falling = at.cost < costs[-1] - FALLING * abs(costs[-1]) if costs else residual > RESOLVED
+        costs.append(at.cost)
+        if at.cost < cost - margin:
+            answer = exact(at) if residual <= LOST else None
+            if answer is not None:
+                return *answer, False
+        elif at.cost <= cost + margin:
+            return cost, None, False
+        elif not falling:
+            return at.cost, None, False
+        if len(costs) > 1 and residual > LOST:
+            break
+    finest = sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals
+    change = abs(costs[-1] - costs[-2]) if len(costs) > 1 else 0.0 if finest else np.inf
+    resolved = refined(last)[1] < UNRESOLVED
+    surely = resolved and costs[-1] + UNCERTAIN * change < cost - margin and not violates(motion(last))
+    if surely or costs[-1] >= cost:
+        return costs[-1], None, False
+    return float("nan"), None, resolved
+
+
+def finer(found: Found, limits: Limits) -> Iterator[Found]:
+    """What was found, on meshes that are ever finer."""
+    yield found
+    for number in range(MESHES):
+        meshes, _ = refined(found)
+        if sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals:
+            return
+        with np.errstate(all="ignore"):
+            one = _again(found, meshes, SMOOTHINGS[number], limits)
+        if not one.solved:
+            return
+        settled = abs(one.objective - found.objective) <= SETTLED_COST * abs(one.objective)
+        found = one
+        yield found
+        if settled:
+            return
+
+
+def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
+    """Solve a programme again on other meshes, from a solution on its own.
+
+    If the solution was reached from a smoother problem, so is the new one: next to bounds, controls that are hardly
+    smoothed jump from point to point, and are no start for finer meshes.
+    """
+    begun = found if found.programme.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
+    smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
+    if smoother is not None and smoother.solved:
+        one = nlp.solve(
+            replace(smoother.programme, smoothing=smoothing, kinds={}), smoother.unknown, limits, BESIDE, True
+        )
+        return replace(one, smoother=smoother) if one.solved else smoother
+    return _carried(found, meshes, smoothing, limits)
+
+
+def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
+    """Solve a programme on other meshes directly from a solution on its own."""
+    old = found.programme
+    programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
+    start = starts.carried(programme, old, found.unknown)
+    one = nlp.solve(programme, start, limits, ON_FINER_MESH, near=True)
+    return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)
