@@ -17,6 +17,7 @@ from satsym.instance import Instance
 from satsym.instance.options import MOST_BYTES, needed_memory, solver
 from satsym.solvers import iteration, solve
 from satsym.solvers.iteration import BLOCK, Limits, TimeUp, watched
+from satsym.solvers.search import coarse
 from satsym.solvers.simulation import blocks
 from satsym.status import BadInput, Status
 
@@ -161,3 +162,12 @@ def test_no_solver_counts_its_time_on_another_clock(repository: Path) -> None:
     assert {path.name for path in files if "+ instance.solver.max_seconds" in path.read_text("utf-8")} == {
         "iteration.py"
     }
+
+
+def test_what_threads_of_the_interior_point_code_compute_counts() -> None:
+    """Matrices are factored in other threads than the one that asks; a limit of time is for both."""
+    case = instance.load("hypersensitive")
+    begun, all_threads = iteration.computed(), time.process_time()
+    assert coarse.first_motion(case, Limits(iteration.MOST_ITERATIONS, np.inf)) is not None
+    spent, all_threads = iteration.computed() - begun, time.process_time() - all_threads
+    assert 0.7 * all_threads < spent < 1.05 * all_threads
