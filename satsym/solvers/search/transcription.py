@@ -128,6 +128,7 @@ class Transcription:
             [self.sizes.states, self.sizes.variables, [self.sizes.duration], self.sizes.free[: len(self.free)]]
         )
         self.points = Points(self.instance, self.controls, tuple(one.index for one in self.free), size)
+        self._last_local: tuple[bytes, tuple[Array, Array, Array]] | None = None
         self._last_rates: tuple[bytes, Array] | None = None
         self._last_slopes: tuple[bytes, Array] | None = None
         self._placed()
@@ -147,10 +148,14 @@ class Transcription:
         n, k = self.points.states, self.controls.count
         x = w[: self.first_variable].reshape(self.count + 1, n).T * self.sizes.states[:, None]
         v = w[self.first_variable : self.first_duration].reshape(self.count, k).T * self.sizes.variables[:, None]
+        return x, v, *self._shared(w)
+
+    def _shared(self, w: Array) -> tuple[Array, Array, float]:
+        """Durations (P,), free parameters, and the initial time."""
         durations = w[self.first_duration : self.first_free] * self.sizes.duration
         free = w[self.first_free : self.first_start] * self.sizes.free[: len(self.free)]
         start = w[-1] * self.sizes.duration if self.starts else self.instance.t0
-        return x, v, durations, free, start
+        return durations, free, start
 
     def packed(self, x: Array, v: Array, durations: Array, free: Array, start: float) -> Array:
         """The inverse of :meth:`unpacked`."""
@@ -169,11 +174,17 @@ class Transcription:
         return start + np.concatenate([[0.0], self.shares @ durations])
 
     def _local(self, w: Array) -> tuple[Array, Array, Array]:
-        """Local variables (l, N) of collocation points, steps (N,), and states (n, N + 1)."""
-        x, v, durations, free, start = self.unpacked(w)
-        times = self.times(durations, start)[1:]
-        rows = [x[:, 1:], v, times[None], np.repeat(free[:, None], self.count, 1)]
-        return np.concatenate(rows), self.steps @ durations, x
+        """Local variables (l, N) of collocation points, steps (N,), and states (n, N + 1).
+
+        Those of the last unknowns are remembered.
+        """
+        key = w.tobytes()
+        if self._last_local is None or self._last_local[0] != key:
+            x, v, durations, free, start = self.unpacked(w)
+            times = self.times(durations, start)[1:]
+            rows = [x[:, 1:], v, times[None], np.repeat(free[:, None], self.count, 1)]
+            self._last_local = key, (np.concatenate(rows), self.steps @ durations, x)
+        return self._last_local[1]
 
     def _rates(self, w: Array) -> Array:
         """Rates (n + 1, N) at collocation points; those of the last unknowns are remembered."""
@@ -184,10 +195,12 @@ class Transcription:
 
     def _at(self, w: Array, points: Sequence[int]) -> Array:
         """Local variables (l, K) of some points, the first being the start; those of controls count for nothing."""
-        x, _, durations, free, start = self.unpacked(w)
-        times, v = self.times(durations, start), np.zeros((self.controls.count, len(points)))
-        rows = [x[:, points], v, times[points][None], np.repeat(free[:, None], len(points), 1)]
-        return np.concatenate(rows)
+        durations, free, start = self._shared(w)
+        n, places = self.points.states, np.asarray(points)
+        x = w[: self.first_variable].reshape(self.count + 1, n)[places].T * self.sizes.states[:, None]
+        v = np.zeros((self.controls.count, len(points)))
+        times = self.times(durations, start)[places]
+        return np.concatenate([x, v, times[None], np.repeat(free[:, None], len(points), 1)])
 
     def _listed(self) -> None:
         n, first = self.points.states, 0
