@@ -1,4 +1,4 @@
-"""What a long run is at just now, for whoever shows it: nobody, unless someone listens."""
+"""Messages about the current activity of a long run, for a listener if there is one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _LISTENER: ContextVar[Callable[[str], None] | None] = ContextVar("listener", def
 
 
 def tell(what: str) -> None:
-    """Say what begins now and takes its time, in a few words."""
+    """Say in a few words what begins now and takes its time."""
     listener = _LISTENER.get()
     if listener is not None:
         listener(what)
@@ -18,7 +18,7 @@ def tell(what: str) -> None:
 
 @contextmanager
 def heard(listener: Callable[[str], None]) -> Iterator[None]:
-    """Pass what is said in here to a listener."""
+    """Pass the messages within this context to a listener."""
     before = _LISTENER.set(listener)
     try:
         yield

@@ -1,4 +1,4 @@
-"""What "equal" means: two routes lead to the same number, however many digits it is computed with.
+"""The meaning of "equal": two routes lead to the same number, however many digits are computed.
 
 Rounding leaves two numbers that are equal a small distance apart. How small depends on the terms that cancel on the
 way, so that no fixed limit tells it from a mistake. It does shrink with the digits of the computation, and a mistake
@@ -51,7 +51,9 @@ Sides: TypeAlias = tuple[Sequence[Any], Sequence[Any]]
 
 
 def disagreement(sides: Callable[[int], Sides]) -> float:
-    """How far apart the numbers of two routes are, relative to their size; at most :data:`LIMIT` where all are equal.
+    """Return how far the numbers of two routes are apart, relative to their size.
+
+    It is at most :data:`LIMIT` where all are equal.
 
     Parameters
     ----------
@@ -91,14 +93,14 @@ def disagreement(sides: Callable[[int], Sides]) -> float:
 
 
 def equal(sides: Callable[[int], Sides]) -> bool:
-    """Whether the numbers of two routes are the same."""
+    """Tell whether two routes lead to the same numbers."""
     return disagreement(sides) <= LIMIT
 
 
 def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
-    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision.
+    """Return numeric derivatives at zero of a vector function of one number, by central differences.
 
-    Where the function is large, with as many digits more. NaN where it is so large that rounding hides how it changes.
+    Where the function is large, more digits are used. NaN where it is so large that rounding hides its changes.
     """
     import mpmath as mp
 
@@ -116,7 +118,7 @@ def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
 
 
 def finite(values: Iterable[Any]) -> bool:
-    """Whether all of these are finite numbers."""
+    """Tell whether all of these are finite numbers."""
     return all(abs(value) < math.inf for value in values)
 
 

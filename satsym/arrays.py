@@ -1,4 +1,4 @@
-"""The type of arrays of numbers: their shapes stand in docstrings, their last axis counts times or instances."""
+"""The type of arrays of numbers: shapes are stated in docstrings, the last axis counts times or instances."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ T = TypeVar("T")
 
 
 def distinct(values: ArrayLike) -> NDArray[Any]:
-    """The different ones of some numbers, none of them nan, in order; unlike NumPy's, loading no masked arrays."""
+    """Return the distinct numbers of some, none of them nan, in order; unlike NumPy's, without masked arrays."""
     ordered = np.sort(values, axis=None, kind="stable")  # which is quick where most are in order
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: ordered.size]]
 
 
 def kept(function: Callable[..., T]) -> Callable[..., T]:
-    """Keep what a function of arrays, and other values, has given, by what is in them."""
+    """Cache the results of a function of arrays and other values, by their contents."""
     known: dict[Any, T] = {}
 
     @wraps(function)

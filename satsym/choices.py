@@ -1,4 +1,4 @@
-"""What users choose among by name in instance files, on the command line and in Python."""
+"""Named choices of users in instance files, on the command line and in Python."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from enum import Enum
 
 
 class Choice(str, Enum):
-    """One of some names."""
+    """The base class of named choices."""
 
     @classmethod
     def names(cls) -> tuple[str, ...]:
-        """Names of all choices."""
+        """Return the names of all choices."""
         return tuple(each.value for each in cls)
 
 
 class Command(Choice):
-    """What a study does with each row."""
+    """The command that a study applies to each row."""
 
     SOLVE = "solve"
     SIMULATE = "simulate"
@@ -23,7 +23,7 @@ class Command(Choice):
 
 
 class Checked(Choice):
-    """How much of a certificate answers get: none, all but competitors, these for some rows, or as ``satsym solve``."""
+    """The extent of certificates in a study: none, all but competitors, these for some rows, or as ``satsym solve``."""
 
     NONE = "none"
     LOCAL = "local"
@@ -32,19 +32,19 @@ class Checked(Choice):
 
 
 class TableFormat(Choice):
-    """What the table of a study is written as."""
+    """The file format of a study's table."""
 
     CSV = "csv"
     PARQUET = "parquet"
 
     @property
     def file(self) -> str:
-        """Name of the file of a table in this form."""
+        """Return the name of a table's file in this format."""
         return f"table.{self.value}"
 
 
 class Sampling(Choice):
-    """How a sample is drawn: Sobol' points with a random shift and scramble, Latin hypercubes, independent points."""
+    """The way to draw a sample: Sobol' points with random shift and scramble, Latin hypercubes, independent points."""
 
     SOBOL = "sobol"
     LHS = "lhs"

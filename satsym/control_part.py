@@ -1,4 +1,4 @@
-"""One of the sets whose product a control set is, as plain data, and how H is minimised over it."""
+"""One set of a product of control sets, as plain data, and how H is minimised over it."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from typing import Literal
 
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
 Branch = Literal["quadratic", "stationary", "direction", "throttled", "switched"]
-"""How H is minimised over one set of controls: where H_u vanishes, on which it depends linearly or not; along a
-direction, whatever it is; along one if that is worth more than the norm of the controls costs, and not at all
-elsewhere; or, of a single control on which H depends linearly, at the bound to which it falls."""
+"""The way in which H is minimised over one set of controls: at a zero of H_u, where H is quadratic or not; along a
+direction; along a direction if that gains more than the norm of the controls costs, and else at zero; or, for a single
+control in which H is linear, at the bound towards which H falls."""
 DIRECTED = ("direction", "throttled", "switched")
 SWITCHED = ("throttled", "switched")
-"""Laws by which something switches between two levels: a norm, or the control itself."""
+"""Branches in which a norm, or the control itself, switches between two levels."""
 
 
 @dataclass(frozen=True)
 class ControlPart:
-    """One of the sets whose product is the control set.
+    """One set of a product of control sets.
 
     Attributes
     ----------
@@ -44,15 +44,15 @@ class ControlPart:
 
     @property
     def bounds(self) -> int:
-        """How many numbers of the argument ``bounds`` belong to it."""
+        """Return how many numbers of the argument ``bounds`` belong to this set."""
         return {"free": 0, "box": 2 * len(self.controls), "ball": 1, "annulus": 2, "angle": 1}[self.kind]
 
     @property
     def directed(self) -> bool:
-        """Whether its controls are a direction."""
+        """Tell whether the controls of the set are a direction."""
         return self.branch in DIRECTED
 
     @property
     def normed(self) -> bool:
-        """Whether it limits a norm."""
+        """Tell whether the set limits a norm."""
         return self.kind in ("ball", "annulus")

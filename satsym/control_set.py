@@ -1,4 +1,4 @@
-"""The set of admissible controls: its bounds, what regularises it, projection onto it, and where its boundary is."""
+"""The set of admissible controls: its bounds, its regularisation, projection onto it, and its boundary."""
 
 from __future__ import annotations
 
@@ -18,31 +18,32 @@ from satsym.spec import ProblemSpec
 Row = tuple[float, ...]
 
 UNSMOOTHED = 1e-100
-"""The smoothing of a problem itself whose controls switch or are directions: none."""
+"""The smoothing that stands for none, in problems whose controls switch or are directions."""
 
 Norms = Mapping[str, tuple[float, float]]
-"""By the name of a set, the least and the largest norm of its controls."""
+"""The least and the largest norm of controls, by the name of their set."""
 
 
 def bound_names(spec: ProblemSpec) -> tuple[tuple[str, ...], ...]:
-    """What the bounds of each control are called; nothing where the control set is no box."""
+    """Return the names of the bounds of each control; empty where the control set is no box."""
     boxed = set(spec.control_names) if spec.control_set == "box" else set()
     boxed = boxed.union(*(part.controls for part in spec.control_parts if part.kind == "box"))
     return tuple(tuple(f"{name}_{end}" for end in ("min", "max") if name in boxed) for name in spec.control_names)
 
 
 def stated_constraints(spec: ProblemSpec) -> dict[str, int]:
-    """Path constraints that are no bounds of the controls, and their places among all."""
+    """Return the path constraints other than bounds of controls, and their places among all."""
     bounds = {name for names in bound_names(spec) for name in names}
     return {one.name: k for k, one in enumerate(spec.path_constraints) if one.name not in bounds}
 
 
 @dataclass(frozen=True)
 class ControlSet:
-    """Which controls are admissible, and how much of a regularisation there is."""
+    """The set of admissible controls, with the amount of regularisation."""
 
     kind: PartKind | Literal["product"] | None
-    """Which of the following count; ``None`` for a model without a cost, whose controls are free."""
+    """The kind of the set, which selects the fields that count; ``None`` for a model without a cost, whose controls are
+    free."""
     lower: Row = ()
     upper: Row = ()
     """Lower and upper bounds of a box in the model's order, infinite where there is none."""
@@ -50,18 +51,18 @@ class ControlSet:
     """Largest norm of a ball or an annulus, infinite where there is none. For an angle it is one, or more where a
     regularised problem is relaxed."""
     smoothing: float = 0.0
-    """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
-    cost over that of the squared control; zero where controls neither switch nor are directions."""
+    """The weight of half the squared controls in the cost of a regularised problem, in the unit of the running cost
+    over that of the squared control; zero where controls neither switch nor are directions."""
     fraction: float = 1.0
-    """Share of the weight of |u| that counts in a regularised problem, 0 to 1."""
+    """Fraction of the weight of |u| that counts in a regularised problem, 0 to 1."""
     inner: float = 0.0
-    """The least norm of an annulus, or of a vector in a ball that is kept at it."""
+    """The least norm of an annulus, or the norm at which a vector in a ball is kept."""
     directed: bool = False
-    """Whether H is linear in it: it has full length always, but for that of a regularised problem."""
+    """Whether H is linear in the vector, which then has full length except in a regularised problem."""
     throttled: bool = False
-    """Whether something of it switches between two levels: its norm, which counts as well, or a single control."""
+    """Whether the norm, or a single control, switches between two levels."""
     turned_by: int | None = None
-    """Place of the angle that turns what a magnitude multiplies; ``None`` where the set is no such magnitude."""
+    """Place of the angle that turns the quantity multiplied by a magnitude; ``None`` for other sets."""
     parts: tuple[tuple[tuple[int, ...], ControlSet], ...] = ()
     """Sets of a product, each with the places of its controls in the model's order."""
 
@@ -84,7 +85,7 @@ class ControlSet:
 
     @classmethod
     def from_arguments(cls, spec: ProblemSpec, bounds: Sequence[Any]) -> ControlSet:
-        """What generated functions were given as :attr:`arguments`, numbers or arrays."""
+        """Return the control set of the numbers or arrays in :attr:`arguments` of generated functions."""
         m = len(spec.controls)
         if spec.control_parts:
             left = list(bounds)
@@ -115,7 +116,7 @@ class ControlSet:
 
     @cached_property
     def arguments(self) -> Row:
-        """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
+        """Return the argument ``bounds`` of generated functions: bounds or radius, then the regularisation."""
         if self.kind == "product":
             own = tuple(value for _, part in self.parts for value in part.arguments)
             throttled = [part for _, part in self.parts if part.throttled]
@@ -129,13 +130,16 @@ class ControlSet:
 
     @property
     def bounded(self) -> bool:
-        """Whether any bound is finite, and not only the length of a direction."""
+        """Tell whether any bound is finite, other than the length of a direction."""
         if self.kind == "product":
             return any(part.bounded for _, part in self.parts)
         return not self.directed and any(map(math.isfinite, (*self.lower, *self.upper, self.radius)))
 
     def relaxed(self, by: float) -> ControlSet:
-        """The set with every bound moved outwards, in the controls' units; that of a direction if regularised."""
+        """Return the set with every bound moved outwards, in the controls' units.
+
+        The bound of a direction moves only if it is regularised.
+        """
         if self.kind == "product":
             eased = self.smoothing > UNSMOOTHED
             parts = tuple((at, part.relaxed(by) if eased or not part.directed else part) for at, part in self.parts)
@@ -157,7 +161,7 @@ class ControlSet:
         return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
-        """Return the set in which only this control is admissible; parts of a product that switch keep these levels."""
+        """Return the set that admits only this control; sets of a product that switch keep these levels."""
         if self.kind == "product":
             levels = iter(u)
 
@@ -172,17 +176,17 @@ class ControlSet:
 
     @property
     def levels(self) -> tuple[float, float]:
-        """Between which a single control in a box switches, or the norm of a vector."""
+        """Return the two levels between which a single control in a box, or the norm of a vector, switches."""
         return (self.lower[0], self.upper[0]) if self.kind == "box" else (self.inner, self.radius)
 
     @property
     def reach(self) -> float:
-        """The largest magnitude of a single control in a box, or norm of a vector."""
+        """Return the largest magnitude of a single control in a box, or norm of a vector."""
         return max(map(abs, self.levels)) if self.kind == "box" else self.radius
 
     @cached_property
     def switching(self) -> tuple[Row, Row]:
-        """Bounds of what switches: of the controls in a box; of a product, of norms and of single controls."""
+        """Return the bounds of switching quantities: controls in a box; norms and single controls of a product."""
         if self.kind != "product":
             return self.lower, self.upper
         levels = [part.levels for _, part in self.parts if part.throttled]
@@ -190,11 +194,11 @@ class ControlSet:
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
-        """Lower and upper bounds as columns, shapes (m, 1)."""
+        """Return lower and upper bounds as columns, shapes (m, 1)."""
         return np.array(self.lower)[:, None], np.array(self.upper)[:, None]
 
     def around(self, controls: int) -> tuple[Array, Array]:
-        """Lower and upper bounds of a box round the set, shapes (m, 1): infinite where nothing limits a control.
+        """Return lower and upper bounds of a box around the set, shapes (m, 1); infinite for unlimited controls.
 
         Parameters
         ----------
@@ -211,11 +215,11 @@ class ControlSet:
 
     @cached_property
     def rest(self) -> Row:
-        """The control of least magnitude in a box."""
+        """Return the control of least magnitude in a box."""
         return tuple(min(max(0.0, low), high) for low, high in zip(self.lower, self.upper, strict=True))
 
     def project(self, u: Array) -> Array:
-        """The nearest admissible controls.
+        """Return the nearest admissible controls.
 
         Parameters
         ----------
@@ -237,7 +241,7 @@ class ControlSet:
         return u
 
     def nearest(self) -> Callable[[Sequence[float]], Sequence[float]]:
-        """The nearest admissible control as a function of one, for loops on plain floats; see :meth:`project`."""
+        """Return the projection as a function of one control on plain floats; see :meth:`project`."""
         if self.kind == "box":
             bounds = list(zip(self.lower, self.upper, strict=True))
             return lambda u: [min(max(v, low), high) for v, (low, high) in zip(u, bounds, strict=True)]
@@ -248,7 +252,7 @@ class ControlSet:
         return lambda u: u
 
     def active(self, unbounded: Array) -> NDArray[np.int8]:
-        """Which bound saturates each control: -1 the lower, 1 the upper, 0 none; on a ball 1 or 0.
+        """Tell which bound saturates each control: -1 the lower, 1 the upper, 0 none; on a ball 1 or 0.
 
         Parameters
         ----------
@@ -270,7 +274,7 @@ class ControlSet:
         return np.zeros(unbounded.shape, np.int8)
 
     def excess(self, unbounded: Array) -> Array:
-        """Signed distances to each bound, whose zeros are the switching times; shape (bounds, M).
+        """Return signed distances to each bound, whose zeros are the switching times; shape (bounds, M).
 
         The rows are, for a box, control minus lower bound and control minus upper bound for each control; for a
         ball the norm minus its limit, of an annulus with its least norm before; set after set. Bounds that are infinite
@@ -291,7 +295,7 @@ class ControlSet:
 
     @cached_property
     def limited(self) -> tuple[tuple[int, ...], ...]:
-        """For each row of :meth:`excess`, the places of the controls whose bound it is; of a product."""
+        """Return, for each row of :meth:`excess` in a product, the places of the controls that it limits."""
         rows: list[tuple[int, ...]] = []
         for at, part in self.parts:
             if part.kind == "box" and not part.directed:
@@ -302,25 +306,25 @@ class ControlSet:
 
     @property
     def angles(self) -> tuple[int, ...]:
-        """Places of the controls that are angles."""
+        """Return the places of the controls that are angles."""
         return tuple(at[0] for at, part in self.parts if part.kind == "angle")
 
     def apart(self, u: Array, other: Array) -> Array:
-        """Differences of controls, those of angles of the shorter way round."""
+        """Return differences of controls, those of angles by the shorter way round."""
         found = np.subtract(u, other)
         for i in self.angles:
             found[i] = np.remainder(found[i] + math.pi, 2.0 * math.pi) - math.pi
         return found
 
     def continued(self, u: Array) -> Array:
-        """Controls over time, shape (m, M), angles without jumps by a turn."""
+        """Return controls over time, shape (m, M), with angles continued without jumps by a turn."""
         found = np.array(u)
         for i in self.angles:
             found[i] = np.unwrap(found[i])
         return found
 
     def violation(self, u: Array) -> float:
-        """By how much controls leave the set at most; not positive where they do not."""
+        """Return the largest violation of a bound; not positive for admissible controls."""
         if self.kind == "product":
             return max((part.violation(u[list(at)]) for at, part in self.parts), default=-np.inf)
         distances = self.excess(u)
@@ -335,6 +339,6 @@ class ControlSet:
 def _placed(
     spec: ProblemSpec, one: Callable[[ControlPart, tuple[int, ...]], ControlSet]
 ) -> tuple[tuple[tuple[int, ...], ControlSet], ...]:
-    """The sets of a product with the places of their controls."""
+    """Return the sets of a product with the places of their controls."""
     places = [tuple(spec.control_names.index(c) for c in part.controls) for part in spec.control_parts]
     return tuple((at, one(part, at)) for part, at in zip(spec.control_parts, places, strict=True))

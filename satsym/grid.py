@@ -1,8 +1,8 @@
 """The time grid that sweeps, quadrature and trajectories share: nodes of [t0, tf] and the midpoints between them.
 
-Simulation and quadrature are fourth order only where the control is smooth within each step. A control that
-meets a bound has corners, so a grid can take given points as nodes; a node that is too close to such a point
-moves there, because a tiny step would cost as much as a full one and spoil the conditioning.
+Simulation and quadrature are fourth order only where the control is smooth within each step. A control that meets a
+bound has corners, so a grid can take given points as nodes; a node that is too close to such a point moves there,
+because a tiny step would cost as much as a full one and worsen the conditioning.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ CLOSEST = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Nodes t0 < t1 < ... < tN = tf. Every array it hands out is read-only.
+    """A time grid with nodes t0 < t1 < ... < tN = tf; all its arrays are read-only.
 
     Raises
     ------
@@ -45,14 +45,14 @@ class Grid:
 
     @classmethod
     def uniform(cls, t0: float, tf: float, steps: int) -> Grid:
-        """``steps`` equal steps from ``t0`` to ``tf``; both ends are met exactly."""
+        """Return a grid of ``steps`` equal steps from ``t0`` to ``tf``, with both ends exact."""
         if steps < 1:
             raise ValueError(f"a grid has at least one step, not {steps}")
         return cls(np.linspace(t0, tf, steps + 1))
 
     @property
     def steps(self) -> int:
-        """Number N of steps."""
+        """Return the number N of steps."""
         return len(self.nodes) - 1
 
     @property
@@ -65,17 +65,17 @@ class Grid:
 
     @cached_property
     def widths(self) -> Array:
-        """Lengths of the steps, shape (N,)."""
+        """Return the lengths of the steps, shape (N,)."""
         return _sealed(np.diff(self.nodes))
 
     @cached_property
     def midpoints(self) -> Array:
-        """Middle of each step, shape (N,)."""
+        """Return the middle of each step, shape (N,)."""
         return _sealed(self.nodes[:-1] + 0.5 * self.widths)
 
     @cached_property
     def node_weights(self) -> Array:
-        """Simpson weights of values at the nodes, shape (N+1,)."""
+        """Return Simpson weights of values at the nodes, shape (N+1,)."""
         weights = np.zeros(self.steps + 1)
         weights[:-1] += self.widths / 6.0
         weights[1:] += self.widths / 6.0
@@ -83,11 +83,11 @@ class Grid:
 
     @cached_property
     def midpoint_weights(self) -> Array:
-        """Simpson weights of values at the midpoints, shape (N,)."""
+        """Return Simpson weights of values at the midpoints, shape (N,)."""
         return _sealed(self.widths * (2.0 / 3.0))
 
     def with_corners(self, points: Iterable[float], closest: float = CLOSEST) -> Grid:
-        """The grid in which each of the points is a node, as far as the spacing allows.
+        """Return the grid in which each of the points is a node, as far as the spacing allows.
 
         A point becomes a new node, unless it is nearer to a node than ``closest`` times the step it falls
         into. Then that node moves to the point, except that ends and corners stay where they are: the point is
@@ -125,7 +125,7 @@ class Grid:
 
 
 def interleave(at_nodes: Array, at_midpoints: Array) -> Array:
-    """Values at nodes and midpoints as values at the nodes of the refined grid.
+    """Join values at nodes and at midpoints to values at the nodes of the refined grid.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""LAPACK and BLAS as SciPy wraps them, without the rest of SciPy: to load it takes longer than a usual problem."""
+"""LAPACK and BLAS as SciPy wraps them, without the rest of SciPy, whose import takes longer than a usual problem."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 WRAPPERS = {"lapack": "_flapack", "blas": "_fblas"}
-"""The modules of ``scipy.linalg`` that are compiled against a library, and need NumPy alone."""
+"""The compiled modules of ``scipy.linalg`` that need only a library and NumPy."""
 
 
 def lapack() -> Any:
-    """What has the routines of :mod:`scipy.linalg.lapack` in double precision by their names: ``dgbtrf`` and others."""
+    """Return the double-precision routines of :mod:`scipy.linalg.lapack` by name: ``dgbtrf`` and others."""
     return _wrapper("lapack")
 
 
@@ -24,7 +24,7 @@ def blas() -> Any:
 
 @cache
 def _wrapper(library: str) -> Any:
-    """The module of a library, loaded by itself; where SciPy is laid out in another way, as a part of SciPy."""
+    """Return the module of a library, loaded alone; as a part of SciPy where SciPy's layout is different."""
     scipy = find_spec("scipy")
     folders = [str(Path(folder, "linalg")) for folder in (scipy and scipy.submodule_search_locations) or ()]
     found = PathFinder.find_spec(WRAPPERS[library], folders)

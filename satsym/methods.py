@@ -1,6 +1,6 @@
-"""The methods that solve, a record each: instance files, the command line, and what is called are made from these.
+"""The methods that solve, one record each, from which instance files, the command line and calls are made.
 
-A record names its function in words, so that reading an instance and showing help load no solver.
+A record names its function as text, so that reading an instance and showing help load no solver.
 """
 
 from __future__ import annotations
@@ -16,40 +16,40 @@ BOUNDARY_ARCS = "boundary-arcs"
 """The method for path constraints and points on the way, whose answers have a certificate of their own."""
 
 AUTO = "auto"
-"""Instead of a method's name: the one that fits."""
+"""The value in place of a method's name by which the best method is chosen."""
 
 
 class Model(Protocol):
-    """Model of an instance, as far as the choice of a method asks about it."""
+    """The traits of an instance's model that the choice of a method depends on."""
 
     @property
     def spec(self) -> ProblemSpec:
-        """Names and traits of the model."""
+        """Return names and traits of the model."""
 
 
 class Asked(Protocol):
-    """What decides whether a method can solve an instance."""
+    """The traits of an instance that decide whether a method can solve it."""
 
     @property
     def model(self) -> Model:
-        """The model, which has a cost."""
+        """Return the model, which has a cost."""
 
     @property
     def tf(self) -> float | None:
-        """The final time; ``None``: free."""
+        """Return the final time; ``None`` where it is free."""
 
     @property
     def final(self) -> Mapping[str, Any]:
-        """Given final states by name."""
+        """Return the given final states by name."""
 
     @property
     def end_limits(self) -> Mapping[str, Any]:
-        """What limits the end, by name."""
+        """Return the limits of the end, by name."""
 
 
 @dataclass(frozen=True)
 class Method:
-    """A method.
+    """A method that solves instances.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class Method:
 
 
 def _no_sweep(asked: Asked) -> str:
-    """Why sweeps cannot solve an instance: they begin with the costates at a final time, and meet no final state."""
+    """Explain why sweeps cannot solve an instance: they need costates at the final time, and meet no final state."""
     spec = asked.model.spec
     if asked.tf is None:
         return 'time.tf: a free final time cannot be swept for; use method "collocation"'
@@ -142,28 +142,28 @@ METHODS = {
         ),
     )
 }
-"""By their names, in the order in which they are listed."""
+"""The methods by name, in the order in which they are listed."""
 
 
 def names() -> tuple[str, ...]:
-    """All that ``[solver] method`` may say."""
+    """Return all values of ``[solver] method``."""
     return (AUTO, *METHODS)
 
 
 def possible(name: str) -> list[Method]:
-    """The methods that may solve an instance: all where its method is ``"auto"``, else the one that it names."""
+    """Return the methods that may solve an instance: all for ``"auto"``, else the named one."""
     return [method for method in METHODS.values() if name in (AUTO, method.name)]
 
 
 def automatic(spec: ProblemSpec) -> Method:
-    """The method that ``"auto"`` begins with."""
+    """Return the method that ``"auto"`` begins with."""
     switches, constrained = spec.switching or spec.throttled, spec.in_arcs
     fitting = (one for one in METHODS.values() if one.automatic and one.constrained == constrained)
     return next(method for method in fitting if constrained or method.switching == switches)
 
 
 def refusal(name: str, asked: Asked) -> str:
-    """Why an instance cannot be solved by the method of a name, and what to do; empty if it can."""
+    """Explain why a named method cannot solve an instance, and what to do; empty if it can."""
     spec = asked.model.spec
     if name == AUTO:
         return ""

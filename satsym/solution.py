@@ -1,4 +1,4 @@
-"""What solving and simulating hand back: trajectories with their facts, ready for reports."""
+"""The results of solving and simulating: trajectories with their facts, ready for reports."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from satsym.status import Scope, Status, Verdict
 
 @dataclass(frozen=True)
 class Iteration:
-    """One line of a solver's history.
+    """One iteration in a solver's history.
 
     Attributes
     ----------
@@ -37,9 +37,9 @@ Progress: TypeAlias = Callable[[Iteration], None]
 
 @dataclass(frozen=True)
 class Event:
-    """What happens along the way: an arc on the boundary of a path constraint begins or ends, or it is touched.
+    """An event on the way: an entry, an exit or a touch point of a path constraint, a point on the way, or a jump.
 
-    Or a point is passed that must be, or a control jumps from one minimiser of H to another.
+    A jump is that of a control from one minimiser of H to another.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the value is within its limit (NaN is not)."""
+        """Tell whether the value is within its limit; NaN is not."""
         return self.value <= self.limit
 
 
 class Kind(str, Enum):
-    """Kinds of competitors; which one a trajectory is of can be decided by looking at it."""
+    """The kinds of competitors; the kind of a trajectory is visible from the trajectory."""
 
     NEIGHBOURS = "neighbours"  # in results that version 0.2 saved
     REVOLUTIONS = "revolutions"
@@ -106,7 +106,7 @@ class Competitors:
 
     @property
     def unanswered(self) -> int:
-        """How many led to no motion that reaches the end."""
+        """Return how many attempts led to no motion that reaches the end."""
         return self.tried - self.solved
 
 
@@ -159,9 +159,9 @@ class Certificate:
 
 @dataclass(frozen=True)
 class CostInterval:
-    """Between which costs the least lies, where it takes infinitely many switches.
+    """An interval that contains the least cost, where the optimum switches infinitely often.
 
-    What is shown is then the optimum of a regularised problem: an admissible motion, whose cost is the upper end.
+    The shown answer is then the optimum of a regularised problem: an admissible motion, whose cost is the upper end.
 
     Attributes
     ----------
@@ -179,7 +179,7 @@ class CostInterval:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """How a solver run ended, and where.
+    """The outcome of a solver run.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ from satsym.status import BadInput
 SUFFIX = ".py"
 GENERATED = "satsym.generated"
 LEDGER = "ledger.toml"
-"""The head of a ledger that is a folder."""
+"""The name of the head of a ledger that is a folder."""
 DATA = ".toml"
 
 _HOME = Path(__file__).parent
@@ -34,20 +34,23 @@ _BY_NAME = re.compile(r"\bimport_module\(")
 
 
 def shipped() -> list[Path]:
-    """Derivation files that come with satsym, by name; the examples after the others."""
+    """Return the derivation files that come with satsym, by name; the examples after the others."""
     folder = Path(str(files("satsym.derivations")))
     found = (sorted(place.glob(f"*{SUFFIX}")) for place in (folder, folder / "examples"))
     return [p for paths in found for p in paths if not p.name.startswith("_")]
 
 
 def translations(path: Path) -> dict[str, Path]:
-    """Files beside a derivation file that translate its phrases, by language: ``NAME.id.toml`` beside ``NAME.py``."""
+    """Return files beside a derivation file that translate its phrases, by language.
+
+    An example is ``NAME.id.toml`` beside ``NAME.py``.
+    """
     own = re.compile(rf"{re.escape(path.stem)}\.([a-z]{{2,3}}){re.escape(DATA)}")
     return {found[1]: each for each in sorted(path.parent.iterdir()) if (found := own.fullmatch(each.name))}
 
 
 def phrases(path: Path) -> dict[str, str]:
-    """The phrases of a translation, and what they are in its language.
+    """Return the phrases of a translation, and what they are in its language.
 
     Raises
     ------
@@ -63,30 +66,30 @@ def phrases(path: Path) -> dict[str, str]:
 
 
 def models() -> list[str]:
-    """Names of the generated models that come with satsym, without importing them."""
+    """Return the names of the generated models that come with satsym, without importing them."""
     found = {file.stem for folder in generated() for file in folder.glob(f"*{SUFFIX}")}
     return sorted(name for name in found if is_name(name))
 
 
 def is_model(name: str) -> bool:
-    """Whether a generated model of this name comes with satsym."""
+    """Tell whether a generated model of this name comes with satsym."""
     return is_name(name) and any((folder / f"{name}{SUFFIX}").is_file() for folder in generated())
 
 
 def generated() -> list[Path]:
-    """Where the modules lie."""
+    """Return the folder of the generated modules."""
     found = find_spec(GENERATED)
     return [Path(folder) for folder in (found and found.submodule_search_locations) or ()]
 
 
 def documents() -> list[Path]:
-    """The ledgers that come with satsym, by name: folders, each with a head."""
+    """Return the ledgers that come with satsym, by name; each is a folder with a head."""
     folder = Path(str(files("satsym.derivations"))) / "documents"
     return sorted(path.parent for path in folder.glob(f"*/{LEDGER}"))
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:
-    """The derivation file of a name, or at a path.
+    """Return the derivation file of a name, or at a path.
 
     Parameters
     ----------
@@ -115,7 +118,7 @@ def find(name_or_path: str, folder: Path | None = None) -> Path:
 
 
 def digest_of(path: Path) -> str:
-    """A digest of a file's content, whatever ends its lines; empty where there is no file."""
+    """Return a digest of a file's content, whatever its line ends; empty where there is no file."""
     try:
         return hashlib.blake2b(path.read_bytes().replace(b"\r\n", b"\n"), digest_size=16).hexdigest()
     except OSError:
@@ -123,7 +126,7 @@ def digest_of(path: Path) -> str:
 
 
 def digest(modules: Iterable[str]) -> str:
-    """A digest of the code of these modules and of all that they import of satsym, with the data beside it."""
+    """Return a digest of the code of some modules and of all modules of satsym they import, with data files."""
     found = hashlib.blake2b(digest_size=16)
     for path in reached(tuple(modules)):
         found.update(path.relative_to(_HOME).as_posix().encode())
@@ -133,7 +136,7 @@ def digest(modules: Iterable[str]) -> str:
 
 @cache
 def reached(modules: tuple[str, ...]) -> tuple[Path, ...]:
-    """The files of these modules, of all modules of satsym that they import, and the data in those modules' folders.
+    """Return the files of some modules, of all modules of satsym they import, and the data in their folders.
 
     A module that imports others by names which are computed counts as importing all in its folder. The topmost package
     is there whatever is imported, and hands out the others only when it is asked to: what it imports does not count.
@@ -159,7 +162,7 @@ def _imported(path: Path) -> Iterator[Path]:
 
 
 def imports(text: str, module: str = "") -> set[str]:
-    """Dotted names of modules that a text may import: whatever comes from a package may be a module of it."""
+    """Return dotted names that a text may import; a name imported from a package may be a module of it."""
     found = set()
     for statement in _IMPORT.finditer(text):
         listed = re.sub(r"#[^\n]*|[()]", " ", statement["names"]).split(",")
@@ -177,12 +180,12 @@ def imports(text: str, module: str = "") -> set[str]:
 
 
 def _module(path: Path) -> str:
-    """Dotted name of a file, a package's ``__init__`` under its own so that relative imports are resolved alike."""
+    """Return the dotted name of a file; a package's ``__init__`` has one of its own, for relative imports."""
     return ".".join([_ROOT, *path.relative_to(_HOME).with_suffix("").parts])
 
 
 def _files_of(name: str) -> list[Path]:
-    """The files that importing a dotted name executes: those of the packages around it, too; none if not of satsym."""
+    """Return the files that importing a dotted name executes, also of its packages; none outside satsym."""
     root, *parts = name.split(".")
     if root != _ROOT:
         return []
@@ -193,11 +196,11 @@ def _files_of(name: str) -> list[Path]:
 
 @cache
 def _modules() -> dict[str, Path]:
-    """All source files of satsym by their place in it."""
+    """Return all source files of satsym by their place in it."""
     return {path.relative_to(_HOME).as_posix(): path for path in _HOME.rglob(f"*{SUFFIX}")}
 
 
 @cache
 def _data(folder: Path) -> list[Path]:
-    """The data files that lie in a folder."""
+    """Return the data files in a folder."""
     return list(folder.glob(f"*{DATA}"))

@@ -1,7 +1,7 @@
-"""What a model and a problem are made of, as plain data: no sympy, no numbers of an instance.
+"""Descriptions of models and problems as plain data: no sympy, no numbers of an instance.
 
-Derivation files declare these, generated modules carry them as literals, and everything numeric reads
-them: the one description of names, units, defaults and kinds that all parts share.
+Derivation files declare them, generated modules carry them as literals, and all numeric code reads them: one
+description of names, units, defaults and kinds for all parts.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
 
 MOST_LETTERS = 24
-"""Most letters of an exact analysis, times the number of states: of larger ones, polynomials fill pages."""
+"""Largest number of letters of an exact analysis, times the number of states; larger results fill pages."""
 
 ControlSetKind = Literal["free", "box", "ball"]
 NAMES = "a lower-case letter, followed by lower-case letters, digits and underscores"
-"""What names of models and problems are."""
+"""The form of names of models and problems."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
@@ -96,7 +96,7 @@ class Variable:
 
 
 def _closed(latex: str) -> bool:
-    """Whether braces that group are closed in turn; those after a backslash are printed."""
+    """Tell whether grouping braces are balanced; those after a backslash are printed ones."""
     depth = 0
     for brace in re.findall(r"\\.|[{}]", latex):
         depth += {"{": 1, "}": -1}.get(brace, 0)
@@ -107,7 +107,7 @@ def _closed(latex: str) -> bool:
 
 @dataclass(frozen=True)
 class Condition:
-    """What parameters must obey together: a weighted sum of them is not negative, or is positive where `strict`.
+    """A condition on parameters: a weighted sum is not negative, or is positive where `strict`.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class ModeGroup:
-    """What a mode of small motions is called in which these states have the largest part.
+    """The name of the modes of small motions in which certain states have the largest part.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ class ModeGroup:
 
 @dataclass(frozen=True)
 class PathConstraint:
-    """An inequality that must hold all along.
+    """An inequality that must hold along the whole trajectory.
 
     Attributes
     ----------
@@ -165,7 +165,7 @@ class PathConstraint:
 
 @dataclass(frozen=True)
 class InteriorPoint:
-    """A point on the way, passed at a free time.
+    """A point on the way, which is passed at a free time.
 
     Attributes
     ----------
@@ -181,7 +181,7 @@ class InteriorPoint:
 
 @dataclass(frozen=True)
 class ProblemSpec:
-    """Names, units and kinds of one generated model or optimal control problem.
+    """The names, units and kinds of one generated model or optimal control problem.
 
     Attributes
     ----------
@@ -276,38 +276,38 @@ class ProblemSpec:
     interior: tuple[InteriorPoint, ...] = ()
 
     def objective(self, cost: float) -> float:
-        """What the author calls the objective, where the cost is this; and the other way round."""
+        """Convert the cost to the author's objective, or the objective to the cost."""
         return -cost if self.maximise else cost
 
     @property
     def in_arcs(self) -> bool:
-        """Whether its extremals consist of arcs between boundaries of path constraints, or points on the way."""
+        """Tell whether extremals consist of arcs between boundaries of path constraints, or points on the way."""
         return bool(self.path_constraints or self.interior)
 
     @cached_property
     def directional(self) -> bool:
-        """Whether some controls are directions, which nothing decides where H does not depend on them."""
+        """Tell whether some controls are directions, which are undetermined where H does not depend on them."""
         return any(part.directed for part in self.control_parts)
 
     @cached_property
     def stationary(self) -> bool:
-        """Whether H depends on some controls neither linearly nor quadratically."""
+        """Tell whether H depends on some controls neither linearly nor quadratically."""
         return any(part.branch == "stationary" for part in self.control_parts)
 
     @cached_property
     def throttled(self) -> bool:
-        """Whether norms of such controls, or single controls in a product of sets, switch between two levels."""
+        """Tell whether norms of directions, or single controls in a product of sets, switch between two levels."""
         return any(part.branch in SWITCHED for part in self.control_parts)
 
     @cached_property
     def regularising(self) -> int:
-        """How many numbers at the end of the argument ``bounds`` say what is regularised."""
+        """Return how many numbers at the end of the argument ``bounds`` state the regularisation."""
         balls = sum(part.branch == "throttled" and part.kind == "ball" for part in self.control_parts)
         return 2 * self.switching + self.directional + self.throttled + balls
 
     @property
     def lower_bounds(self) -> frozenset[int]:
-        """Places in the argument ``bounds`` of numbers that are lower bounds of controls, which may be negative."""
+        """Return the places in the argument ``bounds`` of lower bounds, which may be negative."""
         if self.control_set == "box":
             return frozenset(range(len(self.controls)))
         boxes = [(at, part) for at, part in self._placed if part.kind == "box" and not part.turned_by]
@@ -315,7 +315,7 @@ class ProblemSpec:
 
     @property
     def rings(self) -> tuple[tuple[int, int], ...]:
-        """Places in the argument ``bounds`` of least norms and magnitudes, each with that of the largest."""
+        """Return the places in the argument ``bounds`` of minimum norms, each with that of the maximum norm."""
         balls = [at for at, part in self._placed if part.kind == "ball" and part.branch == "throttled"]
         after = sum(part.bounds for part in self.control_parts) + self.regularising - len(balls)
         found = [(at, at + 1) for at, part in self._placed if part.kind == "annulus" or part.turned_by]
@@ -323,13 +323,13 @@ class ProblemSpec:
 
     @property
     def _placed(self) -> list[tuple[int, ControlPart]]:
-        """The sets of a product, each with the place of its first number in the argument ``bounds``."""
+        """Return the sets of a product, each with the place of its first number in ``bounds``."""
         places = accumulate((part.bounds for part in self.control_parts), initial=0)
         return list(zip(places, self.control_parts, strict=False))
 
     @property
     def separable(self) -> bool:
-        """Whether the uncontrolled motion is q' = v, v' = a(q), with a potential; it then has a symplectic loop."""
+        """Tell whether the uncontrolled motion is q' = v, v' = a(q) with a potential, for a symplectic loop."""
         return bool(self.coordinates)
 
     @property
@@ -345,9 +345,9 @@ class ProblemSpec:
         return names(self.parameters)
 
     def to_literal(self) -> dict[str, Any]:
-        """The literal that a generated module carries.
+        """Return the literal that a generated module carries.
 
-        What has its default value is left out of variables, and so is what other models than linear ones lack.
+        Fields of variables with default values are left out, and so are the fields of linear models for other models.
         """
         return {"format": FORMAT} | {
             f.name: tuple(map(_stated, value)) if isinstance(value := getattr(self, f.name), tuple) else value
@@ -382,19 +382,19 @@ class ProblemSpec:
 
 
 def is_name(name: object) -> bool:
-    """Whether a model may be called so."""
+    """Tell whether a text can be the name of a model."""
     return isinstance(name, str) and _MODEL.match(name) is not None
 
 
 def names(variables: Iterable[Variable]) -> tuple[str, ...]:
-    """Names of the variables, in order."""
+    """Return the names of the variables, in order."""
     return tuple(v.symbol for v in variables)
 
 
 def _stated(
     variable: Variable | Condition | ModeGroup | ControlPart | PathConstraint | InteriorPoint | str,
 ) -> dict[str, Any] | str:
-    """The fields of one of these that differ from their defaults; a name as it is."""
+    """Return the fields that differ from their defaults; for a name, the name itself."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -1,4 +1,4 @@
-"""What can come of a request: solver statuses with advice, verdicts, exit codes, and the error for bad input."""
+"""Outcomes of requests: solver statuses with advice, verdicts, exit codes, and the error for bad input."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum, IntEnum
 
 
 class Status(str, Enum):
-    """How a solver run ended; each value carries a sentence of advice."""
+    """The outcome of a solver run; each value carries a sentence of advice."""
 
     CONVERGED = "converged"
     NOT_CONVERGED = "not converged"
@@ -18,20 +18,20 @@ class Status(str, Enum):
 
     @property
     def advice(self) -> str:
-        """What the user can do about it; empty for a converged run."""
+        """Return what the user can do about the outcome; empty for a converged run."""
         return _ADVICE[self]
 
     def explain(self, message: str) -> str:
-        """A message with the advice behind it, unless it has some itself."""
+        """Return a message followed by the advice, unless it has some itself."""
         return "; ".join(filter(None, [message, self.advice_beside(message)]))
 
     def advice_beside(self, message: str) -> str:
-        """What is left to be advised beside a message: nothing where it says that itself, or what helps instead."""
+        """Return the advice that a message lacks; empty where the message says it, or what helps instead."""
         return "" if self.advice in message or any(one in message for one in _INSTEAD) else self.advice
 
     @property
     def answered(self) -> bool:
-        """Whether the run gave an answer (as opposed to a reason for having none)."""
+        """Tell whether the run gave an answer, as opposed to a reason for having none."""
         return self is Status.CONVERGED
 
 
@@ -48,15 +48,15 @@ _ADVICE = {
 
 
 LEAVE_FREE = "leave one of these states free"
-"""What helps where no control changes something, whatever time it has."""
+"""Advice where no control changes a state that is required at the end."""
 _INSTEAD = (LEAVE_FREE,)
-"""Advice that takes the place of a status's own."""
+"""Advice that replaces that of a status."""
 
 
 class Verdict(str, Enum):
-    """What a certificate says: a strict local minimum without a cheaper competitor, an extremal, or not even that.
+    """The verdict of a certificate: a strict local minimum without a cheaper competitor, an extremal, or neither.
 
-    Where no competitor was looked for, a strict local minimum is all that is said.
+    Where no competitor was searched, the verdict claims only a strict local minimum.
     """
 
     CERTIFIED = "certified"
@@ -66,7 +66,7 @@ class Verdict(str, Enum):
 
     @classmethod
     def of(cls, necessary: bool, sufficient: bool, compared: bool = True) -> Verdict:
-        """The verdict where necessary conditions hold or not, and sufficient ones, and competitors were compared."""
+        """Return the verdict from necessary and sufficient conditions, and whether competitors were compared."""
         if not necessary:
             return cls.FAILED
         if not sufficient:
@@ -75,7 +75,7 @@ class Verdict(str, Enum):
 
 
 class Scope(str, Enum):
-    """Among which motions the claim of a certificate holds: those near by, or all that are admissible."""
+    """The set of motions for which a certificate's claim holds: nearby ones, or all admissible ones."""
 
     LOCAL = "local"
     GLOBAL = "global"

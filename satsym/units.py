@@ -73,14 +73,14 @@ def parse_quantity(text: str, unit: str) -> float:
 
 
 def split_quantity(text: str) -> tuple[str, str]:
-    """The number and the unit of a quantity that :func:`parse_quantity` reads, each as it is written."""
+    """Split a quantity that :func:`parse_quantity` reads into its number and its unit, as written."""
     match = _NUMBER.match(text)
     assert match is not None
     return match[1], text[match.end() :]
 
 
 def dimension(unit: str) -> Mapping[str, int | Fraction]:
-    """Exponents of the base dimensions of a unit; empty for a plain number and for an angle.
+    """Return the exponents of the base dimensions of a unit; empty for a plain number and for an angle.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def dimension(unit: str) -> Mapping[str, int | Fraction]:
 
 
 def factors(unit: str) -> dict[str, int]:
-    """Names in a unit expression, as in `parse_quantity`, with their exponents; empty for a plain number.
+    """Return the names in a unit expression with their exponents; empty for a plain number.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def factors(unit: str) -> dict[str, int]:
 
 
 def expression(factors: Mapping[str, int]) -> str:
-    """The unit expression of names with their exponents, such as ``km**2/kg/s**3``; ``"1"`` where there are none."""
+    """Write a unit expression such as ``km**2/kg/s**3`` from names with exponents; ``"1"`` without any."""
     above, below = (
         [name if abs(n) == 1 else f"{name}**{abs(n)}" for name, n in factors.items() if n * sign > 0]
         for sign in (1, -1)
@@ -122,7 +122,7 @@ def expression(factors: Mapping[str, int]) -> str:
 
 
 def in_base_units(name: str) -> float:
-    """How many base units, such as metres, a unit of one name is.
+    """Return how many base units, such as metres, a unit of one name is.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def in_base_units(name: str) -> float:
 
 
 def time_unit(units: Iterable[str]) -> str:
-    """The unit in which a model counts time, told from the units of its variables.
+    """Return the unit in which a model counts time, determined from the units of its variables.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def _exact(exponent: float) -> int | Fraction:
 
 @lru_cache(maxsize=256)
 def _unit(expression: str) -> Any:
-    """The pint unit of an expression."""
+    """Return the pint unit of an expression."""
     unit = _registry().Unit("dimensionless")
     for name, exponent in _factors(expression).items():
         unit *= _named(name) ** exponent
@@ -180,7 +180,7 @@ def _unit(expression: str) -> Any:
 
 
 def _factors(expression: str) -> dict[str, int]:
-    """Names in a unit expression and their exponents, by our grammar alone."""
+    """Return the names in a unit expression and their exponents, by our grammar alone."""
     found = _product(expression, 0) if len(expression) <= MAX_LENGTH else None
     if found is None or found[1] != len(expression) or any(abs(n) > MAX_EXPONENT for n in found[0].values()):
         raise BadInput(
@@ -191,11 +191,11 @@ def _factors(expression: str) -> dict[str, int]:
 
 
 _Read = tuple[dict[str, int], int]
-"""Names with their exponents, and the place after what was read."""
+"""Names with their exponents, and the position after the parsed text."""
 
 
 def _product(text: str, position: int) -> _Read | None:
-    """Powers joined by ``*`` and ``/``, from a place on; ``None`` where there are none."""
+    """Parse powers joined by ``*`` and ``/``, from a position on; ``None`` where there are none."""
     factors: dict[str, int] = {}
     sign = 1
     while (one := _power(text, position)) is not None:
@@ -210,7 +210,7 @@ def _product(text: str, position: int) -> _Read | None:
 
 
 def _power(text: str, position: int) -> _Read | None:
-    """A name, a one or a product in parentheses, with its exponent."""
+    """Parse a name, a one or a product in parentheses, with its exponent."""
     if match := _FACTOR.match(text, position):
         return ({} if match[1] == "1" else {match[1]: int(match[2] or 1)}), match.end()
     opened = _OPENED.match(text, position)
@@ -230,7 +230,7 @@ def _registry() -> Any:
 
 @lru_cache(maxsize=256)
 def _named(name: str) -> Any:
-    """The pint unit of a single name; units with an offset or a logarithm are refused."""
+    """Return the pint unit of a single name; units with an offset or a logarithm are refused."""
     import pint
 
     registry = _registry()

@@ -1,4 +1,4 @@
-"""What can be computed again, kept between runs in the user's folder for such things."""
+"""A cache, in the user's folder for such data, of results that can be computed again."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def folder(purpose: str) -> Path:
-    """Where things of one purpose are kept; the folder need not exist."""
+    """Return the cache folder for one purpose, which need not exist."""
     if stated := os.environ.get("XDG_CACHE_HOME"):
         return Path(stated) / "satsym" / purpose
     if sys.platform == "win32" and (local := os.environ.get("LOCALAPPDATA")):
@@ -21,7 +21,7 @@ def folder(purpose: str) -> Path:
 
 
 def read(path: Path) -> bytes:
-    """What was kept at a path; nothing where nothing was, or where it cannot be read."""
+    """Return the content cached at a path; ``None`` where there is none, or it cannot be read."""
     try:
         return path.read_bytes()
     except OSError:
@@ -29,7 +29,7 @@ def read(path: Path) -> bytes:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Written beside and moved, so that no reader meets half a file; a folder that cannot be written is no error."""
+    """Cache a content by writing a file and moving it, so that no reader sees half of it; errors are ignored."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
@@ -41,13 +41,13 @@ def write(path: Path, content: bytes) -> None:
 
 
 def used(place: Path) -> None:
-    """Note that a folder is of use, for :func:`prune`."""
+    """Record that a cache folder was used, for :func:`prune`."""
     with suppress(OSError):
         os.utime(place)
 
 
 def prune(parent: Path, most: int, left: Path) -> None:
-    """Remove the folders in a folder that were used longest ago, until the others have no more than so many bytes.
+    """Remove the least recently used folders, until the others have no more than so many bytes.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Pieces of one-line messages: values from outside made printable and short, names that come near.
+"""Pieces of one-line messages: foreign values made printable and short, and suggestions of similar names.
 
-Text from a file or an argument may hold line breaks, terminal escapes, right-to-left marks or a
-megabyte of anything. Nothing of it reaches a message except through here.
+Text from a file or an argument may hold line breaks, terminal escapes, right-to-left marks or a megabyte of anything.
+It reaches a message only through this module.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from difflib import get_close_matches
 from satsym.status import BadInput
 
 LIMIT = 60
-"""Characters of a foreign value that a message repeats."""
+"""Largest number of characters of a foreign value that a message repeats."""
 
 
 def printable(text: str, limit: int = LIMIT) -> str:
-    """The text on one line: other than printable characters escaped, the middle of a long text left out."""
+    """Return the text on one line, with unprintable characters escaped and the middle of a long text left out."""
     if len(text) > limit:
         head = (limit - 3) * 2 // 3
         text = text[:head] + "..." + text[len(text) - (limit - 3 - head) :]
@@ -25,7 +25,7 @@ def printable(text: str, limit: int = LIMIT) -> str:
 
 
 def shown(value: object) -> str:
-    """A value read from TOML, as a message repeats it: printable, short, whatever it is."""
+    """Return a value from TOML as a message repeats it: printable and short."""
     if isinstance(value, str):
         return f'"{printable(value)}"'
     if isinstance(value, bool):
@@ -43,19 +43,19 @@ def shown(value: object) -> str:
 
 
 def counted(number: int, one: str, several: str = "") -> str:
-    """A number of things: 1 iteration, 2 iterations."""
+    """Return a number with its noun, as in 1 iteration, 2 iterations."""
     return f"{number} {one if number == 1 else several or f'{one}s'}"
 
 
 MOST_NAMES = 12
-"""Known names that a message lists."""
+"""Largest number of known names that a message lists."""
 
 LONGEST_LIST = 140
-"""Characters that it takes for them; one name is listed however long it is."""
+"""Largest number of characters of that list, except for a single longer name."""
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """What to write instead of an unknown name: the nearest known one, else what there is."""
+    """Suggest what to write instead of an unknown name: the nearest known one, or else all known ones."""
     known = list(known)
     near = get_close_matches(name[:LIMIT], known, n=1)
     if near:
@@ -64,13 +64,13 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def refuse_unknown(what: str, name: str, known: Collection[str]) -> None:
-    """Refuse a name that is none of those known, after some words on what it is the name of."""
+    """Refuse a name that is not among the known ones, after some words on what it names."""
     if name not in known:
         raise BadInput(f"{what} {shown(name)}; {suggestion(name, known)}")
 
 
 def unlike(wanted: Iterable[object], given: Iterable[object], missing: str, foreign: str) -> str:
-    """What of two collections of names is in one of them alone: ``missing: a; foreign: b, c``."""
+    """Describe the names that only one of two collections has: ``missing: a; foreign: b, c``."""
     one, other = ([str(each) for each in group] for group in (wanted, given))
     lacking, odd = [name for name in one if name not in other], [name for name in other if name not in one]
     parts = ((f"{missing}: {some(names)}") for missing, names in ((missing, lacking), (foreign, odd)) if names)
@@ -78,7 +78,7 @@ def unlike(wanted: Iterable[object], given: Iterable[object], missing: str, fore
 
 
 def some(known: Sequence[str]) -> str:
-    """Known names, as many as a message has room for."""
+    """Return known names, as many as a message has room for."""
     ends = itertools.accumulate(len(name) + 2 for name in known[:MOST_NAMES])
     count = max(1, sum(end <= LONGEST_LIST for end in ends))
     return ", ".join(known[:count]) + (", ..." if len(known) > count else "")

@@ -1,5 +1,5 @@
 """Numeric analysis of models near their reference or an equilibrium: structure, stability, linear feedback; orbits.
 
-Nothing here is specific to a model, save :mod:`satsym.analysis.orbits`, which is about Kepler's motion; and nothing is
-symbolic: :mod:`satsym.symbolic.analysis` has the exact side.
+No module here is about a particular model, except :mod:`satsym.analysis.orbits`, which is about Kepler motion; and none
+is symbolic: :mod:`satsym.symbolic.analysis` is the exact counterpart.
 """

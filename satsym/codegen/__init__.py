@@ -1,1 +1,1 @@
-"""From a derivation to fast source text: one expression graph, printed in a scalar and in a batch form."""
+"""Generation of fast source text from a derivation: one expression graph, printed in a scalar and a batch form."""

@@ -1,1 +1,1 @@
-"""Printed formulas as data: the safe language they are read from, trees, and exact values in a prime field."""
+"""Printed formulas as data: the safe language that they are read from, trees, and exact values in a prime field."""

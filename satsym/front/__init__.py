@@ -1,4 +1,4 @@
-"""What users meet in Python: instances, solutions and derivations with everything the command line does with them.
+"""The Python interface: instances, solutions and derivations, with everything that the command line can do.
 
-It may call every floor and none knows of it. :mod:`satsym` itself hands out its names, each when it is first used.
+It may call every floor, and no floor imports it. :mod:`satsym` exports its names, each loaded at first use.
 """

@@ -1,7 +1,7 @@
 """Instances: the numbers of one case of a model, read from TOML and checked.
 
-:func:`load` gives an :class:`Instance` in the model's units, or :class:`~satsym.status.BadInput` with one line that
-names the file, the key, what is wrong and what to write. Instances are data: nothing in them is ever evaluated.
+:func:`load` returns an :class:`Instance` in the model's units, or raises :class:`~satsym.status.BadInput` with one line
+that names the file, the key, the fault and what to write. Instances are data: nothing in them is ever evaluated.
 """
 
 from __future__ import annotations

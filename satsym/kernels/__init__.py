@@ -1,7 +1,7 @@
-"""Kernels: the functions of a generated module, loaded, checked and, where it pays, compiled.
+"""Kernels: the functions of a generated module, loaded, checked and, where that is worthwhile, compiled.
 
-Everything numeric sees a model through :class:`Kernels` only: plain functions and two array wrappers for the
-trajectory loops, never sympy.
+All numeric code uses a model through :class:`Kernels` only: plain functions and two array wrappers for the trajectory
+loops, never sympy.
 """
 
 from __future__ import annotations

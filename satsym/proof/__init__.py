@@ -1,4 +1,5 @@
-"""Proofs by ball arithmetic that an extremal exists, is unique near by, and is a strict local minimum.
+"""Proofs by ball arithmetic that an extremal exists, is locally unique, and is a strict local minimum.
 
-:mod:`satsym.proof.proving` is the story on one page. Solvers only say where to look; nothing that they claim is used.
+:mod:`satsym.proof.proving` has the whole proof on one page. The answer of a solver only says where to look; nothing
+that it claims is used.
 """

@@ -1,1 +1,1 @@
-"""Derivations as data: what a derivation establishes, kept beside what was generated from it, and found by name."""
+"""Derivations as data: the equations of a derivation, saved beside the generated module, and found by name."""

@@ -1,1 +1,1 @@
-"""Showing what was derived and computed: LaTeX, and the texts of rules and messages in each language."""
+"""Reports of what was derived and computed: terminal, pages, pictures, LaTeX, and the texts in each language."""

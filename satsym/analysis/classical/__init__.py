@@ -1,1 +1,1 @@
-"""The classical laws of one axis, and how well they follow a command."""
+"""Classical control laws of a single axis, and how well they follow a command."""

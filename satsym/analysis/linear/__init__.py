@@ -1,1 +1,1 @@
-"""Linear systems: where they come from, their stability, ranks and spectra."""
+"""Linear systems: linearisation, stability, ranks, spectra and Routh arrays."""

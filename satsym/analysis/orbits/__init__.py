@@ -1,1 +1,1 @@
-"""Orbits about one centre of attraction: the closed form, integrators held against it, elements and stability."""
+"""Orbits in a central force: the closed form, elements, the monodromy matrix and stability."""

@@ -1,1 +1,1 @@
-"""Linear-quadratic regulators: Riccati equations, and the motions under their gains."""
+"""Linear-quadratic regulators: Riccati equations, and motions under the gains."""

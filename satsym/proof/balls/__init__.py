@@ -1,1 +1,1 @@
-"""Numbers with bounds of their errors: arithmetic of generated code, derivatives, exact numbers, validated steps."""
+"""Balls, which are numbers with error bounds: arithmetic, derivatives, exact numbers, and validated integration."""

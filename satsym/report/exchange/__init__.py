@@ -1,4 +1,4 @@
-"""Motions about a central body as other programs read them: OEM of CCSDS, CZML of Cesium, ephemerides of STK, CSV.
+"""Motions about a central body in the formats of other programs: OEM of CCSDS, CZML of Cesium, STK ephemerides, CSV.
 
 Each format has one function from an :class:`~satsym.report.exchange.ephemeris.Ephemeris` to text; :func:`_writer` names
 it.
@@ -23,11 +23,11 @@ from satsym.version import __version__
 from satsym.wording import shown, suggestion
 
 FORMATS = {"oem": ".oem", "czml": ".czml", "stk": ".e", "csv": ".csv"}
-"""What is written, and how names of such files end."""
+"""The formats, with the endings of file names."""
 
 
 def exported(result: Solution | Simulation, kind: str) -> str:
-    """A motion as the text of a file.
+    """Return a motion as the text of a file.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def exported(result: Solution | Simulation, kind: str) -> str:
 
 
 def _writer(kind: str) -> Callable[[Ephemeris], str]:
-    """The function that writes a format."""
+    """Return the function that writes a format."""
     return {"oem": oem, "czml": czml, "stk": stk, "csv": table}[kind]
 
 
@@ -59,7 +59,7 @@ COLUMNS = (
 
 
 def table(motion: Ephemeris) -> str:
-    """Time, position, velocity and thrust per unit mass, a line each; where the thrust jumps there are two lines.
+    """Return a CSV table of time, position, velocity and thrust per unit mass; jumps of thrust have two lines.
 
     Parameters
     ----------
@@ -80,16 +80,16 @@ def table(motion: Ephemeris) -> str:
 
 ORIGINATOR = "SATSYM"
 UNKNOWN = "UNKNOWN"
-"""The international designator of an object that has none, as the standard wants it."""
+"""The international designator that the standard prescribes for an object without one."""
 DEGREE = 7
-"""Degree of Hermite's interpolation."""
+"""Degree of the Hermite interpolation of positions."""
 
 
 def oem(motion: Ephemeris) -> str:
-    """A motion as an orbit ephemeris message in keyword-value notation, version 2.0.
+    """Return a motion as an orbit ephemeris message in keyword-value notation, version 2.0.
 
-    The motion is cut into segments where the thrust jumps, so that no reader interpolates across. The burns of each
-    segment are said in comments.
+    The motion is divided into segments where the thrust jumps, so that no reader interpolates across. Comments state
+    the burns of each segment.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def _segment(motion: Ephemeris, arc: Arc, models: Any) -> Any:
 
 
 def _digits(value: float) -> str:
-    """A number to 12 decimal places, without an exponent."""
+    """Write a number with 12 decimal places, without an exponent."""
     return f"{value:.12f}"
 
 
@@ -160,18 +160,18 @@ def _now() -> str:
 
 
 def _plain(text: str) -> str:
-    """Text in the characters of ASCII that can be printed, which is all that the standard allows."""
+    """Return text in printable ASCII characters, the only ones that the standard allows."""
     return "".join(c if " " <= c <= "~" else "?" for c in text)
 
 
 SYSTEMS = {"EME2000": "J2000", "ICRF": "ICRF", "GCRF": "ICRF"}
-"""What frames are called there."""
+"""The names of frames in STK."""
 MONTHS = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()
-"""Whatever language the system speaks."""
+"""English names of months, whatever the language of the system."""
 
 
 def stk(motion: Ephemeris) -> str:
-    """A motion as an ephemeris of positions and velocities in metres, which is not interpolated across jumps of thrust.
+    """Return a motion as an STK ephemeris in metres, which is not interpolated across jumps of thrust.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def stk(motion: Ephemeris) -> str:
 
 
 def burns(motion: Ephemeris) -> list[str]:
-    """A line on each burn."""
+    """Return a line on each burn."""
     return [
         f"MANOEUVRE {k}: {motion.utc(burn.start)} to {motion.utc(burn.end)} UTC, delta-v {1e3 * burn.delta_v:.6g} m/s, "
         f"thrust per unit mass at most {1e3 * burn.largest:.6g} m/s**2"
@@ -222,17 +222,17 @@ def burns(motion: Ephemeris) -> list[str]:
 
 
 CZML_DEGREE = 5
-"""Degree of Lagrange's interpolation."""
+"""Degree of the Lagrange interpolation of positions."""
 SHOWN = 60.0
-"""Seconds that the whole motion takes on the screen."""
+"""Seconds on the screen for the whole motion."""
 GLOBE = "Earth"
 """The body that Cesium shows."""
 OTHER = "#C8C8C8"
-"""Colour of the reference, on black."""
+"""Colour of the reference on a black ground."""
 
 
 def czml(motion: Ephemeris) -> str:
-    """A motion as a scene: the satellite with its path and burns, and the reference where there is one.
+    """Return a motion as a CZML scene: the satellite with its path and burns, and the reference where there is one.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def _document(motion: Ephemeris, kit: Any) -> Any:
 
 
 def _objects(motion: Ephemeris, kit: Any) -> Iterator[Any]:
-    """What moves: the reference, the satellite, and over it its burns."""
+    """Return the moving objects: the reference, the satellite, and over it its burns."""
     if motion.reference is not None:
         yield _moving(motion, kit, "reference", "reference", motion.reference, OTHER, width=1.0)
     said = "<br>".join([f"{motion.name}: {motion.title}", *burns(motion)])
@@ -289,7 +289,7 @@ def _moving(
     said: str | None = None,
     times: Array | None = None,
 ) -> Any:
-    """A point that moves, and its path."""
+    """Return a point that moves, and its path."""
     properties, types = (written_by(f"czml3.{part}", "czml3") for part in ("properties", "types"))
     times = motion.times if times is None else times
     rgba = properties.Color(rgba=[*bytes.fromhex(colour[1:]), 255])
@@ -314,5 +314,5 @@ def _moving(
 
 
 def _offset(properties: Any) -> Any:
-    """Where the name stands beside its point, in pixels."""
+    """Return the offset of a name beside its point, in pixels."""
     return written_by("czml3.types", "czml3").Cartesian2Value(values=[0.0, -16.0])

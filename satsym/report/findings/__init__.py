@@ -1,1 +1,1 @@
-"""What terminal, page and typeset report of an audit share: findings by weight, the summary, objects for JSON."""
+"""Common parts of audit reports on terminals, pages and paper: findings by weight, summaries, objects for JSON."""

@@ -1,1 +1,1 @@
-"""Pages for people: one file each, with everything in it."""
+"""Self-contained HTML pages of audits."""

@@ -1,1 +1,1 @@
-"""One run as one page that needs nothing but itself: the derivation, the instance, the answer and its certificate."""
+"""One run as one self-contained page: the derivation, the instance, the answer and its certificate."""

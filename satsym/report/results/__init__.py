@@ -1,1 +1,1 @@
-"""Results as objects and files: written whole or not at all, read only if they are what they say."""
+"""Results as objects and files, written whole or not at all, and checked before they are read."""

@@ -1,8 +1,8 @@
-"""What is said on terminals and in pictures, in the language that was asked for.
+"""Messages on terminals and in pictures, in the language that was asked for.
 
 A message is written in English where it is made, with ``<name>`` where something is filled in. That text is the key of
-its translation in the folder of a language, ``id`` for Indonesian; English needs none. What has no translation stays
-English as a whole. The texts of documents have keys of their own, in :mod:`satsym.report.texts`.
+its translation in the folder of a language, ``id`` for Indonesian; English needs none. A message without a translation
+stays English as a whole. The texts of documents have keys of their own, in :mod:`satsym.report.texts`.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 VARIABLE = "SATSYM_LANG"
-"""Variable of the environment that names the language where no other is asked for."""
+"""Variable of the environment with the language, if no other is requested."""
 
 _BREAK = re.compile(r"(; |(?<=[.:]) )")
-"""Between clauses and sentences of a message, each of which may be a text of its own."""
+"""Separators of clauses and sentences of a message, each of which may have its own translation."""
 _PLACE = re.compile(r"(?:(?:\[[\w.]+\]|--[\w-]+) )?\S+:")
-"""What a message may begin with that is no text: a file, an instance, a key."""
+"""The beginning of a message that is not translated: a file, an instance, a key."""
 _HOLE = re.compile(r"<([a-z_]+)>")
 _SENTENCE = re.compile(r"\b(?:the|is|are|has|have|not|no|which|with|must|cannot|be)\b")
-"""English that no name has."""
+"""English words that show that a text is a sentence and not a name."""
 _QUOTED = re.compile(r"`[^`]*`|\"[^\"]*\"|'[^']*'")
 _FOREIGN = "error"
-"""The place of what a library says, which nobody translates."""
+"""The place of a library's message, which is not translated."""
 _TEXT_PLACE = "said_"
-"""Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
+"""The beginning of names of places that hold texts to be translated; others hold names and numbers."""
 _MIXED, _BETWEEN = ("arcs", "got"), re.compile(r"(, | \(|\))")
-"""Places of names of arcs and of what was got, some of which are words of ours, and what is between them."""
+"""Places with lists of names that contain translated words, and the separators of such lists."""
 _ASKED: ContextVar[str | None] = ContextVar("language", default=None)
 
 
 def language() -> str:
-    """The language that was asked for, else that of the environment, else English.
+    """Return the language that was asked for, else that of the environment, else English.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def language() -> str:
 
 
 def known(name: str, place: str) -> str:
-    """The name of a language that there are texts in.
+    """Return the name of a language after a check that it has texts.
 
     Raises
     ------
@@ -70,13 +70,13 @@ def known(name: str, place: str) -> str:
 
 
 def ask(name: str) -> None:
-    """Ask for a language, for what runs in this context."""
+    """Set the language of messages in this context."""
     _ASKED.set(name)
 
 
 @contextmanager
 def spoken(name: str) -> Iterator[None]:
-    """Ask for a language in here."""
+    """Set the language of messages within a ``with`` block."""
     before = _ASKED.set(name)
     try:
         yield
@@ -85,34 +85,34 @@ def spoken(name: str) -> Iterator[None]:
 
 
 def say(text: str, **fill: object) -> str:
-    """A text in the language asked for, with its places filled in."""
+    """Return a message in the current language, with its places filled in."""
     if (spoken_here := language()) != "en":
         text = translations(spoken_here).get(text, text)
     return _filled(text, fill) if fill else text
 
 
 def each(*heads: str) -> tuple[str, ...]:
-    """Texts one by one, as above the columns of a table."""
+    """Return several texts in the current language, such as the headings of columns."""
     return tuple(map(say, heads))
 
 
 def counted(number: int, one: str, several: str = "") -> str:
-    """A number of things: 1 iteration, 2 iterations; a language without plurals has one word."""
+    """Return a number with its noun, as in 1 iteration, 2 iterations; some languages have no plurals."""
     return wording.counted(number, one, several) if language() == "en" else f"{number} {say(one)}"
 
 
 def decimal(text: str) -> str:
-    """Numbers in a picture with the decimal sign of the language."""
+    """Return numbers in a picture with the decimal sign of the language."""
     return text if language() == "en" else re.sub(r"(?<=\d)\.(?=\d)", ",", text)
 
 
 def numbers(given: Iterable[str]) -> str:
-    """Numbers one after the other; where they have a decimal comma, semicolons are between them."""
+    """Return a list of numbers, separated by semicolons where they have a decimal comma."""
     return (", " if language() == "en" else "; ").join(map(decimal, given))
 
 
 def message(text: str) -> str:
-    """What a solver, a check or a refusal says in English, by its whole or part by part; else as it is."""
+    """Translate an English message of a solver, a check or a refusal, as a whole or by clauses; else return it."""
     if (asked := language()) == "en" or not text:
         return text
     found = _by_parts(_BREAK.split(text), asked)
@@ -120,14 +120,14 @@ def message(text: str) -> str:
 
 
 def explained(text: str) -> str:
-    """A text of the help; nothing else is read for it, since help is to be quick."""
+    """Translate a text of the help; no other texts are loaded, since help has to be fast."""
     asked = language()
     known = {} if asked == "en" else group(asked, "help")
     return known.get(text) or _filled_in(text, asked, "help") or text
 
 
 def _by_parts(parts: Sequence[str], asked: str) -> str | None:
-    """The translation of clauses with what is between them; of as many together as there is one for."""
+    """Translate clauses, as many together as there is a translation for."""
     for count in range(len(parts), 0, -2):
         found = _translated("".join(parts[:count]), asked)
         if found is not None and count < len(parts):
@@ -142,13 +142,13 @@ def _by_parts(parts: Sequence[str], asked: str) -> str | None:
 
 
 def _translated(text: str, asked: str, name: str = "messages") -> str | None:
-    """The translation of a text, or of the one whose filled in form it is."""
+    """Translate a text, or a filled-in form of one."""
     exact = translations(asked).get(text)
     return _filled_in(text, asked, name) if exact is None else exact
 
 
 def _filled_in(text: str, asked: str, name: str) -> str | None:
-    """The translation of the text whose filled in form it is."""
+    """Translate the text of which this is a filled-in form."""
     for most, english, translation in _with_places(asked, name):
         if most in text and (found := _pattern(english).fullmatch(text)):
             parts = {k: _part(k, part, asked) for k, part in found.groupdict().items()}
@@ -158,7 +158,7 @@ def _filled_in(text: str, asked: str, name: str) -> str | None:
 
 
 def _part(place: str, text: str, asked: str) -> str | None:
-    """What fills a place, translated where it is a text; nothing where it is a sentence and is to be a name."""
+    """Translate the filling of a place where it is a text; ``None`` where a sentence fills the place of a name."""
     if place.startswith(_TEXT_PLACE):
         return _inside(text, asked)
     if place in _MIXED:
@@ -167,7 +167,7 @@ def _part(place: str, text: str, asked: str) -> str | None:
 
 
 def _inside(text: str, asked: str) -> str | None:
-    """The translation of what fills a place: a text, or a list of which each item is one; numbers stay as they are."""
+    """Translate the filling of a place: a text, or a list of texts; numbers are unchanged."""
     if not re.search("[a-z]{2}", text):
         return text
     found = _by_parts(_BREAK.split(text), asked)
@@ -183,7 +183,7 @@ def _filled(text: str, fill: Mapping[str, object]) -> str:
 
 @cache
 def translations(asked: str) -> Mapping[str, str]:
-    """English -> that language; nothing where there is no file."""
+    """Map English texts to those in a language; empty where there is no file."""
     found = dict(_of_models(asked))
     for file in (Path(__file__).parent / asked).glob("*.toml"):
         found |= group(asked, file.stem)
@@ -191,7 +191,7 @@ def translations(asked: str) -> Mapping[str, str]:
 
 
 def _of_models(asked: str) -> Iterator[tuple[str, str]]:
-    """Titles and meanings of shipped derivation files, as they or files beside them have them; no file is executed."""
+    """Return titles and meanings of shipped derivation files in a language; no file is executed."""
     import ast
 
     from satsym import source_files
@@ -207,10 +207,10 @@ def _of_models(asked: str) -> Iterator[tuple[str, str]]:
 
 @cache
 def group(asked: str, name: str) -> Mapping[str, str]:
-    """The texts of the files whose names begin so; none where there is no such file.
+    """Return the texts of the files whose names begin like this; empty where there is no such file.
 
-    ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``messages`` is known again in
-    whatever way it is filled in, and so are ``items``, which lists in such texts consist of, and ``help``.
+    The texts of ``said`` and ``authored``, titles of shipped instances, are looked up as they are. Those of
+    ``messages``, of ``items``, which are listed in such texts, and of ``help`` are recognised in any filled-in form.
     """
     import tomllib  # nothing of this for English
 
@@ -221,7 +221,7 @@ def group(asked: str, name: str) -> Mapping[str, str]:
 
 @cache
 def _with_places(asked: str, name: str) -> list[tuple[str, str, str]]:
-    """Texts with places in them, what says most of itself first: its longest part without one, it, its translation."""
+    """Return texts with places, the most specific first: its longest fixed part, the text, its translation."""
     phrases = group(asked, name)
     with_places = [english for english in phrases if _HOLE.search(english)]
     with_places.sort(key=lambda english: -len(_HOLE.sub("", english)))
@@ -230,7 +230,7 @@ def _with_places(asked: str, name: str) -> list[tuple[str, str, str]]:
 
 @cache
 def _pattern(english: str) -> re.Pattern[str]:
-    """What matches a text however it is filled in; a place that comes twice is the same both times."""
+    """Return a pattern that matches every filled-in form of a text; a place that occurs twice has one filling."""
     parts, seen = [], set[str]()
     for k, part in enumerate(_HOLE.split(english)):
         if k % 2 == 0:

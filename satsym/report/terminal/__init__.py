@@ -1,1 +1,1 @@
-"""What results say to people, as plain text."""
+"""Results as plain text for people."""

@@ -1,4 +1,4 @@
-"""Sentences of reports in each language: one TOML file a language, the same keys in all of them."""
+"""The sentences of reports: one TOML file for each language, with the same keys in all of them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from satsym.wording import shown
 
 _FOLDER = Path(__file__).parent
 PHRASES = "phrases"
-"""The table of what models have in other languages, by their own words; it is not among the texts."""
+"""The table of translated words of models, which is not one of the texts."""
 
 _HOLE = re.compile(r"<([a-z_]+)>")
 
 
 class MissingText(LookupError):
-    """A language has no text for something that a report must say."""
+    """A language lacks a text that a report needs."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -28,13 +28,13 @@ class MissingText(LookupError):
 
 @dataclass(frozen=True)
 class Texts:
-    """The texts of one language; those of derivations hold LaTeX; ``<name>`` where something is filled in."""
+    """The texts of one language, in LaTeX for derivations, with ``<name>`` where something is filled in."""
 
     language: str
     tables: Mapping[str, Mapping[str, str]]
 
     def get(self, table: str, key: str, **fill: str) -> str:
-        """The text at a key of a table, with its places filled in.
+        """Return the text at a key of a table, with its places filled in.
 
         Raises
         ------
@@ -53,11 +53,11 @@ class Texts:
         return _HOLE.sub(lambda hole: {"number": str(number), **fill}.get(hole[1], hole[0]), text)
 
     def find(self, table: str, key: str) -> str | None:
-        """The text at a key of a table, as it stands there; ``None`` if there is none."""
+        """Return the text at a key of a table, unfilled; ``None`` if there is none."""
         return self.tables.get(table, {}).get(key)
 
     def phrase(self, text: str) -> str:
-        """A title or meaning in this language, as far as who wrote it has it so."""
+        """Return a title or meaning in this language, if its author has translated it."""
         return self.find(PHRASES, text) or text
 
     def with_own(self, own: Mapping[str, Mapping[str, str]]) -> Texts:
@@ -66,7 +66,7 @@ class Texts:
         return Texts(self.language, {**self.tables, **merged})
 
     def listed(self, items: list[str]) -> str:
-        """Items as an enumeration: a, b and c."""
+        """Write items as an enumeration: a, b and c."""
         if len(items) < 2:
             return "".join(items)
         last = f"{' ' if len(items) == 2 else self.get('words', 'comma')}{self.get('words', 'and')} "
@@ -74,13 +74,13 @@ class Texts:
 
 
 def languages() -> list[str]:
-    """Languages there are texts in."""
+    """Return the languages that have texts."""
     return sorted(file.stem for file in _FOLDER.glob("*.toml"))
 
 
 @cache
 def load(language: str) -> Texts:
-    """The texts of a language.
+    """Return the texts of a language.
 
     Raises
     ------

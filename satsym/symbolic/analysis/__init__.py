@@ -1,6 +1,6 @@
 """Exact analysis of linear systems with constant coefficients: numbers, or expressions in positive parameters.
 
-What is found holds for all values of the parameters but those at which something listed under ``assumed`` vanishes.
+Results hold for all values of the parameters, except those at which an expression listed under ``assumed`` vanishes.
 """
 
 from __future__ import annotations
@@ -64,14 +64,14 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Analysis:
-    """What the matrices of a linear system say, exactly."""
+    """The exact results on a linear system: spectrum, Jordan form, stability, Routh array and ranks."""
 
     system: LinearSystem
-    """The matrices and names."""
+    """The system's matrices, with the names of its variables."""
     characteristic_polynomial: tuple[sp.Expr, ...]
     """Coefficients of det(s I - A): monic, highest power first."""
     eigenvalues: tuple[Eigenvalue, ...]
-    """Each distinct one with its multiplicities and block sizes; only those with a closed form."""
+    """The distinct eigenvalues that have a closed form, with multiplicities and block sizes."""
     jordan: JordanForm | None
     exponential: sp.ImmutableMatrix | None
     """Jordan form and e^(At); ``None`` where an eigenvalue has no closed form."""
@@ -81,18 +81,18 @@ class Analysis:
     """The Routh array of the characteristic polynomial."""
     controllability: Reach | None
     by_input: Mapping[str, Reach]
-    """For all inputs, and for each alone; ``None`` and empty without inputs."""
+    """Controllability by all inputs, and by each alone; ``None`` and empty without inputs."""
     observability: Reach | None
     by_output: Mapping[str, Reach]
-    """Likewise for outputs."""
+    """Observability by all outputs, and by each alone; ``None`` and empty without outputs."""
     companion_forms: Mapping[str, CompanionForm]
-    """For each input that reaches everything alone: the companion form."""
+    """The companion form for each input that controls all states alone."""
     assumed: tuple[sp.Expr, ...]
-    """What is taken not to vanish, where that is not certain."""
+    """Expressions assumed not to vanish, where that is not certain."""
 
 
 def analyse(system: LinearSystem) -> Analysis:
-    """Everything exact about a linear system with constant coefficients.
+    """Analyse a linear system with constant coefficients exactly.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def analyse(system: LinearSystem) -> Analysis:
 
 
 def exact_object(found: Analysis) -> dict[str, Any]:
-    """What ``satsym analyse --json`` holds under ``exact``.
+    """Return the exact results as the object that ``satsym analyse --json`` holds under ``exact``.
 
     Returns
     -------

@@ -1,1 +1,1 @@
-"""Attitudes at which a body in orbit rests: all of them, exactly counted, classified, and followed over a parameter."""
+"""Equilibrium attitudes of a body in orbit: all of them, counted exactly, classified, and followed over a parameter."""

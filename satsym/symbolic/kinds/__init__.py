@@ -1,4 +1,4 @@
-"""Kinds of models: each owns what it may state, its steps, names, dimensions and statement; nobody else knows of it."""
+"""Kinds of models: each owns its declarations, steps, names, dimensions and statement, which no other module knows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Kind = TypeVar("Kind", bound=Model)
 
 
 def stated_as(kind: type[Kind], so_far: Derivation) -> Kind:
-    """The model of a derivation whose steps are those of this kind."""
+    """Return the model of a derivation whose steps belong to this kind."""
     if not isinstance(so_far.model, kind):
         raise TypeError(f"{so_far.model.name} is not stated as {kind.__name__}")
     return so_far.model

@@ -1,1 +1,1 @@
-"""LaTeX of what was derived."""
+"""LaTeX of derived expressions and equations."""

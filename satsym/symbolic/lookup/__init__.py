@@ -1,1 +1,1 @@
-"""Finding what was derived by its address, and working with it in the notation of a document."""
+"""Lookup of derived expressions by their addresses, and work with them in the notation of a document."""

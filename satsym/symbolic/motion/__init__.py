@@ -1,1 +1,1 @@
-"""What follows from a motion: the reference, conserved quantities, outputs; and where a fixed centre attracts."""
+"""Consequences of a motion: its reference, conserved quantities and outputs, and steps for central forces."""
