@@ -1,4 +1,4 @@
-"""Several ways to do the same, each simulated or solved as its instance says, and described by the same numbers."""
+"""Comparison of control laws: each instance is simulated or solved, and described by the same numbers."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from satsym.solvers import solve
 from satsym.status import BadInput
 
 SAMPLES = 2000
-"""Number of times at which the linear motion is given from which its range is read."""
+"""Number of times at which the linear motion is evaluated for a range."""
 RANGE_DURATION = 16.0
-"""Time over which a range follows it, in units of 1 over the damping."""
+"""Duration of the motions in a range, in units of 1 over the damping."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +29,12 @@ class Case:
 
     instance: Instance
     how: str
-    """What it was, and the law or the solver."""
+    """Whether the case was simulated or solved, and by which law or method."""
     answered: bool
     verdict: str | None
     message: str
-    """Whether there is an answer, what its certificate says (``None`` for a simulation), and a sentence on both and on
-    limits that were passed."""
+    """Whether there is an answer, the verdict of its certificate (``None`` for a simulation), and a sentence on both
+    and on exceeded limits."""
     times: Array
     x: Array
     u: Array
@@ -45,7 +45,7 @@ class Case:
     """Metrics by name; empty where there is no answer."""
 
     def signal(self, name: str) -> Array:
-        """A state, a control or a derived quantity over the nodes, by name."""
+        """Return a state, a control or a derived quantity at the nodes, by name."""
         spec = self.instance.model.spec
         if name in spec.state_names:
             return self.x[spec.state_names.index(name)]
@@ -57,7 +57,7 @@ class Case:
 
 
 def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lambda name: None) -> list[Case]:
-    """Simulate or solve each instance.
+    """Simulate or solve each of several instances.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
 
 
 def case_of(instance: Instance) -> Case:
-    """One instance, under the law that it states or else solved."""
+    """Simulate an instance under the law that it states, or solve it if it states none."""
     return _simulated(instance) if instance.classical else _solved(instance)
 
 
@@ -142,7 +142,7 @@ def _of_solution(instance: Instance, solution: Solution, switches: Sequence[floa
 
 
 def limits_noted(solution: Solution) -> Solution:
-    """The solution with a sentence on each limit of its instance that it goes beyond, if there is any."""
+    """Return the solution with a sentence on each limit of its instance that it exceeds."""
     if not solution.instance.limits or not solution.status.answered:
         return solution
     switches = [s for each in solution.switching_times for s in each]
@@ -151,7 +151,7 @@ def limits_noted(solution: Solution) -> Solution:
 
 
 def driven(instance: Instance, progress: Callable[[str], None] = lambda name: None) -> list[Case]:
-    """The motion of an instance whose control each of some others has worked out, and what it is without.
+    """Simulate an instance with the control of each of some other instances, and without control.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def driven(instance: Instance, progress: Callable[[str], None] = lambda name: No
 
 
 def _driving(instance: Instance, case: Case) -> Case:
-    """A case that has an answer and the control that drives."""
+    """Return the solved case of an instance as the control that drives another instance."""
     assert instance.driven is not None
     name, spec = instance.driven.control, case.instance.model.spec
     if not case.answered:
@@ -200,20 +200,20 @@ def _driving(instance: Instance, case: Case) -> Case:
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """How the classical law does for other dampings and commands."""
+    """The performance of the classical law for other dampings and commands."""
 
     dampings: Array
     commands: Array
-    """Shapes (K,) and (L,)."""
+    """Dampings, shape (K,), and commands, shape (L,)."""
     control_peak: Array
     impulse: Array
     """Largest magnitude of the control after the step, and its integral at the step; shape (K, L)."""
     peaks: Mapping[str, Array]
-    """Name of a state -> its largest magnitude, shape (K, L)."""
+    """The largest magnitude of each state, by name, shape (K, L)."""
 
 
 def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[float]) -> Range:
-    """The linear motion under the law of an instance, for other dampings and commands.
+    """Compute the linear motion under the law of an instance for other dampings and commands.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a control that one model has worked out does to a larger one: how much of it reaches the other axes."""
+"""Coupling between axes: what the control of one model does to a larger model, and how much reaches other axes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Progress: TypeAlias = Callable[[float], None]
 
 TOLERANCE = 1e-7
 SAMPLES = 400
-"""Values of the control, joined by straight lines, in each part over which it is smooth."""
+"""Number of values of the control in each smooth part, joined by straight lines."""
 
 
 @dataclass(frozen=True, eq=False)
 class Driver:
-    """Who has worked the control out: an instance, the smooth parts of its motion, and an impulse before them."""
+    """The source of a driving control: an instance, the smooth parts of its motion, and an initial impulse."""
 
     instance: Instance
     spans: Sequence[Span]
@@ -33,7 +33,7 @@ class Driver:
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """The driven motion over the nodes, and what it differs by from the motion without the control."""
+    """The driven motion at the nodes, and its differences from the uncontrolled motion."""
 
     times: Array
     x: Array
@@ -43,7 +43,7 @@ class Reached:
 
 
 def nodes_of(instance: Instance) -> Array:
-    """Times at which the motions are compared.
+    """Return the times at which the motions are compared.
 
     Raises
     ------
@@ -56,13 +56,13 @@ def nodes_of(instance: Instance) -> Array:
 
 
 def undriven(instance: Instance, progress: Progress = lambda share: None) -> Array:
-    """States at the nodes without control, shape (n, N+1); the same for every driver."""
+    """Return the states at the nodes without control, shape (n, N+1), the same for every driving control."""
     start = np.array(instance.initial)
     return _followed(instance.model, instance.parameters, nodes_of(instance), start, [], 0, progress)
 
 
 def reached(instance: Instance, driver: Driver, still: Array, progress: Progress = lambda share: None) -> Reached:
-    """Follow the motion under the driver's control, and hold it against that without, from the same start.
+    """Simulate the motion under the driving control, and compare it with the uncontrolled one from the same start.
 
     The equations are stiff, as wheels nutate fast: an implicit method of order five (Radau) follows them, with the
     exact Jacobian. An impulse at the start makes the speeds jump by its effect on them.
@@ -124,7 +124,7 @@ def _said(names: Sequence[str], difference: Array) -> str:
 
 
 def _signals(driver: Driver, name: str) -> tuple[list[tuple[float, float, Callable[[Array], Array]]], float]:
-    """The control over each smooth part, and by how much it grows with the driver's own first control."""
+    """Return the control on each smooth part, and its slope by the driver's own first control."""
     instance = driver.instance
     model, p = instance.model, instance.parameters
     if name in model.spec.control_names:
@@ -157,7 +157,7 @@ def _followed(
     place: int,
     progress: Progress,
 ) -> Array:
-    """States at the nodes, part by part; without control after the last."""
+    """Integrate the states part by part to the nodes; no control acts after the last part."""
     from scipy.integrate import solve_ivp
 
     n, x, parts = len(start), start, list(torques)

@@ -1,4 +1,4 @@
-"""How fast this machine is for a model: steps of its motion, and one solution."""
+"""Speed of this machine for a model: integration steps a second, and the time of one solution."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from satsym.kernels.batch.compiling import able
 from satsym.status import Status
 
 COLUMNS, STEPS = 4096, 10
-"""Motions at once, and steps between two looks at the clock."""
+"""Number of motions at once, and of steps between two readings of the clock."""
 
 STEP_LENGTH, START_DISTANCE = 1e-4, 1e-3
 """Length of a step, in the unit of time, and distance between neighbouring starts."""
 
 RUNS = 3
-"""Runs of which the fastest counts: what else the machine does makes the others slower."""
+"""Number of runs, of which the fastest counts, since other processes slow the others down."""
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Steps of the classical Runge-Kutta method, each of one motion.
+    """The number of steps of the classical Runge-Kutta method a second, each step of one motion.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Speed:
 
 @dataclass(frozen=True)
 class Solved:
-    """One solution.
+    """The time that one solution took.
 
     Attributes
     ----------
@@ -65,12 +65,12 @@ class Solved:
 
 
 def cores() -> int:
-    """Number of processor cores that this process may use."""
+    """Return the number of processor cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def speeds(subject: Instance | Kernels, seconds: float) -> Iterator[Speed]:
-    """Steps of many motions at once, by NumPy, and where there is a compiler by machine code, on one core and on all.
+    """Measure the steps a second of many motions at once, by NumPy and by machine code, on one core and on all.
 
     Parameters
     ----------
@@ -105,11 +105,11 @@ def speeds(subject: Instance | Kernels, seconds: float) -> Iterator[Speed]:
 
 
 REPEATED = 20
-"""So many times more steps of machine code lie between two looks at the clock: starting a thread takes as long."""
+"""Factor of the steps of machine code between two readings of the clock, since starting a thread takes time."""
 
 
 def _columns(subject: Instance | Kernels) -> tuple[Array, Array]:
-    """States about a start, and parameters, a column for each motion."""
+    """Return states about a start, and parameters, in a column for each motion."""
     if isinstance(subject, Kernels):
         start = [1.0] * len(subject.spec.states)
         parameters = [1.0 if one.default is None else float(one.default) for one in subject.spec.parameters]
@@ -121,7 +121,7 @@ def _columns(subject: Instance | Kernels) -> tuple[Array, Array]:
 
 
 def _rate(run: Callable[[], object], seconds: float) -> float:
-    """Steps a second, of the fastest of several runs."""
+    """Return the steps a second of the fastest of several runs."""
     with np.errstate(all="ignore"):
         run()  # what is made when it is first called is made now
         best = 0.0
@@ -135,7 +135,7 @@ def _rate(run: Callable[[], object], seconds: float) -> float:
 
 
 def solved(instance: Instance) -> Solved:
-    """The time of one solution, and of its certificate."""
+    """Measure the time of one solution, and of its certificate."""
     from satsym import solvers
     from satsym.solvers.certificate import certify
 

@@ -1,4 +1,4 @@
-"""What an analysis is about, an instance or a model with its default parameters, and all that numbers say of it."""
+"""The subject of an analysis, an instance or a model with its default parameters, and all numeric results on it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from satsym.wording import printable, suggestion
 
 
 def find(name: str) -> Instance | Kernels:
-    """The instance, or else the model, of this name or at this path.
+    """Return the instance, or else the model, of this name or at this path.
 
     Raises
     ------
@@ -48,14 +48,14 @@ def find(name: str) -> Instance | Kernels:
 
 
 def examined(given: Instance | Kernels) -> tuple[Analysis | None, Survey | None]:
-    """The linear analysis, and that of the orbit; one of them may be missing.
+    """Analyse the linear system and the orbit of a subject; one of the two may be missing.
 
-    A body that is only attracted rests nowhere, so that without a reference there is nothing to linearise about.
+    A body under a central force alone has no equilibrium, so that without a reference it cannot be linearised.
 
     Raises
     ------
     BadInput
-        If neither has a meaning.
+        If neither analysis is possible.
     """
     spec = given.spec if isinstance(given, Kernels) else given.model.spec
     if isinstance(given, Kernels):
@@ -71,10 +71,10 @@ def examined(given: Instance | Kernels) -> tuple[Analysis | None, Survey | None]
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """The structure of a linear system."""
+    """The results on the linear system of a model."""
 
     about: Linearisation
-    """The system, and what it is the linearisation of."""
+    """The linear system, and the linearisation it comes from."""
     eigenvalues: tuple[Eigenvalue, ...]
     modes: tuple[Mode, ...]
     polynomial: Array
@@ -83,11 +83,11 @@ class Analysis:
     """Stability of A, with its characteristic polynomial: monic, highest power first."""
     controllability: Reach | None
     observability: Reach | None
-    """``None`` where there are no inputs, or no outputs."""
+    """Controllability and observability; ``None`` where there are no inputs, or no outputs."""
 
 
 def analyse(subject: Kernels | Instance) -> Analysis:
-    """Analyse a model, or an instance of one; see :func:`satsym.analysis.linear.equilibrium.linearise`.
+    """Analyse a linearised model, or instance; see :func:`satsym.analysis.linear.equilibrium.linearise`.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def analyse(subject: Kernels | Instance) -> Analysis:
 
 
 def _polynomial(given: LinearSystem, eigenvalues: Sequence[Eigenvalue]) -> tuple[Array, Routh]:
-    """Characteristic polynomial and Routh array, both exact and then rounded where the system is known exactly."""
+    """Return characteristic polynomial and Routh array, exact where the system is, and then rounded."""
     if given.exact is None:
         polynomial = characteristic(given.A)
         return polynomial, routh(
@@ -123,7 +123,7 @@ def _polynomial(given: LinearSystem, eigenvalues: Sequence[Eigenvalue]) -> tuple
 
 
 def _verdict(about: Linearisation, possible: Sequence[Sequence[Eigenvalue]]) -> Stability:
-    """The verdict of the eigenvalues, unless they decide nothing."""
+    """Return the verdict of the eigenvalues, unless they leave it undecided."""
     if not about.constant:
         reason = "the coefficients depend on time, so the eigenvalues at one time do not decide the stability"
         return Stability(None, reason, False)
@@ -145,7 +145,7 @@ class Survey:
 
 
 def survey(case: Instance) -> Survey:
-    """Analyse the uncontrolled motion from the initial state.
+    """Analyse the uncontrolled orbit from the initial state of an instance.
 
     Parameters
     ----------

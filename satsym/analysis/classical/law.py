@@ -1,8 +1,8 @@
-"""The classical law of one axis: proportional and differential action on the error, following a step of the command.
+"""The classical control law of a single axis: proportional and derivative action on the error after a step command.
 
-The gains that damp the loop critically, and the torque that undoes what turns the body by itself, follow from the
-linearised motion. The rate is measured by a differentiator, which is ideal or lags behind. An ideal one makes an
-impulse of the step: the states jump at the beginning.
+The gains for critical damping, and the torque that cancels the body's own torque, follow from the linearised motion.
+The rate is measured by a differentiator, which is ideal or has a lag. An ideal one turns the step into an impulse: the
+states jump at the beginning.
 """
 
 from __future__ import annotations
@@ -29,39 +29,39 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-13
 """Largest error of a step of the integration, relative to the size of each state."""
 MOST_STEPS = 10_000
-"""As many times as the fastest motion of the loop may decay to 1/e in the time that is simulated."""
+"""Largest length of a simulation, in time constants of the loop's fastest motion."""
 
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """The law, and the linear motion under it."""
+    """The classical law of an instance, and the linear motion of the closed loop."""
 
     follows: int
     rate: int
-    """Places of the state that follows the command and of its rate of change."""
+    """Places of the state that follows the command and of the state that is its rate."""
     gains: tuple[float, float]
     """Gains of the rate and of the state."""
     compensation: float
-    """Control for each unit of the state that follows."""
+    """Control for each unit of the state that follows, which cancels the body's own torque."""
     command: float
     differentiator: float
-    """Command and differentiator time of the law, as the instance states them."""
+    """The command, and the time constant of the differentiator, as the instance states them."""
     jump: Array
-    """How the states change at once when the command steps, shape (n,)."""
+    """The change of the states at the moment of the step, shape (n,)."""
     impulse: float
-    """The integral of the control over that moment."""
+    """The integral of the control over the moment of the step."""
     matrix: Array
     offset: Array
     """The linear motion under the law, z' = M z + c; the last entry of z is the measured error where the differentiator
-    lags behind."""
+    has a lag."""
 
     @property
     def fastest(self) -> float:
-        """The largest magnitude of the loop's poles."""
+        """Return the largest magnitude of the closed loop's poles."""
         return float(np.abs(np.linalg.eigvals(self.matrix)).max())
 
     def control(self, z: Array) -> Array:
-        """The control at states (with the measured error), shape (n,) or (n, M)."""
+        """Return the control at states (with the measured error), shape (n,) or (n, M)."""
         error = self.command - z[self.follows]
         if self.differentiator:
             slope = (error - z[-1]) / self.differentiator
@@ -71,11 +71,11 @@ class Loop:
         return found
 
     def start(self, initial: Array) -> Array:
-        """States just after the step, with the measured error where there is one."""
+        """Return the states just after the step, with the measured error if the differentiator has a lag."""
         return np.append(initial, 0.0) if self.differentiator else initial + self.jump
 
     def linear(self, initial: Array, times: Array) -> Array:
-        """The linear motion in closed form at evenly spaced times, by matrix exponentials; shape (n or n+1, M)."""
+        """Return the linear motion at evenly spaced times by matrix exponentials; shape (n or n+1, M)."""
         from scipy.linalg import expm
 
         size = len(self.offset)
@@ -89,7 +89,7 @@ class Loop:
 
 
 def loop(instance: Instance) -> Loop:
-    """The loop of an instance.
+    """Return the closed loop of an instance under its classical law.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def _linear(
     command: float,
     lag: float,
 ) -> dict[str, Array]:
-    """Matrix and offset of the linear motion."""
+    """Return matrix and offset of the linear motion."""
     n, by_rate, by_state = len(a), *gains
     row, constant = np.zeros(n + bool(lag)), by_state * command
     row[place] = compensation - by_state
@@ -224,7 +224,7 @@ def _linear(
 
 
 def _flown(instance: Instance, found: Loop, times: Array, start: Array, limits: Limits) -> tuple[Array, OdeSolution]:
-    """The motion at the nodes, and between them, with the steps that were taken."""
+    """Integrate the motion, and return it at the nodes and between them, with the steps taken."""
     from scipy.integrate import solve_ivp
 
     n, f, p = len(instance.model.spec.states), instance.model.dynamics, instance.parameters

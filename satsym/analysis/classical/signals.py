@@ -1,4 +1,4 @@
-"""Totals over a motion, whichever law it was under: impulse, effort, largest and last values, and what limits allow."""
+"""Measures of a motion under any control law: impulse, effort, peak and final values, and violated limits."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ POINTS = 6
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """A part of a motion over which its controls are smooth."""
+    """A part of a motion on which its controls are smooth."""
 
     times: Array
-    """Nodes between which to integrate, shape (M,)."""
+    """Nodes for the integration of signals, shape (M,)."""
     x: Callable[[Array], Array]
     u: Callable[[Array], Array]
-    """States (n, K) and controls (m, K) at times, shape (K,), within."""
+    """Functions from times within the span, shape (K,), to states (n, K) and to controls (m, K)."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers out of range are reported as such
 def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> dict[str, float]:
-    """Numbers that describe a motion.
+    """Compute the numbers that describe a motion.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> d
     m, powers = len(spec.controls), [k for k, variable in enumerate(spec.quantities) if variable.unit == "W"]
 
     def signals(span: Span, times: Array) -> Array:
-        """Controls, states and derived quantities, one below the other."""
+        """Return controls, states and derived quantities at some times, in rows."""
         x, u = span.x(times), span.u(times)
         return np.concatenate([u, x, _quantities(instance, times, x, u)])
 
@@ -76,7 +76,7 @@ def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> d
 
 
 def excesses(instance: Instance, metrics: dict[str, float]) -> str:
-    """A sentence on each limit that a motion goes beyond; empty where it keeps all."""
+    """Describe each limit that a motion exceeds in a sentence; empty where it exceeds none."""
     variables = {v.symbol: v for v in (*instance.model.spec.states, *instance.model.spec.quantities)}
     found = [
         f"{name} reaches {peak:.6g} {variables[name].unit}, which exceeds its limit of {limit:.6g}"
@@ -87,10 +87,10 @@ def excesses(instance: Instance, metrics: dict[str, float]) -> str:
 
 
 def spans_of(instance: Instance, times: Array, x: Array, u: Array, switches: Sequence[float]) -> list[Span]:
-    """Parts of a solution between the times at which its controls meet or leave bounds, or jump.
+    """Split a solution at the times at which its controls meet or leave bounds, or jump.
 
-    States are interpolated by cubics with the exact slopes; controls by straight lines between the nodes, and up to the
-    ends of each part from within it.
+    States are interpolated by cubics with exact slopes; controls by straight lines between nodes, which are
+    extrapolated to the ends of each part.
     """
     borders = [times[0], *sorted({s for s in switches if times[0] < s < times[-1]}), times[-1]]
     spans = []
@@ -113,7 +113,7 @@ def _states(times: Array, x: Array) -> Callable[[Array], Array]:
 
 
 def _controls(times: Array, u: Array) -> Callable[[Array], Array]:
-    """Straight lines between nodes, the first and the last of them going on."""
+    """Interpolate controls by straight lines between nodes, and extrapolate the first and the last of them."""
 
     def at(t: Array) -> Array:
         k = np.clip(np.searchsorted(times, t) - 1, 0, len(times) - 2)
@@ -132,7 +132,7 @@ def _quantities(instance: Instance, times: Array, x: Array, u: Array) -> Array:
 
 
 def _peaks(span: Span, signals: Callable[[Array], Array]) -> Array:
-    """The largest magnitude of each signal: at a node, or near the largest one by search."""
+    """Return the largest magnitude of each signal, at a node or by a search near the largest one."""
     from scipy.optimize import minimize_scalar
 
     values = np.abs(signals(span.times))
@@ -163,7 +163,7 @@ def _integral(span: Span, function: Callable[[Array], Array]) -> Array:
 
 
 def _zeros(span: Span) -> list[float]:
-    """Times at which a control changes its sign."""
+    """Return the times at which a control changes its sign."""
     from scipy.optimize import brentq
 
     u = span.u(span.times)
@@ -177,13 +177,13 @@ def _zeros(span: Span) -> list[float]:
 
 
 SETTLING_BAND = 0.02
-"""Share of the step that the error keeps below once the motion counts as settled."""
+"""Fraction of the step below which the error has to stay for the motion to count as settled."""
 
 
 def performance(
     times: Array, x: Callable[[Array], Array], follows: int, before: float, command: float
 ) -> dict[str, float]:
-    """When a state first reaches its command, how far it goes beyond, and when it has settled, from the first node on.
+    """Measure when a state first reaches its command, its overshoot, and when it has settled.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def performance(
 
 
 def _crossing(times: Array, value: Callable[[float], float], after: int) -> float:
-    """The time, from the first node on, at which a function of time changes its sign just before a node."""
+    """Return the time at which a function changes its sign just before a node, measured from the first node."""
     from scipy.optimize import brentq
 
     if after == 0:

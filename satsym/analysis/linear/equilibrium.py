@@ -1,4 +1,4 @@
-"""Where a model is linearised: on its reference, or at an equilibrium; and the linear system there."""
+"""Linearisation of a model on its reference or at an equilibrium, and the resulting linear system."""
 
 from __future__ import annotations
 
@@ -18,62 +18,61 @@ from satsym.spec import names
 from satsym.status import BadInput
 
 AT_REST = 1e-9
-"""Rates below this, relative to what they are made of, are zero."""
+"""Rates below this value, relative to the terms they consist of, are zero."""
 POLISHING = 3
-"""Steps of Newton's method after the search."""
+"""Number of steps of Newton's method after the search for an equilibrium."""
 ENTRY_TOLERANCE = 1e-9
-"""Entries of A and B, in units that suit them, that differ by less than this are the same."""
+"""Largest difference of equal entries of A and B, in suitable units."""
 LOOKED_AT = (0.0, 0.37, 1.21, 2.9)
-"""Times at which coefficients are compared, in units of 1/|A|."""
+"""Times at which coefficients are compared to decide whether they are constant, in units of 1/|A|."""
 EXACT = "deviation_dynamics"
-"""The function of a linear model that knows the exact motion in its variables."""
+"""Name of the generated function of a linear model with the exact motion in its variables."""
 SHIFTS = (-0.3, 0.1, 0.7)
-"""How far aside of the motion they are compared, relative to the size of the states."""
+"""Displacements from the motion at which exact and linear rates are compared, relative to the size of the states."""
 
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """A model near a motion without control that it is known to have."""
+    """A model linearised about a known motion without control."""
 
     model: Kernels
     parameters: tuple[float, ...]
     t0: float
-    """Model that is linearised, its parameters, and the time from which on."""
+    """The linearised model, its parameters, and the initial time."""
     point: Array
     """The reference at t0, or the equilibrium; shape (n,)."""
     on_reference: bool
     """Whether the point lies on the model's reference; otherwise it is an equilibrium."""
     system: LinearSystem
-    """Coefficients at t0; their states, inputs and outputs are deviations."""
+    """The linear system at t0, whose states, inputs and outputs are deviations."""
     constant: bool
-    """Whether they do not depend on time."""
+    """Whether the coefficients of the linear system are constant."""
     nonlinear: bool
-    """Whether the motion is known exactly too, and is not linear: that of a nonlinear model, or, in the same
-    deviations, that which a model is the linearisation of."""
+    """Whether the exact motion is known, too, and is not linear."""
 
     def at(self, t: float) -> Array:
-        """The motion at a time, shape (n,)."""
+        """Return the states of the reference motion at a time, shape (n,)."""
         return np.array(self.model.reference(t, self.parameters)) if self.on_reference else self.point
 
     def along(self, times: Array) -> Array:
-        """The motion at several times, shape (n, M)."""
+        """Return the states of the reference motion at several times, shape (n, M)."""
         if not self.on_reference:
             return np.repeat(self.point[:, None], len(times), axis=1)
         return self.model.reference_batch(times, self.parameters)
 
     @property
     def rates(self) -> Function:
-        """The exact rates of change of the states, a function of t, x, u and p on plain floats."""
+        """Return the exact rates of change of the states, a function of t, x, u and p on plain floats."""
         return self.model.functions[_exact(self.model)]
 
     @property
     def rates_batch(self) -> Function:
-        """Rates of change for arrays of states and controls whose last axis counts instances."""
+        """Return the rates of change for arrays of states and controls whose last axis counts instances."""
         return self.model.functions[_exact(self.model) + BATCH]
 
 
 def linearise(subject: Kernels | Instance) -> Linearisation:
-    """The linear system that describes small deviations.
+    """Linearise a model, and return the linear system of small deviations.
 
     Parameters
     ----------
@@ -136,12 +135,12 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
 
 
 def _exact(model: Kernels) -> str:
-    """The function that knows the motion exactly."""
+    """Return the exact reference motion of a model as a function of time."""
     return EXACT if EXACT in model.spec.linear else "dynamics"
 
 
 def _outputs(model: Kernels, p: Sequence[float], t: float) -> tuple[Array | None, Array | None]:
-    """C and D where the model says what is measured."""
+    """Return C and D if the model declares outputs."""
     n, m, k = len(model.spec.states), len(model.spec.controls), len(model.spec.outputs)
     if not k:
         return None, None
@@ -150,20 +149,20 @@ def _outputs(model: Kernels, p: Sequence[float], t: float) -> tuple[Array | None
 
 
 def _same(unit: Scaled, found: Linearisation, t: float, x: Array) -> bool:
-    """Whether A and B there are those of the linearisation."""
+    """Tell whether A and B at a time and state equal those of the linearisation."""
     A, B = jacobians(found.model, found.parameters, t, x)
     change = np.hstack([(A - found.system.A) * unit.states, (B - found.system.B) * unit.inputs])
     return bool((np.abs(change) / unit.states[:, None] <= ENTRY_TOLERANCE * unit.rate * unit.size).all())
 
 
 def _rests(model: Kernels, p: Sequence[float], unit: Scaled, t: float, x: Array) -> bool:
-    """Whether nothing moves there at that time."""
+    """Tell whether the model is at rest at a state at that time."""
     rates = np.array(model.dynamics(t, x.tolist(), (0.0,) * len(model.spec.controls), p))
     return bool((np.abs(rates) <= ENTRY_TOLERANCE * unit.rate * unit.size * (unit.states + np.abs(x))).all())
 
 
 def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0, where: str = "") -> Array:
-    """A state at which the model rests without control.
+    """Find a state at which the model rests without control.
 
     Parameters
     ----------
@@ -213,7 +212,7 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
 
 
 def _defaults(model: Kernels) -> tuple[float, ...]:
-    """Default parameters of a model."""
+    """Return the default parameters of a model."""
     missing = [v.symbol for v in model.spec.parameters if v.default is None]
     if missing:
         raise BadInput(
@@ -224,7 +223,7 @@ def _defaults(model: Kernels) -> tuple[float, ...]:
 
 
 def jacobians(model: Kernels, p: Sequence[float], t: float, x: Array) -> tuple[Array, Array]:
-    """A = df/dx and B = df/du without control, of shapes (n, n) and (n, m).
+    """Return A = df/dx and B = df/du without control, of shapes (n, n) and (n, m).
 
     Raises
     ------

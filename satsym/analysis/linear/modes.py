@@ -1,9 +1,9 @@
-"""Modes of a linear system: what each carries, how fast and how damped it is, and what it is called.
+"""Modes of a linear system: their states, frequency, damping and names.
 
 How much a state takes part in a mode is the product of its entries in the right and the left eigenvector: the diagonal
-of the projector on the mode, which knows no units (Perez-Arriaga, Verghese and Schweppe, IEEE Trans. PAS 101, 1982). A
-model may say what a mode is called in which some of its states have the largest part, and may tell two of them apart by
-whether they become infinitely slow with one of its parameters: eigenvalues are then followed while it shrinks.
+of the projector on the mode, which does not depend on units (Perez-Arriaga, Verghese and Schweppe, IEEE Trans. PAS 101,
+1982). A model may name a mode by the states that have the largest part in it, and may distinguish two modes by whether
+they become infinitely slow with one of its parameters: eigenvalues are then followed while it shrinks.
 """
 
 from __future__ import annotations
@@ -25,47 +25,47 @@ from satsym.spec import ModeGroup
 Numbers = NDArray[np.complexfloating]
 
 SHRUNK = 1e-4
-"""How far a parameter shrinks."""
+"""Factor by which a parameter is reduced to see which eigenvalues vanish with it."""
 LARGEST_STEP, SMALLEST_STEP = 0.5, 1e-4
-"""Logarithms of the factors by which it does: the largest, and that below which eigenvalues are taken to meet."""
+"""Logarithms of the factors of one reduction: the largest, and the one below which eigenvalues count as meeting."""
 SMALLEST_SEPARATION = 4.0
-"""An eigenvalue is followed if every other one is so many times as far away as the one that continues it."""
+"""Least distance of other eigenvalues from one that is followed, relative to the distance of its continuation."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """An eigenvalue, with its conjugate if it is not real."""
+    """A mode of a linear system: an eigenvalue, with its conjugate if it is not real."""
 
     eigenvalue: Eigenvalue
     participation: Mapping[str, float]
-    """State -> its part; they add up to 1."""
+    """The part of each state in the mode, by name; the parts add up to 1."""
     name: str
-    """What it is; empty where the model does not say."""
+    """The name of the mode; empty where the model states none."""
 
     @property
     def frequency(self) -> float:
-        """Natural frequency, the magnitude of the eigenvalue."""
+        """Return the natural frequency, the magnitude of the eigenvalue."""
         return abs(self.eigenvalue.value)
 
     @property
     def damping_ratio(self) -> float | None:
-        """Damping relative to critical damping; negative if the mode grows; ``None`` for real eigenvalues."""
+        """Return damping relative to critical damping; negative if the mode grows; ``None`` for real eigenvalues."""
         value = self.eigenvalue.value
         return -value.real / abs(value) + 0.0 if value.imag else None
 
     @property
     def period(self) -> float | None:
-        """Time of one oscillation; ``None`` for real eigenvalues."""
+        """Return the time of one oscillation; ``None`` for real eigenvalues."""
         value = self.eigenvalue.value
         return 2.0 * math.pi / abs(value.imag) if value.imag else None
 
     @property
     def time_constant(self) -> float | None:
-        """The time in which it decays, or grows, by a factor e; ``None`` where it does neither."""
+        """Return the time in which the mode decays, or grows, by a factor e; ``None`` where it does neither."""
         return 1.0 / abs(self.eigenvalue.value.real) if self.eigenvalue.value.real else None
 
     def carried_by(self) -> list[tuple[str, float]]:
-        """The states that have the largest parts, half of the whole or more together."""
+        """Return the states that have the largest parts in the mode, which add up to half or more."""
         found: list[tuple[str, float]] = []
         for name, share in sorted(self.participation.items(), key=lambda pair: -pair[1]):
             # equal parts are shown together
@@ -76,7 +76,7 @@ class Mode:
 
 
 def modes(about: Linearisation, eigenvalues: Sequence[Eigenvalue]) -> tuple[Mode, ...]:
-    """The modes of a linearisation, in the order of its eigenvalues."""
+    """Return the modes of a linearisation, in the order of its eigenvalues."""
     chosen = [each for each in eigenvalues if each.value.imag >= 0.0]
     parts = [dict(zip(about.system.states, row, strict=True)) for row in participation(about.system.A, chosen)]
     groups = [_group(about.model.spec.mode_groups, each) for each in parts]
@@ -88,7 +88,7 @@ def modes(about: Linearisation, eigenvalues: Sequence[Eigenvalue]) -> tuple[Mode
 
 
 def participation(A: Array, eigenvalues: Sequence[Eigenvalue]) -> Array:
-    """The part of each state in each eigenvalue's invariant subspace; shape (eigenvalues, n), rows add up to 1."""
+    """Return the part of each state in each eigenvalue's mode; shape (eigenvalues, n), rows add up to 1."""
     from scipy.linalg import schur, solve_sylvester
 
     fitted, n = scaled(system(A)), len(A)
@@ -115,7 +115,7 @@ def _within(value: complex, bound: float, number: complex) -> bool:
 
 
 def _group(groups: Sequence[ModeGroup], part: Mapping[str, float]) -> ModeGroup | None:
-    """The group whose states have the largest part, if that is most of the whole."""
+    """Return the named group whose states have the largest part, if that is most of the whole."""
     shares = [(sum(part[s] for s in group.states), group) for group in groups]
     share, group = max(shares, key=lambda pair: pair[0], default=(0.0, None))
     return group if share > 0.5 else None
@@ -130,7 +130,7 @@ def _name(group: ModeGroup | None, each: Eigenvalue, vanishes: bool | None) -> s
 
 
 def _slow(about: Linearisation, values: Sequence[complex], groups: Sequence[ModeGroup | None]) -> list[bool | None]:
-    """Whether each value vanishes with the parameter of its group; ``None`` where it has none, or nobody can tell."""
+    """Tell whether each eigenvalue vanishes with the parameter of its group; ``None`` where this is undecided."""
     found: list[bool | None] = [None] * len(values)
     for parameter in {group.vanishing for group in groups if group and group.vanishing}:
         limits = _limits(about, parameter) if about.constant else {}
@@ -142,7 +142,7 @@ def _slow(about: Linearisation, values: Sequence[complex], groups: Sequence[Mode
 
 
 def _limits(about: Linearisation, parameter: str) -> dict[complex, bool | None]:
-    """Each eigenvalue, and whether it vanishes with a parameter; ``None`` where it meets one that does otherwise."""
+    """Return each eigenvalue, and whether it vanishes with a parameter; ``None`` where it meets one that differs."""
     place = about.model.spec.parameter_names.index(parameter)
 
     def numbers(factor: float) -> Numbers:
@@ -174,7 +174,7 @@ def _limits(about: Linearisation, parameter: str) -> dict[complex, bool | None]:
 
 
 def _continued(guess: Numbers, coming: Numbers) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Which of the coming numbers continues each one, and whether that is clear."""
+    """Match each number with its continuation among the next numbers, and tell whether the match is clear."""
     from scipy.optimize import linear_sum_assignment
 
     apart = np.abs(guess[:, None] - coming)

@@ -1,12 +1,12 @@
-"""How far a matrix is from one in which some of its eigenvalues are a single one, or lie on the imaginary axis.
+"""The distance of a matrix from matrices with multiple eigenvalues, or with eigenvalues on the imaginary axis.
 
 Distances are relative changes of entries, all of them together (the root of the sum of their squares): a zero stays a
 zero, and a matrix keeps its small eigenvalues however large others are. To first order a change E of A changes the
-matrix M of A in its invariant subspace to some eigenvalues by L E X, where the columns of X span it, the rows of L the
-one on the left, and L X = 1. M has a single eigenvalue where the coefficients of the characteristic polynomial of
-M - tr(M)/m vanish, except the leading one, and the least change that does this to first order is what counts; or
-where M - tr(M)/m is nilpotent but for what such a change does to its entries. Everything
-that cancels is reckoned with many digits; A itself counts as exact.
+matrix M of A in its invariant subspace to some eigenvalues by L E X, where the columns of X span the subspace, the rows
+of L the left one, and L X = 1. M has a single eigenvalue where the coefficients of the characteristic polynomial of M -
+tr(M)/m vanish, except the leading one, and the distance is the smallest change that does this to first order; or where
+M - tr(M)/m is nilpotent up to the effect of such a change on its entries. Differences that cancel are computed with
+many digits; A itself counts as exact.
 
 Source: T. Kato, Perturbation Theory for Linear Operators, chapter II (invariant subspaces and the mean of a group of
 eigenvalues depend smoothly on the matrix, even where eigenvalues do not).
@@ -28,31 +28,31 @@ if TYPE_CHECKING:
     from flint import acb, acb_mat
 
 BITS = 320
-"""To be the working precision wherever anything here is called."""
+"""Working precision, in bits, for all functions of this module."""
 NOTHING = 2.0 ** (-BITS // 2)
-"""What is smaller than this, relative to what it is made of, is zero."""
+"""Numbers smaller than this value, relative to the terms they consist of, are zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Some eigenvalues of a matrix A of shape (n, n), in a form that tells what changes of A do to them."""
+    """Some eigenvalues of a matrix A of shape (n, n), with their sensitivity to changes of A."""
 
     entries: Array
-    """By how much an entry of A counts as changed where a relative change is 1; shape (n, n)."""
+    """The change of each entry that counts as a relative change of 1; shape (n, n)."""
     values: Sequence[acb]
     """The m eigenvalues."""
     X: acb_mat
     L: acb_mat
     M: acb_mat
-    """Shapes (n, m), (m, n) and (m, m), with L X = 1 and M = L A X."""
+    """The matrices X, L and M, shapes (n, m), (m, n) and (m, m), with L X = 1 and M = L A X."""
 
     @cached_property
     def mean(self) -> acb:
-        """The mean of the eigenvalues; exactly real, or on the axis, where they are."""
+        """Return the mean of the eigenvalues; exactly real, or on the imaginary axis, where they are."""
         return sum(self.values[1:], start=self.values[0]) / len(self.values)
 
     def off_axis(self) -> float:
-        """The relative change that brings the real part of the mean to zero."""
+        """Return the relative change that brings the real part of the mean to zero."""
         if abs(self.mean.real) <= abs(self.mean) * NOTHING:
             return 0.0
         slope, unit = _floats((self.X * self.L).transpose())
@@ -60,9 +60,10 @@ class Group:
         return abs(float(self.mean.real)) / size if size else np.inf
 
     def single(self, change: float) -> bool:
-        """Whether a relative change of this size can make the eigenvalues a single one.
+        """Tell whether a relative change of this size can merge the eigenvalues into one.
 
-        Where it has several Jordan blocks, the coefficients beyond the largest of them say nothing to first order.
+        Where the merged one has several Jordan blocks, coefficients beyond the largest block say nothing to first
+        order.
         """
         if self.apart <= change:
             return True
@@ -70,17 +71,17 @@ class Group:
         return sum(added) == len(self.values) and added[0] > 1 and self._solved(len(added)) <= change
 
     def blocks(self, change: float) -> tuple[int, ...]:
-        """Sizes of the Jordan blocks that these eigenvalues have as one, where relative changes of this size are none.
+        """Return the sizes of the Jordan blocks of the merged eigenvalue, neglecting relative changes of this size.
 
-        By how much each power of M - s enlarges the null space tells them (Weyr's characteristic).
+        They follow from by how much each power of M - s enlarges the null space (Weyr's characteristic).
         """
         added = self._weyr(change, known=True)
         return tuple(sum(count > i for count in added) for i in range(added[0]))
 
     def _weyr(self, change: float, known: bool = False) -> list[int]:
-        """Weyr characteristic: by how much each power of the shifted matrix enlarges the null space, while it grows.
+        """Return the Weyr characteristic: by how much each power of the shifted matrix enlarges the null space.
 
-        They are found by deflation, never by forming powers (G. H. Golub and J. H. Wilkinson, SIAM Review 18, 1976).
+        It is found by deflation, without powers of the matrix (G. H. Golub and J. H. Wilkinson, SIAM Review 18, 1976).
         """
         rest, unit = self._in_units
         added: list[int] = []
@@ -98,11 +99,11 @@ class Group:
 
     @cached_property
     def apart(self) -> float:
-        """The least relative change that makes the eigenvalues a single one, to first order."""
+        """Return the smallest relative change that merges the eigenvalues into one, to first order."""
         return self._solved(len(self.values))
 
     def _solved(self, highest: int) -> float:
-        """Relative change of the matrix with which its characteristic polynomial agrees up to this coefficient."""
+        """Return the relative change with which the characteristic polynomial agrees up to this coefficient."""
         rows, wanted = self._equations(highest)
         if not wanted.any():
             return 0.0
@@ -116,7 +117,7 @@ class Group:
 
     @cached_property
     def _in_units(self) -> tuple[Array, float]:
-        """M - tr(M)/m, and how much a relative change of 1 changes its entries, in coordinates that make this alike."""
+        """Return M - tr(M)/m and the sensitivity of its entries, in coordinates that make this sensitivity uniform."""
         from scipy.linalg import matrix_balance
 
         rest, left, right = (_floats(part) for part in (self._deviation, self.L, self.X))
@@ -126,7 +127,7 @@ class Group:
         return rest[0] * rest[1] * (scale / scale[:, None]), each
 
     def _equations(self, highest: int) -> tuple[Array, Array]:
-        """Linear equations for relative changes of the entries: rows of size 1, and what they shall give."""
+        """Return linear equations for relative changes of the entries: rows of size 1, and right-hand sides."""
         m, one = len(self.values), _identity(len(self.values))
         power, rows, wanted = one, [], []
         used = self.entries.ravel() != 0.0
@@ -153,7 +154,7 @@ class Group:
 
 
 def group(A: Array, entries: Array, inside: Sequence[acb], outside: Sequence[acb]) -> Group:
-    """Some eigenvalues of a matrix.
+    """Prepare some eigenvalues of a matrix for estimates of distances.
 
     Parameters
     ----------
@@ -176,7 +177,10 @@ def group(A: Array, entries: Array, inside: Sequence[acb], outside: Sequence[acb
 
 
 def _span(A: acb_mat, outside: Sequence[acb], count: int) -> acb_mat:
-    """Orthonormal columns of the product of all A - s, s outside: the invariant subspace of the other eigenvalues."""
+    """Return orthonormal columns of the product of all A - s for the outside eigenvalues s.
+
+    They span the invariant subspace of the other eigenvalues.
+    """
     from flint import acb_mat, arb
 
     n = A.nrows()
@@ -207,7 +211,7 @@ def _identity(size: int) -> acb_mat:
 
 
 def _floats(matrix: acb_mat) -> tuple[Any, float]:
-    """A matrix as floats of moderate size, and what they are to be multiplied with."""
+    """Return a matrix as floats of moderate size, and the factor that restores it."""
     unit = _largest(matrix) or 1.0
     values = np.array([complex(entry / unit) for entry in matrix.entries()])
     return values.reshape(matrix.nrows(), matrix.ncols()), unit

@@ -1,13 +1,11 @@
-"""Controllability and observability: ranks, and what is out of reach.
+"""Controllability and observability: ranks, and modes that are uncontrollable or unobservable.
 
-Rational systems are decided exactly (:mod:`satsym.analysis.linear.rational`). Else ranks are decided on the system in
-units that suit it (:mod:`satsym.analysis.linear.system`), by the staircase of singular value decompositions, which
-never forms A^k B: what the inputs move directly, what that moves, and so on. A singular value below ``TOLERANCE`` times
-the size of the system is zero. So the ranks are exactly those of a system that differs from the given one by less than
-that.
-
-Sources: R. E. Kalman, Mathematical description of linear dynamical systems, SIAM J. Control 1 (1963);
-P. M. Van Dooren, The generalized eigenstructure problem in linear system theory, IEEE TAC 26 (1981);
+Rational systems are decided exactly (:mod:`satsym.analysis.linear.rational`). Otherwise ranks are decided on the system
+in suitable units (:mod:`satsym.analysis.linear.system`), by the staircase of singular value decompositions, which never
+forms A^k B: the states that inputs move directly, those that these move, and so on. A singular value below
+``TOLERANCE`` times the size of the system is zero. So the ranks are exactly those of a system that differs from the
+given one by less than that. Sources: R. E. Kalman, Mathematical description of linear dynamical systems, SIAM J.
+Control 1 (1963); P. M. Van Dooren, The generalized eigenstructure problem in linear system theory, IEEE TAC 26 (1981);
 M. L. J. Hautus, Controllability and observability conditions, Indagationes Mathematicae 31 (1969).
 """
 
@@ -31,25 +29,25 @@ ROUNDING = 1e-15
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """How much of a system its inputs move, or how much of it its outputs show."""
+    """The controllability of a system by its inputs, or its observability by its outputs."""
 
     matrix: Array
-    """Kalman's matrix, in the system's units: (B, AB, ...), shape (n, n m), or C over CA over ..., shape (n k, n)."""
+    """The Kalman matrix in the system's units: (B, AB, ...), shape (n, n m), or C over CA over ..., shape (n k, n)."""
     rank: int
-    """Dimension of what is moved or shown."""
+    """Dimension of the controllable, or observable, subspace."""
     lost: tuple[Eigenvalue, ...]
-    """The modes that are not moved, or do not show."""
+    """The uncontrollable, or unobservable, modes."""
     alone: Mapping[str, Reach]
-    """Reach of each input or output by itself, by name; empty where this is already the reach of a single one."""
+    """The results for each single input or output, by name; empty if this one is for a single one."""
 
     @property
     def complete(self) -> bool:
-        """Whether the system is controllable, or observable."""
+        """Tell whether the system is controllable, or observable."""
         return not self.lost
 
 
 def controllability(given: LinearSystem) -> Reach:
-    """What the inputs move, all together and each alone."""
+    """Analyse controllability by all inputs together and by each alone."""
     fitted, power = scaled(given), given.B
     blocks = [power]
     for _ in given.states[1:]:
@@ -71,18 +69,18 @@ def controllability(given: LinearSystem) -> Reach:
 
 
 def observability(given: LinearSystem) -> Reach:
-    """What the outputs show, as what would move if the system ran along transposed arrows."""
+    """Analyse observability by the outputs, as the controllability of the dual system."""
     return _dual(controllability(transposed(given)), len(given.states))
 
 
 def _dual(found: Reach, n: int) -> Reach:
-    """The blocks of the matrix below one another, each transposed."""
+    """Transpose each of the blocks that are stacked in a matrix."""
     stacked = found.matrix.reshape(n, n, -1).transpose(1, 2, 0).reshape(-1, n)
     return Reach(stacked, found.rank, found.lost, {name: _dual(each, n) for name, each in found.alone.items()})
 
 
 def transposed(given: LinearSystem) -> LinearSystem:
-    """The dual system: A', with outputs for inputs."""
+    """Return the dual system: A', with outputs in place of inputs."""
     exact = given.exact and given.exact.transposed()
     return LinearSystem(
         given.A.T, given.C.T, given.B.T, given.D.T, given.states, given.outputs, given.inputs, given.name, exact
@@ -90,7 +88,7 @@ def transposed(given: LinearSystem) -> LinearSystem:
 
 
 def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
-    """Orthogonal coordinates in which what the inputs reach comes first.
+    """Return orthogonal coordinates of which the first span the controllable subspace.
 
     Parameters
     ----------

@@ -1,14 +1,13 @@
-"""Matrices whose entries are rational: characteristic polynomial, Jordan blocks, signs and ranks, decided exactly.
+"""Matrices with rational entries: characteristic polynomial, Jordan blocks, signs and ranks, decided exactly.
 
 The characteristic polynomial is split by multiplicity, and where roots are multiple into irreducible factors f; the
-ranks of f(A), f(A)^2, ... tell the Jordan blocks. Roots are numbers with error bounds. How many of them lie on the
+ranks of f(A), f(A)^2, ... determine the Jordan blocks. Roots are numbers with error bounds. The number of roots on the
 imaginary axis is counted beforehand: those iw for which w is a real root of both parts of p(iw), that is, the roots of
-gcd(p(s), p(-s)) = e(s^2) for which e has a negative root. Bounds are narrowed until all others are off the axis.
-
-The matrices of a linearisation are fractions where the model and its numbers have none but rational ones. For these the
-generated functions are called with fractions in place of floats. Decimals count as written: a parameter of at most 15
-digits, and a number in a formula that is a simple fraction or has few digits. Wherever a root, a sine or a number of
-more digits comes in, the matrices are not known exactly.
+gcd(p(s), p(-s)) = e(s^2) for which e has a negative root. Bounds are narrowed until all others are off the axis. The
+matrices of a linearisation are fractions where the model and its parameters contain only rational numbers. For these
+the generated functions are called with fractions in place of floats. Decimals count as written: a parameter of at most
+15 digits, and a number in a formula that is a simple fraction or has few digits. Where a root, a sine or a number of
+more digits occurs, the matrices are not known exactly.
 """
 
 from __future__ import annotations
@@ -30,26 +29,26 @@ if TYPE_CHECKING:
     from flint import acb, fmpq, fmpq_mat, fmpz_poly
 
 BITS = 192
-"""Fewest bits to which roots of a polynomial are enclosed."""
+"""Least number of bits to which roots of a polynomial are enclosed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rational:
-    """The matrices of a linear system, exactly."""
+    """The exact matrices of a linear system with rational entries."""
 
     A: fmpq_mat
     B: fmpq_mat
     C: fmpq_mat
 
     def with_inputs(self, columns: Sequence[int]) -> Rational:
-        """Return the system with some of its inputs alone."""
+        """Return the system with only some of its inputs."""
         from flint import fmpq_mat
 
         chosen = [row[j] for row in self.B.tolist() for j in columns]
         return Rational(self.A, fmpq_mat(self.B.nrows(), len(columns), chosen), self.C)
 
     def transposed(self) -> Rational:
-        """The dual system."""
+        """Return the dual system."""
         return Rational(self.A.transpose(), self.C.transpose(), self.B.transpose())
 
 
@@ -58,23 +57,23 @@ class Root:
     """An eigenvalue, and the sizes of its Jordan blocks, the largest first."""
 
     value: acb
-    """Within an error bound, real or imaginary part exactly zero where they are."""
+    """The eigenvalue with an error bound; real or imaginary part exactly zero where they are."""
     blocks: tuple[int, ...]
 
     @property
     def rounded(self) -> complex:
-        """The nearest floats."""
+        """Return the eigenvalue rounded to the nearest floats."""
         return nearest(self.value)
 
 
 def nearest(value: acb) -> complex:
-    """The floats that are nearest to the midpoint; those of the library are cut off."""
+    """Return the floats nearest to the midpoint of a ball; the library's own conversion truncates."""
     parts = (part.mid().fmpq() for part in (value.real, value.imag))
     return complex(*(int(part.p) / int(part.q) for part in parts))
 
 
 def matrix(rows: ArrayLike | Sequence[Sequence[Fraction]]) -> fmpq_mat:
-    """A matrix from floats, each as the fraction that it is, or from fractions; shape (n, m)."""
+    """Return an exact matrix, shape (n, m), from floats, each as the fraction that it is, or from fractions."""
     from flint import fmpq_mat
 
     table = np.asarray(rows, dtype=object)
@@ -89,12 +88,12 @@ def _fraction(value: float | Fraction) -> fmpq:
 
 
 def characteristic(A: fmpq_mat) -> list[Fraction]:
-    """Coefficients of det(s - A), highest power first."""
+    """Return the coefficients of det(s - A), highest power first."""
     return [Fraction(int(c.p), int(c.q)) for c in reversed(A.charpoly().coeffs())]
 
 
 def roots(A: fmpq_mat) -> list[Root]:
-    """Distinct eigenvalues of a square matrix."""
+    """Return the distinct eigenvalues of a square matrix."""
     found: list[Root] = []
     for factor, multiplicity in A.charpoly().numer().factor_squarefree()[1]:
         if multiplicity == 1:
@@ -107,7 +106,10 @@ def roots(A: fmpq_mat) -> list[Root]:
 
 
 def _blocks(A: fmpq_mat, factor: fmpz_poly, multiplicity: int) -> tuple[int, ...]:
-    """Block sizes of each root of an irreducible factor f: f(A)^k loses a rank of deg f for each of size k or more."""
+    """Return the block sizes of each root of an irreducible factor f of a matrix A.
+
+    Each block of size k or more lowers the rank of f(A)^k by the degree of f.
+    """
     size, degree = A.nrows(), factor.degree()
     value = at(factor, A)
     ranks, power = [size], value
@@ -119,7 +121,7 @@ def _blocks(A: fmpq_mat, factor: fmpz_poly, multiplicity: int) -> tuple[int, ...
 
 
 def at(polynomial: fmpz_poly, A: fmpq_mat) -> fmpq_mat:
-    """A polynomial of a square matrix, by Horner's rule."""
+    """Evaluate a polynomial at a square matrix by Horner's rule."""
     from flint import fmpq_mat
 
     n = A.nrows()
@@ -131,7 +133,7 @@ def at(polynomial: fmpz_poly, A: fmpq_mat) -> fmpq_mat:
 
 
 def located(polynomial: fmpz_poly) -> list[acb]:
-    """Roots of a polynomial that has none twice; the real parts of those on the imaginary axis are exactly zero."""
+    """Return the roots of a polynomial without multiple roots; real parts on the imaginary axis are exactly zero."""
     from flint import acb, ctx
 
     degree, bits = polynomial.degree(), BITS
@@ -148,7 +150,7 @@ def located(polynomial: fmpz_poly) -> list[acb]:
 
 
 def _on_axis(polynomial: fmpz_poly) -> int:
-    """Number of roots on the imaginary axis, of a polynomial that has none twice."""
+    """Count the roots on the imaginary axis of a polynomial without multiple roots."""
     from flint import fmpz_poly
 
     coefficients = polynomial.coeffs()
@@ -165,7 +167,7 @@ def _complex_roots(polynomial: Any) -> list[acb]:
 
 
 def reached(A: fmpq_mat, B: fmpq_mat) -> tuple[int, list[Root]]:
-    """Dimension of what the inputs move, and the eigenvalues of the rest."""
+    """Return the dimension of the controllable subspace, and the uncontrollable eigenvalues."""
     from flint import fmpq_mat
 
     n = A.nrows()
@@ -193,21 +195,21 @@ def _pivots(rows: Iterable[Sequence[Any]]) -> list[int]:
 
 
 SIMPLE = 10_000
-"""Largest denominator of a simple fraction: of floats that are none, one in a hundred million looks like one."""
+"""Largest denominator of a simple fraction; of other floats, one in a hundred million looks like one."""
 DIGITS_OF_PARAMETERS, DIGITS_OF_FORMULAS = 15, 12
-"""Most digits of a number that is read as the decimal it prints as: of a parameter that a user wrote, and of a value of
-a formula. A float that was computed usually has more."""
+"""Most digits of a number that is read as its printed decimal: of a user's parameter, and of a value in a formula. A
+computed float usually has more."""
 
 SAME_AS_FLOATS = (0, 1)
-"""Numbers at which functions have exact values, as sin(0) and log(1), or one of too many digits."""
+"""Arguments at which functions have exact values, such as sin(0) and log(1)."""
 
 
 class NotRational(ArithmeticError):
-    """A number that is not known as a fraction."""
+    """A number is not known as a fraction."""
 
 
 class Ratio:
-    """A fraction, in formulas that are written for floats."""
+    """A fraction with the operations of floats, for formulas that are written for floats."""
 
     __slots__ = ("value",)
 
@@ -257,7 +259,7 @@ for _name in ("eq", "ne", "lt", "le", "gt", "ge"):
 
 
 def fraction(number: float | Ratio) -> Fraction:
-    """A number of a formula as a fraction.
+    """Return a number of a formula as a fraction.
 
     Raises
     ------
@@ -278,20 +280,20 @@ def fraction(number: float | Ratio) -> Fraction:
 
 
 def _written(number: float, digits: int) -> Fraction | None:
-    """The decimal that a float was read from; none if that has more digits."""
+    """Return the decimal that a float was read from; ``None`` if that has more digits."""
     shortest = repr(float(number))
     mantissa = shortest.partition("e")[0].replace(".", "").lstrip("-0").rstrip("0")
     return Fraction(shortest) if len(mantissa) <= digits else None
 
 
 def given(number: float) -> Any:
-    """A number that users gave, as a fraction; as the float that it is where it has too many digits."""
+    """Return a user's number as a fraction: its decimal, or the float itself where it has too many digits."""
     written = _written(number, DIGITS_OF_PARAMETERS)
     return number if written is None else Ratio(written)
 
 
 def exact_matrices(model: Kernels, parameters: Sequence[float], t0: float, point: Array) -> Rational | None:
-    """A, B and C where a model is linearised; ``None`` where they, or that point, are not known exactly.
+    """Return A, B and C of a linearisation; ``None`` where they, or its point, are not known exactly.
 
     Parameters
     ----------

@@ -1,11 +1,9 @@
-"""The Routh array of a polynomial with numbers for coefficients, special cases included.
+"""The Routh array of a polynomial with numeric coefficients, special cases included.
 
-A row of zeros tells that the row above it, as a polynomial, has its roots in pairs s, -s; its derivative takes the
-place of the row. A row that merely begins with k zeros is added to itself shifted left by k places, with the sign
-(-1)^k. With both, changes of sign in the first column count the roots with positive real parts in every case,
-which a small number in the place of a zero does not.
-
-Source: M. Benidir and B. Picinbono, Extended table for eliminating the singularities in Routh's array,
+Where a row is zero, the row above it, as a polynomial, has its roots in pairs s, -s; its derivative replaces the row. A
+row that begins with k zeros is added to itself shifted left by k places, with the sign (-1)^k. With both, changes of
+sign in the first column count the roots with positive real parts in every case, which a small number in the place of a
+zero does not. Source: M. Benidir and B. Picinbono, Extended table for eliminating the singularities in Routh's array,
 IEEE Transactions on Automatic Control 35 (1990).
 """
 
@@ -23,42 +21,42 @@ from satsym.status import BadInput
 
 ZERO_ELEMENT, ZERO_ROW = "zero in the first column", "row of zeros"
 CANCELLED = 1e-10
-"""A difference of floats is zero if it is smaller than this, relative to what was subtracted from one another."""
+"""Largest difference of floats that is zero, relative to the numbers that are subtracted."""
 
 Row: TypeAlias = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class Routh:
-    """A Routh array."""
+    """The Routh array of a polynomial, with its special cases."""
 
     rows: tuple[Row, ...]
-    """One for each power of s from the highest down, all of the same length; after what special cases ask for."""
+    """The rows, one for each power of s from the highest down, of equal length, after the rules for special cases."""
     special_cases: tuple[str, ...]
-    """What was met, in order: ``"zero in the first column"``, ``"row of zeros"``."""
+    """The special cases in order: ``"zero in the first column"``, ``"row of zeros"``."""
     sign_changes: int
-    """Along the first column: the number of roots with positive real parts."""
+    """Number of sign changes in the first column: the number of roots with positive real parts."""
     on_axis: int
     """Number of roots on the imaginary axis, counted with multiplicity."""
 
     @property
     def column(self) -> Row:
-        """The first column."""
+        """Return the first column of the Routh array."""
         return tuple(row[0] for row in self.rows)
 
     @property
     def rounded(self) -> Routh:
-        """The array in floats."""
+        """Return the array in floats."""
         return replace(self, rows=tuple(tuple(map(float, row)) for row in self.rows))
 
     @property
     def special_case(self) -> str | None:
-        """The special cases in words, each once; ``None`` where there is none."""
+        """Name the special cases that occurred, each once; ``None`` where there was none."""
         return " and ".join(dict.fromkeys(self.special_cases)) or None
 
 
 def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -> Routh:
-    """The Routh array of a polynomial.
+    """Return the Routh array of a polynomial.
 
     Whole numbers and fractions are reckoned with exactly. Of floats the array says what their roots say, never anything
     else: where rounding would have it contradict them, it is the exact array of the polynomial that has these roots.
@@ -90,7 +88,7 @@ def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -
 
 
 def _roots(coefficients: Sequence[float]) -> list[complex]:
-    """Eigenvalues of the companion matrix, those on the axis within what rounding does to the coefficients there."""
+    """Return the eigenvalues of the companion matrix, on the axis where rounding of the coefficients allows."""
     monic = [value / coefficients[0] for value in coefficients]
     if len(monic) == 1:
         return []
@@ -98,7 +96,7 @@ def _roots(coefficients: Sequence[float]) -> list[complex]:
 
 
 def _with_roots(leading: float, roots: Sequence[complex]) -> list[Fraction]:
-    """The polynomial with these roots, exactly; complex ones are taken with their conjugates."""
+    """Return the exact polynomial with these roots; complex ones are taken with their conjugates."""
     found = [Fraction(leading)]
     for root in roots:
         real, imaginary = Fraction(root.real), Fraction(root.imag)
@@ -114,7 +112,7 @@ def _with_roots(leading: float, roots: Sequence[complex]) -> list[Fraction]:
 
 
 def _array(given: Sequence[Any], limit: float) -> Routh:
-    """The array by its rule; differences that cancel to less than a share of their terms are zero."""
+    """Compute the array by its rule; differences that cancel to a small fraction of their terms are zero."""
     degree = len(given) - 1
     width = degree // 2 + 1
     above, row = (_padded(given[start::2], width) for start in (0, 1))
@@ -147,7 +145,7 @@ def _shifted(row: Row) -> Row:
 
 
 def _next(above: Row, row: Row, limit: float) -> Row:
-    """The row that follows from two; what cancels but for rounding is zero."""
+    """Compute a row from the two above it; differences that cancel up to rounding are zero."""
     ratio = above[0] / row[0]
     found = []
     for upper, lower in zip(above[1:], row[1:], strict=True):

@@ -1,10 +1,10 @@
-"""Eigenvalues with their multiplicities and Jordan blocks: decided exactly, or by how far a matrix is from others.
+"""Eigenvalues with multiplicities and Jordan blocks, decided exactly or by the distance from other matrices.
 
 Rational matrices are decided exactly (:mod:`satsym.analysis.linear.rational`). So are floats, as the fractions that
-they are; but each of their entries may have been rounded, and a multiple eigenvalue of what was meant is then several
-that are next to one another. Neighbours are therefore tried as one, and so are real parts as zero, and it counts how
-large relative changes of the entries must be for that (:mod:`satsym.analysis.linear.nearby`): up to ``ROUNDING`` it is
-so, from ``KNOWN`` on it is not, and in between nobody can tell.
+they are; but each of their entries may have been rounded, which splits a multiple eigenvalue into several close ones.
+Neighbours are therefore tried as one, and real parts as zero, by how large the relative changes of the entries must be
+for that (:mod:`satsym.analysis.linear.nearby`): up to ``ROUNDING`` they are taken as one or as zero, from ``KNOWN`` on
+they are not, and in between it is undecided.
 """
 
 from __future__ import annotations
@@ -23,43 +23,44 @@ from satsym.analysis.linear.system import LinearSystem, scaled, system
 from satsym.arrays import Array
 
 ROUNDING, KNOWN = 2e-15, 1e-12
-"""Relative changes of all entries together: below the first they come from rounding, above the second they do not."""
+"""Relative changes of all entries together: up to the first they may come from rounding, from the second on they do
+not."""
 
 SMALLEST_ENTRY = 1e-15
-"""An entry that is smaller than this may be what rounding has left of zero: relative to the largest in suitable units,
-or, in the units as given, to both entries of the diagonal beside it."""
+"""An entry that is smaller than this may be rounding of zero: relative to the largest in suitable units, or, in the
+units as given, to both entries of the diagonal beside it."""
 
 DISTANT = 1e-4
-"""The m-th root of this, relative to the size of the matrix, parts numbers that are not tried as one."""
+"""Its m-th root, times the size of the matrix, is the distance from which numbers are not tried as one."""
 
 LARGEST_CHANGE, MOST_MIXED = 1e-5, 7
-"""Up to this relative change, and so many at most, numbers nearly are one, so that parts of them are tried, too."""
+"""Relative change, and number of eigenvalues, up to which parts of a group are tried as one, too."""
 
 Values = NDArray[np.complexfloating]
 
 
 @dataclass(frozen=True)
 class Eigenvalue:
-    """An eigenvalue of a matrix."""
+    """An eigenvalue of a matrix, with the sizes of its Jordan blocks."""
 
     value: complex
-    """Exactly real, or exactly on the imaginary axis, where it is so."""
+    """The eigenvalue, exactly real, or exactly on the imaginary axis, where that is decided."""
     blocks: tuple[int, ...]
-    """Sizes of its Jordan blocks, the largest first."""
+    """Sizes of the eigenvalue's Jordan blocks, the largest first."""
 
     @property
     def algebraic(self) -> int:
-        """Multiplicity as a root of the characteristic polynomial."""
+        """Return the multiplicity as a root of the characteristic polynomial."""
         return sum(self.blocks)
 
     @property
     def geometric(self) -> int:
-        """Number of independent eigenvectors."""
+        """Return the number of independent eigenvectors."""
         return len(self.blocks)
 
 
 def spectrum(A: Array, noise: float = 0.0) -> tuple[Eigenvalue, ...]:
-    """Eigenvalues of a real square matrix, the largest real part first.
+    """Return the eigenvalues of a real square matrix, the largest real part first.
 
     Parameters
     ----------
@@ -72,9 +73,9 @@ def spectrum(A: Array, noise: float = 0.0) -> tuple[Eigenvalue, ...]:
 
 
 def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, ...], ...]:
-    """What the eigenvalues of a system may be: one possibility, or more where its entries are not known well enough.
+    """Return the possible spectra of a system: one, or more where its entries are not known precisely enough.
 
-    The first takes for equal, or zero, whatever may be.
+    The first one takes all values for equal, or zero, that may be so.
     """
     if given.exact is not None:
         return (of_roots(rational.roots(given.exact.A)),)
@@ -96,7 +97,7 @@ def spectra(given: LinearSystem, noise: float = 0.0) -> tuple[tuple[Eigenvalue, 
 
 
 def _faint_as_given(size: Array) -> NDArray[np.bool_]:
-    """Whether entries, in the units in which they were rounded, are faint beside both entries of the diagonal.
+    """Tell whether entries, in the units of rounding, are negligible beside both entries of the diagonal.
 
     Other units can make such an entry as large as any, for example 1e-16 above the diagonal of a unit matrix.
     """
@@ -105,7 +106,7 @@ def _faint_as_given(size: Array) -> NDArray[np.bool_]:
 
 
 def of_roots(found: Sequence[rational.Root]) -> tuple[Eigenvalue, ...]:
-    """Exact eigenvalues, rounded."""
+    """Return exact eigenvalues rounded to floats."""
     return _sorted([Eigenvalue(root.rounded, root.blocks) for root in found])
 
 
@@ -114,7 +115,7 @@ def _sorted(found: list[Eigenvalue]) -> tuple[Eigenvalue, ...]:
 
 
 class _Tried:
-    """A matrix of floats, its exact eigenvalues, and what has been tried as one."""
+    """A matrix of floats with its exact eigenvalues, and the groups of them that were tried as one."""
 
     def __init__(self, A: Array, entries: Array, other: _Tried | None = None) -> None:
         self.A, self.entries = A, entries
@@ -126,9 +127,10 @@ class _Tried:
         self.groups: dict[tuple[int, ...], tuple[Group, float]] = {}
 
     def within(self, change: float, rate: float) -> list[tuple[Eigenvalue, ...]]:
-        """The eigenvalues if relative changes of this size are none.
+        """Return the possible spectra if relative changes of this size are neglected.
 
-        Two groups may both be zero, and yet not a single eigenvalue: then that they are one comes second.
+        Two groups may both be zero, and yet not a single eigenvalue: then the spectrum in which they are one comes
+        second.
         """
         parts = list(self._told_apart(tuple(range(len(self.exact))), change))
         resting = [members for members in parts if self._one(members, change)[0] == 0.0]
@@ -159,7 +161,7 @@ class _Tried:
         return value, tried.blocks(change) if len(members) > 1 else (1,)
 
     def _told_apart(self, members: tuple[int, ...], change: float) -> Iterator[tuple[int, ...]]:
-        """Members of each eigenvalue; of two conjugate ones that above the real axis alone."""
+        """Return the members of each distinct eigenvalue; of two conjugate ones only the upper one."""
         if self._one_sided(members) < 0:
             return
         if self._single(members, change):
@@ -177,9 +179,9 @@ class _Tried:
         return self._plausible(members) and self._tried(members)[0].single(change)
 
     def _largest_part(self, members: tuple[int, ...], change: float) -> tuple[int, ...]:
-        """The most of some eigenvalues that may be a single one, where all of them nearly are; else none.
+        """Return the largest set of eigenvalues that may be a single one, where all nearly are; else ``None``.
 
-        Where a multiple eigenvalue is spread as far as the next one is away, nearest neighbours need not belong
+        Where a multiple eigenvalue is spread as far as the distance to the next one, nearest neighbours need not belong
         together.
         """
         if not 2 < len(members) <= MOST_MIXED or not self._plausible(members):
@@ -202,11 +204,11 @@ class _Tried:
         return int(signs[0]) if (signs == signs[0]).all() else 0
 
     def _closed(self, members: Sequence[int]) -> bool:
-        """Whether each of these is real, or has its conjugate among them."""
+        """Tell whether each of these eigenvalues is real, or has its conjugate among them."""
         return abs(sum(np.sign(self.numbers[list(members)].imag))) == 0
 
     def _tried(self, members: tuple[int, ...]) -> tuple[Group, float]:
-        """The group, and how far its mean is off the axis."""
+        """Return the group of some eigenvalues, and how far its mean is off the imaginary axis."""
         if members not in self.groups:
             inside = [self.exact[k] for k in members]
             outside = [self.exact[k] for k in range(len(self.exact)) if k not in members]
@@ -216,7 +218,7 @@ class _Tried:
 
 
 def _halves(numbers: Values, members: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Numbers in two parts that are as far from one another as can be."""
+    """Split numbers into two parts that are as far from each other as possible."""
     from scipy.cluster.hierarchy import linkage, to_tree
 
     pairs, chosen = np.triu_indices(len(members), 1), numbers[list(members)]
@@ -230,20 +232,20 @@ UNDECIDED = "undecided"
 
 @dataclass(frozen=True)
 class Stability:
-    """A verdict on x' = A x."""
+    """A verdict on the stability of x' = A x with its reason."""
 
     verdict: str | None
-    """``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``"undecided"`` where the entries of the
-    matrix are not known well enough, and ``None`` where eigenvalues decide nothing."""
+    """``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``"undecided"`` where the entries are not
+    known precisely enough, and ``None`` where eigenvalues decide nothing."""
     reason: str
-    """In a sentence: the eigenvalue that decides, and why."""
+    """A sentence with the eigenvalue that decides."""
     decides: bool
-    """Whether the same holds for small deviations from the equilibrium of a nonlinear system that this is the
-    linearisation of (Lyapunov's indirect method): not where eigenvalues on the imaginary axis had to decide."""
+    """Whether the verdict holds for small deviations of the nonlinear system, too (Lyapunov's indirect method): not
+    where eigenvalues on the imaginary axis decide."""
 
 
 def stability(eigenvalues: Sequence[Eigenvalue], *others: Sequence[Eigenvalue]) -> Stability:
-    """The verdict that eigenvalues and Jordan blocks give.
+    """Decide stability from eigenvalues and Jordan blocks.
 
     Parameters
     ----------
@@ -286,7 +288,7 @@ def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
 
 
 def shown(value: complex) -> str:
-    """An eigenvalue, or the pair that a complex one forms with its conjugate, in a sentence."""
+    """Write an eigenvalue, or a complex one with its conjugate, in a sentence."""
     if value.imag == 0.0:
         return f"{value.real + 0.0:.6g}"
     real = f"{value.real:.6g} " if value.real else ""
@@ -294,11 +296,11 @@ def shown(value: complex) -> str:
 
 
 CANCELLED_COEFFICIENT = 1e-13
-"""A coefficient that is smaller than this, relative to what it would be if nothing in it cancelled, is zero."""
+"""Largest coefficient that is zero, relative to its size if none of its terms cancelled."""
 
 
 def characteristic(A: Array) -> Array:
-    """Coefficients of det(s - A), highest power first, the first one 1; shape (n + 1,)."""
+    """Return the coefficients of det(s - A), highest power first, the first one 1; shape (n + 1,)."""
     values = np.array([each.value for each in spectrum(A) for _ in range(each.algebraic)])
     rate = float(np.abs(values).max()) or 1.0
     coefficients, largest = np.poly(values / rate).real, np.poly(-np.abs(values / rate))
@@ -307,7 +309,7 @@ def characteristic(A: Array) -> Array:
 
 
 def companion_matrix(coefficients: Sequence[float] | Array) -> Array:
-    """The matrix with this monic characteristic polynomial, its coefficients negated in the last row, lowest first."""
+    """Return the companion matrix of a monic polynomial: negated coefficients in the last row, lowest first."""
     n = len(coefficients) - 1
     found = np.eye(n, k=1)
     found[-1] = -np.asarray(coefficients)[:0:-1]

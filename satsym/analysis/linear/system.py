@@ -1,9 +1,9 @@
-"""Linear systems x' = A x + B u, y = C x + D u, with the names of what they are made of, and units that suit them.
+"""Linear systems x' = A x + B u, y = C x + D u, with the names of their variables, and units that suit them.
 
-Ranks and multiplicities are decided by comparing numbers with a tolerance. In km and s a satellite's matrices hold
-1 beside 1e-9, and any tolerance would be fooled. So every state, input and output is given a unit of its own, and
-time one for all, such that the logarithms of the nonzero entries are as near to zero as they can be. Two systems
-that differ in their units alone become the same system.
+Ranks and multiplicities are decided by comparing numbers with a tolerance. In km and s a satellite's matrices hold 1
+beside 1e-9, and any tolerance would fail. So every state, input and output is given a unit of its own, and time one for
+all, such that the logarithms of the nonzero entries are as near to zero as possible. Two systems that differ in their
+units alone become the same system.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ class LinearSystem:
     B: Array
     C: Array
     D: Array
-    """Shapes (n, n), (n, m), (k, n) and (k, m)."""
+    """The matrices A, B, C and D, shapes (n, n), (n, m), (k, n) and (k, m)."""
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     """Names of the n states, m inputs and k outputs."""
     name: str = ""
-    """What it is the linearisation of."""
+    """Name of the system, or of the model that it linearises."""
     exact: Rational | None = None
-    """A, B and C exactly, where they are known so."""
+    """The exact A, B and C, where they are known."""
 
     def with_inputs(self, names: Sequence[str]) -> LinearSystem:
-        """The system with these inputs alone, in this order.
+        """Return the system with only the given inputs, in this order.
 
         Raises
         ------
@@ -61,17 +61,17 @@ class LinearSystem:
         return replace(self, B=self.B[:, columns], D=self.D[:, columns], inputs=tuple(names), exact=exact)
 
     def with_feedback(self, K: Array) -> LinearSystem:
-        """The closed loop under u = v - K x, with v for u: A becomes A - B K, and C becomes C - D K."""
+        """Return the closed loop under u = v - K x, with v as input: A becomes A - B K, and C becomes C - D K."""
         return replace(self, A=self.A - self.B @ K, C=self.C - self.D @ K, exact=None)
 
     def transition(self, t: float) -> Array:
-        """e^(At): the state after a time t without control, from each unit state; shape (n, n)."""
+        """Return e^(At): the state after a time t without control, from each unit state; shape (n, n)."""
         from scipy.linalg import expm
 
         return np.asarray(expm(self.A * t))
 
     def to_control(self) -> control.StateSpace:
-        """The system for python-control, with its names.
+        """Return the system as one of python-control, with its names.
 
         Raises
         ------
@@ -106,7 +106,7 @@ def system(
     name: str = "",
     exact: Rational | None = None,
 ) -> LinearSystem:
-    """A linear system from matrices.
+    """Build a linear system from matrices.
 
     Parameters
     ----------
@@ -163,35 +163,35 @@ def _numbered(letter: str, count: int) -> tuple[str, ...]:
 
 
 TOO_SMALL = 0.1
-"""What it costs that an entry comes out too small, relative to one too large: nothing that is near zero, or is so but
-for rounding, shall be blown up to match the rest."""
+"""Penalty of an entry that is too small after scaling, relative to one too large: entries near zero, or zero up to
+rounding, are not to be enlarged."""
 MOST_ROUNDS, LAST_EXPONENT_CHANGE = 50, 0.05
-"""Most rounds of reweighting, and the change of an exponent of two below which the weights have settled."""
+"""Most rounds of reweighting, and the change of an exponent of two below which the weights have converged."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
-    """A system in units that suit it: x = states * x', u = inputs * u', y = outputs * y', d/dt = rate * d/dt'."""
+    """A system in suitable units: x = states * x', u = inputs * u', y = outputs * y', d/dt = rate * d/dt'."""
 
     A: Array
     B: Array
     C: Array
-    """Matrices of the system in the units that suit it."""
+    """The matrices of the system in suitable units."""
     states: Array
     inputs: Array
     outputs: Array
-    """The units, powers of two, so that scaling adds no rounding error."""
+    """The units of states, inputs and outputs: powers of two, so that scaling adds no rounding error."""
     rate: float
-    """Likewise, the inverse of the unit of time."""
+    """The inverse of the unit of time, also a power of two."""
 
     @property
     def size(self) -> float:
-        """Largest singular value of A and B side by side, with which tolerances are multiplied; 1 if all is zero."""
+        """Return the largest singular value of (A B), by which tolerances are multiplied; 1 if all is zero."""
         return float(np.linalg.norm(np.hstack([self.A, self.B]), 2)) or 1.0
 
 
 def scaled(system: LinearSystem) -> Scaled:
-    """The system in the units that suit it best."""
+    """Return the system in the units that suit it best."""
     n, m, k = len(system.states), len(system.inputs), len(system.outputs)
     # powers of two: units of states, inputs, outputs, and the rate
     exponents = np.rint(_fit(system, n, m, k)).astype(int)
@@ -208,7 +208,10 @@ def scaled(system: LinearSystem) -> Scaled:
 
 
 def _fit(system: LinearSystem, n: int, m: int, k: int) -> Array:
-    """Exponents that bring the nonzero entries near 1: least sum of their absolute logarithms, by reweighting."""
+    """Return exponents of units that bring the nonzero entries near 1.
+
+    They have the smallest sum of absolute logarithms, found by reweighted least squares.
+    """
     rows, sizes = [], []
     last = n + m + k
     for matrix, row_unit, column_unit, per_time in (

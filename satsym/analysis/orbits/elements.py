@@ -1,9 +1,9 @@
 """Elements of an orbit: its size, shape and attitude, from a position and a velocity.
 
 Energy and the deviation from a circle are differences that may cancel; the first is therefore computed with 32 digits,
-and the eccentricity from its components along and across the radius, which do not suffer near a parabola. Angles that
-mean nothing are ``None``, those that are counted from something that is not there are counted from what is (see
-:class:`Elements`). Formulas: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, chapter 3.
+and the eccentricity from its components along and across the radius, which are accurate near a parabola. Angles without
+a meaning are ``None``; angles from a direction that does not exist are counted from another (see :class:`Elements`).
+Formulas: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, chapter 3.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ a nearly circular ellipse is an ellipse.
 
 
 class Conic(str, Enum):
-    """What the path is; ``rectilinear`` without angular momentum, whatever the energy."""
+    """The kind of conic section of a path; ``rectilinear`` without angular momentum, whatever the energy."""
 
     CIRCLE = "circle"
     ELLIPSE = "ellipse"
@@ -39,7 +39,7 @@ class Conic(str, Enum):
 
 
 def classify(eccentricity: float, shortfall: float, sine: float) -> Conic:
-    """The kind of an orbit.
+    """Return the kind of an orbit.
 
     Parameters
     ----------
@@ -61,12 +61,12 @@ def classify(eccentricity: float, shortfall: float, sine: float) -> Conic:
 
 
 REACH = 100.0
-"""Decades on both sides of 1 within which lengths, speeds and times must lie, so that their squares are floats."""
+"""Largest power of ten of lengths, speeds and times, up or down, so that their squares are floats."""
 
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """An orbit about one centre, in the units of the position, the velocity and mu it was computed from.
+    """The elements of an orbit about one centre, in the units of the position, velocity and mu they come from.
 
     Attributes
     ----------
@@ -125,22 +125,22 @@ class Elements:
 
     @property
     def bound(self) -> bool:
-        """Whether the distance stays bounded."""
+        """Tell whether the distance from the centre stays bounded."""
         return self.apoapsis is not None
 
     @property
     def distance(self) -> float:
-        """Distance of the start from the centre of attraction."""
+        """Return the distance of the start from the centre of attraction."""
         return float(np.linalg.norm(self.position))
 
     @property
     def mean_motion(self) -> float | None:
-        """Mean angular velocity, ``None`` where nothing returns."""
+        """Return the mean angular velocity, ``None`` for orbits that are not periodic."""
         return None if self.period is None else 2.0 * np.pi / self.period
 
 
 def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
-    """The elements of one orbit.
+    """Compute the elements of one orbit.
 
     Parameters
     ----------
@@ -202,7 +202,10 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
 
 
 def _scalars(states: States) -> dict[str, float]:
-    """What the shape follows from; ``binding`` is 2 mu/r - v^2, ``rate`` the scalar product of radius and velocity."""
+    """Return the scalars of a state that determine the shape of its orbit.
+
+    ``binding`` is 2 mu/r - v^2, ``rate`` the scalar product of radius and velocity.
+    """
     r, v, mu = states.position[:, 0], states.velocity[:, 0], states.mu[0]
     with np.errstate(all="ignore"):
         radius = dd.root(dd.dot(r, r))
@@ -235,7 +238,7 @@ class _Attitude:
 
     @classmethod
     def of(cls, states: States, conic: Conic, anomaly: float) -> _Attitude:
-        """Where a body is on its conic, from the true anomaly, which a circle does not have."""
+        """Return the axes and angles of a body on its conic, from the true anomaly, which a circle does not have."""
         outward = states.position[:, 0] / np.linalg.norm(states.position[:, 0])
         if conic is Conic.RECTILINEAR:
             return cls(None, None, None, None, outward, _across(outward))
@@ -261,13 +264,13 @@ class _Attitude:
 
 
 def _turn(angle: float) -> float:
-    """The angle from 0 to 2 pi."""
+    """Return an angle reduced to the range from 0 to 2 pi."""
     found = float(angle) % (2.0 * np.pi)
     return 0.0 if found == 2.0 * np.pi else found
 
 
 def _across(direction: Array) -> Array:
-    """Some unit vector at right angles: where there is no plane, any will do."""
+    """Return a unit vector at right angles to a direction: any one, where no plane is defined."""
     other = np.zeros(3)
     other[int(np.argmin(np.abs(direction)))] = 1.0
     found = np.cross(direction, other)

@@ -1,4 +1,4 @@
-"""Floquet multipliers of an orbit: what they are, what computed ones resolve, and what stability follows.
+"""Floquet multipliers of an orbit: their exact values, the accuracy of computed ones, and stability.
 
 All six multipliers of a closed orbit are exactly 1, with one Jordan block of size 2 (see
 :mod:`satsym.analysis.orbits.monodromy`). An eigenvalue with such a block moves by the square root of a change of its
@@ -23,9 +23,9 @@ from satsym.solvers.simulation.extrapolation import NotFinite
 COMPUTED, NO_PERIOD, COLLISION, NOT_RESOLVED = "computed", "no period", "collision", "not resolved"
 VERDICT = "Lyapunov unstable, orbitally stable"
 FASTER = 1e-6
-"""Share of the speed by which the neighbour is faster that notes speak of."""
+"""Relative difference of speed of the neighbour in the notes."""
 LOST = 1e-3
-"""Errors of a monodromy matrix above this, relative to its growth, leave nothing to be told from it."""
+"""Largest error of a monodromy matrix, relative to its growth, from which multipliers are computed."""
 _LEAVING = (
     "Neighbouring orbits depart in other directions and at other speeds, so the distances between them grow in "
     "proportion to time."
@@ -38,14 +38,15 @@ _ON_THE_BORDER = (
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """What one revolution makes of neighbouring motions."""
+    """The Floquet multipliers of an orbit, or the reason why it has none."""
 
     status: str
-    """``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``."""
+    """``"computed"``, or the reason why there are no multipliers: ``"no period"``, ``"collision"``, ``"not resolved"``.
+    """
     orbit: Elements
     """Closed orbit whose neighbours the multipliers describe."""
     monodromy: Monodromy | None
-    """``None`` unless computed, as are all other numbers here."""
+    """The monodromy matrix; ``None`` unless computed, as are all other numbers of this record."""
     multipliers: Complex | None
     """Floquet multipliers: eigenvalues of the monodromy matrix, shape (6,)."""
     turning: HillEquations | None
@@ -53,22 +54,22 @@ class Floquet:
 
     @property
     def verdict(self) -> str | None:
-        """Stability verdict of a closed orbit: it follows from the closed form, without computed multipliers."""
+        """Return the stability verdict of a closed orbit, from the closed form without computed multipliers."""
         return None if self.orbit.period is None else VERDICT
 
     @property
     def scatter(self) -> float | None:
-        """Largest distance of a computed multiplier from 1."""
+        """Return the largest distance of a computed multiplier from 1."""
         return None if self.multipliers is None else float(np.abs(self.multipliers - 1.0).max())
 
     @property
     def expected_scatter(self) -> float | None:
-        """Up to which the error of the matrix may scatter them: the root of error times growth."""
+        """Return the scatter that the error of the matrix may cause: the root of error times growth."""
         return None if self.monodromy is None else float(np.sqrt(self.monodromy.error * self.monodromy.growth))
 
     @property
     def lag(self) -> float | None:
-        """Distance by which a neighbour faster at the start by the share ``FASTER`` falls behind in a revolution."""
+        """Return the distance by which a neighbour, faster at the start by ``FASTER``, falls behind in a revolution."""
         orbit = self.orbit
         if orbit.period is None or orbit.semi_major_axis is None:
             return None
@@ -77,7 +78,7 @@ class Floquet:
 
     @property
     def note(self) -> str:
-        """What the verdict means, and what the numbers cannot show; or why there are none."""
+        """Explain what the verdict means and what the numbers cannot show, or why there are no multipliers."""
         if self.status == COLLISION:
             return (
                 "The motion is along a line and reaches the centre, where its equations are singular: the "
@@ -126,7 +127,7 @@ class Floquet:
 
 
 def floquet(orbit: Elements) -> Floquet:
-    """The multipliers of an orbit, or why it has none; see :class:`Floquet`."""
+    """Compute the Floquet multipliers of an orbit, or find why it has none; see :class:`Floquet`."""
     if orbit.period is None:
         falls = orbit.conic is Conic.RECTILINEAR and (orbit.bound or float(orbit.position @ orbit.velocity) < 0.0)
         return Floquet(COLLISION if falls else NO_PERIOD, orbit, None, None, None)
@@ -141,7 +142,7 @@ def floquet(orbit: Elements) -> Floquet:
 
 
 def _in_order(values: Complex) -> Complex:
-    """Farthest outside the unit circle first, conjugates together."""
+    """Sort multipliers, farthest outside the unit circle first, conjugates together."""
     order = sorted(values.tolist(), key=lambda value: (-abs(value), value.real, -value.imag))
     return np.array(order)
 
@@ -152,7 +153,7 @@ def _called(orbit: Elements) -> str:
 
 MODEL = "hill"
 NEARLY_CIRCULAR = 0.1
-"""Up to this eccentricity Hill's equations say something of an orbit: they leave out what is of its order."""
+"""Largest eccentricity for which Hill's equations are compared; they neglect terms of this order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +169,7 @@ class HillEquations:
 
 
 def hill_equations(orbit: Elements) -> HillEquations | None:
-    """The linearisation in turning axes; ``None`` unless the orbit is nearly circular."""
+    """Return Hill's equations about an orbit; ``None`` unless the orbit is nearly circular."""
     if orbit.mean_motion is None or orbit.semi_major_axis is None or orbit.eccentricity > NEARLY_CIRCULAR:
         return None
     model = kernels.load(MODEL)

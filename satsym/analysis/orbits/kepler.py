@@ -1,4 +1,4 @@
-"""Motion about a centre of attraction in closed form, on every conic: what integrators are held against.
+"""Kepler motion in closed form, on every conic, by which integrators are checked.
 
 With the universal anomaly s, dt = r ds, the equations become linear (Levi-Civita, Sundman). In the plane of the orbit,
 position and velocity are z^2 and 2 z z'/|z|^2 of a complex z(s) that swings at half the frequency w = sqrt(binding),
@@ -24,7 +24,7 @@ from satsym.analysis.orbits.states import States, checked, refuse_first
 from satsym.arrays import Array
 
 BLOCK = 4096
-"""Columns at a time, so that what is computed from them stays in the cache."""
+"""Number of columns computed at a time, so that intermediate arrays stay in the cache."""
 
 SERIES = tuple(1.0 / factorial(2 * k + 3) for k in range(11))
 SERIES_REACH = 4.0
@@ -32,21 +32,21 @@ SERIES_REACH = 4.0
 
 MOST_ITERATIONS = 60
 LAST_CHANGE = 1e-7
-"""Relative change after which the next one, being of third order, is below rounding."""
+"""Relative change after which the iteration ends, since the next one, of third order, is below rounding."""
 SLACK = 1.0 + 1e-9
-"""Upper bounds are raised by this much, for they are computed with rounding."""
+"""Factor by which upper bounds are increased, because they are computed with rounding."""
 INNER = 0.5
-"""Motion inward counts from periapsis where mu - binding r is above this share of mu: r < a/2, or no ellipse."""
+"""Fraction of mu above which mu - binding r makes inward motion count from periapsis: r < a/2, or no ellipse."""
 
 PI = (np.pi, 1.2246467991473532e-16)
-"""With 32 digits, as head and tail."""
+"""The number pi with 32 digits, as head and tail."""
 
 Bools: TypeAlias = NDArray[np.bool_]
 Complex: TypeAlias = NDArray[np.complex128]
 
 
 def propagate(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: ArrayLike) -> tuple[Array, Array]:
-    """Position and velocity after a time, in closed form.
+    """Compute position and velocity after a time, in closed form.
 
     Parameters
     ----------
@@ -90,15 +90,15 @@ def propagate(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration:
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """Scalars of the start, shape (N,), and the time from there."""
+    """The scalars of the start of a Kepler motion, shape (N,), and the time to propagate."""
 
     radius: Array
     rate: Array
-    """r, and r r_dot: the scalar product of position and velocity."""
+    """Distance r, and r r_dot: the scalar product of position and velocity."""
     momentum: Array
     """Size of the angular momentum."""
     binding: Array
-    """2 mu/r - v^2: minus twice the energy."""
+    """The number 2 mu/r - v^2: minus twice the energy."""
     mu: Array
     duration: Array
 
@@ -107,7 +107,7 @@ class _Motion:
 
 
 def _block(given: States) -> tuple[Array, Array, Bools]:
-    """Position and velocity, and whether that is behind a collision."""
+    """Return position and velocity after a time, and whether they lie behind a collision with the centre."""
     r, v, mu = given.position, given.velocity, given.mu
     zero = np.zeros_like(mu)
     radius = dd.root(dd.dot(r, r))
@@ -136,7 +136,7 @@ def _block(given: States) -> tuple[Array, Array, Bools]:
 
 
 def _within_a_turn(duration: Array, mu: Array, binding: dd.Pair) -> tuple[Array, Bools]:
-    """The duration less whole revolutions, at most half of one; and whether there were any."""
+    """Reduce a duration by whole revolutions to at most half of one, and tell whether there were any."""
     zero = np.zeros_like(mu)
     period = dd.divide(dd.multiply((2.0 * PI[0], 2.0 * PI[1]), (mu, zero)), dd.multiply(binding, dd.root(binding)))
     turns = np.where(binding[0] > 0.0, np.rint(duration / period[0]), 0.0)
@@ -146,7 +146,7 @@ def _within_a_turn(duration: Array, mu: Array, binding: dd.Pair) -> tuple[Array,
 
 
 Waves: TypeAlias = Callable[[Array, Array], tuple[Array, Array]]
-"""From w and s to cos(w s/2) and sin(w s/2)/w, or the hyperbolic ones: the U functions of half the anomaly."""
+"""Functions from w and s to cos(w s/2) and sin(w s/2)/w, or to the hyperbolic ones: U functions of half the anomaly."""
 
 
 def _circular(w: Array, s: Array) -> tuple[Array, Array]:
@@ -160,9 +160,9 @@ def _hyperbolic(w: Array, s: Array) -> tuple[Array, Array]:
 
 
 def _fly(start: _Motion, waves: Waves) -> tuple[Complex, Complex, Bools]:
-    """Position and velocity in the plane, real parts along the radius of the start; and what meets the centre.
+    """Return position and velocity in the plane of the orbit, and which motions meet the centre.
 
-    The last holds for radial motion only.
+    Real parts are along the radius of the start. Only radial motions meet the centre.
     """
     mu, binding, duration = start.mu, start.binding, start.duration
     w = np.sqrt(np.abs(binding))
@@ -214,7 +214,7 @@ def _square(z: Complex) -> Array:
 
 
 def _third(binding: Array, s: Array, cosine: Array, sine: Array) -> Array:
-    """U3: (w s - sin(w s)) / w^3, or (sinh(w s) - w s) / w^3, or s^3 / 6 between them."""
+    """Return the universal function U3: (w s - sin(w s)) / w^3, (sinh(w s) - w s) / w^3, or s^3 / 6 between them."""
     square = binding * s * s
     value = np.full_like(s, SERIES[-1])
     for term in SERIES[-2::-1]:
@@ -223,7 +223,7 @@ def _third(binding: Array, s: Array, cosine: Array, sine: Array) -> Array:
 
 
 def _anomaly(start: _Motion, rate: Array, w: Array, waves: Waves) -> Array:
-    """The s >= 0 at which radius U1 + rate U2 + mu U3 is the duration, which is not negative."""
+    """Return the s >= 0 at which radius U1 + rate U2 + mu U3 is the duration, which is not negative."""
     radius, mu, binding, duration = start.radius, start.mu, start.binding, start.duration
     low, (s, high) = np.zeros_like(mu), (_bounds if waves is _circular else _open_bounds)(start, rate, w)
     for _ in range(MOST_ITERATIONS):
@@ -245,10 +245,10 @@ def _anomaly(start: _Motion, rate: Array, w: Array, waves: Waves) -> Array:
 
 
 def _bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
-    """Where Kepler's equation of an ellipse begins to be solved, for at most half a revolution, and an upper bound.
+    """Return the initial guess of Kepler's equation on an ellipse, for at most half a revolution, and an upper bound.
 
-    Outward from the start, no term of Kepler's equation is negative, and w s is at most half a turn. There each of
-    the three bounds s; together they leave a factor of a few.
+    Outward from the start, no term of Kepler's equation is negative, and w s is at most half a turn. There each of the
+    three bounds s; together they leave a factor of a few.
     """
     mu, duration, axis = start.mu, start.duration, start.mu / start.binding
     least = np.minimum(duration / np.minimum(start.radius, axis), np.cbrt(np.pi**2 * duration / mu))
@@ -259,7 +259,7 @@ def _bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
 
 
 def _open_bounds(start: _Motion, rate: Array, w: Array) -> tuple[Array, Array]:
-    """Where Kepler's equation of an open orbit begins to be solved, outward, and a bound: each term of it bounds s."""
+    """Return the initial guess of Kepler's equation on an open orbit, outward, and an upper bound by its terms."""
     duration, mean = start.duration, w**3 * start.duration / start.mu
     cubic = np.cbrt(6.0 * duration / start.mu)
     flat = np.minimum(duration / start.radius, cubic)

@@ -1,4 +1,4 @@
-"""The monodromy matrix of a closed orbit: what a revolution makes of small deviations.
+"""The monodromy matrix of a closed orbit: the effect of a revolution on small deviations.
 
 In Cartesian coordinates, with f the rates of change and E the energy per unit mass, it is exactly
 
@@ -24,7 +24,7 @@ from satsym.kernels import Kernels
 from satsym.solvers.simulation.extrapolation import integrate
 
 SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 3))]])
-"""J: positions and velocities per unit mass are canonical."""
+"""The matrix J of the symplectic form: positions and velocities per unit mass are canonical."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,49 +32,52 @@ class Monodromy:
     """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one."""
 
     start: Array
-    """State that the revolution starts from and comes back to, shape (6,)."""
+    """The initial and final state of the revolution, shape (6,)."""
     matrix: Array
-    """Shape (6, 6)."""
+    """The integrated matrix, shape (6, 6)."""
     exact: Array
-    """What the formula gives for it."""
+    """The matrix by the closed formula."""
     units: Array
     """Units of the three positions and the three velocities, powers of two, shape (6,)."""
 
     @property
     def original(self) -> Array:
-        """The matrix in the units of the orbit."""
+        """Return the matrix in the units of the orbit."""
         return np.asarray(self.matrix * self.units[:, None] / self.units)
 
     @property
     def determinant(self) -> float:
-        """1 for a motion whose rates have no divergence."""
+        """Return the determinant, which is 1 for a motion whose rates have no divergence."""
         return float(np.linalg.det(self.matrix))
 
     @property
     def symplectic_defect(self) -> float:
-        """Largest entry of M'JM - J, relative to the square of the largest of M; zero for a Hamiltonian motion."""
+        """Return the largest entry of M'JM - J, relative to the square of the largest of M.
+
+        It is zero for a Hamiltonian motion.
+        """
         left = self.matrix.T @ SYMPLECTIC @ self.matrix - SYMPLECTIC
         return float(np.abs(left).max() / np.abs(self.matrix).max() ** 2)
 
     @property
     def growth(self) -> float:
-        """Norm of M - I: how much a deviation grows in a revolution, and again in each that follows."""
+        """Return the norm of M - I: how much a deviation grows in each revolution."""
         return _norm(self.exact - np.eye(6))
 
     @property
     def error(self) -> float:
-        """Norm of the difference from the formula."""
+        """Return the norm of the difference between the integrated matrix and the formula."""
         return _norm(self.matrix - self.exact)
 
     @property
     def second_singular(self) -> float:
-        """Second singular value of M - I relative to the first: zero where the rank is one."""
+        """Return the second singular value of M - I relative to the first: zero where the rank is one."""
         values = np.linalg.svd(self.matrix - np.eye(6), compute_uv=False)
         return float(values[1] / values[0])
 
     @property
     def square(self) -> float:
-        """Norm of (M - I)^2 relative to the square of the norm of M - I: zero where it is nilpotent."""
+        """Return the norm of (M - I)^2 relative to the squared norm of M - I: zero where it is nilpotent."""
         rest = self.matrix - np.eye(6)
         return _norm(rest @ rest) / _norm(rest) ** 2
 
@@ -126,13 +129,13 @@ def _norm(matrix: Array) -> float:
 
 
 ACCURACY = 1e-14
-"""Largest error of a step, relative to the size of the states: what is below is lost in rounding."""
+"""Largest error of an integration step, relative to the size of the states; smaller errors are rounding."""
 
 
 def transition(
     model: Kernels, p: Sequence[float], start: Array, duration: float, t0: float = 0.0, size: Array | None = None
 ) -> tuple[Array, Array]:
-    """The state after a time without control, and its derivative by the state before.
+    """Integrate a state over a time without control, together with its derivative by the initial state.
 
     Both are integrated together with the generated ``dynamics`` and ``jacobian_x``, to the last digits.
 

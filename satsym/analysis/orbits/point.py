@@ -1,4 +1,4 @@
-"""Eigenvalues of the Jacobian at a point of an orbit, the rule of signs applied to them, and what that can tell.
+"""Eigenvalues of the Jacobian at a point of an orbit, a rule on their signs, and what that rule can decide.
 
 The rule is that of a paper (the ledger ``itb_eigen``): its program calls an orbit stable if
 ``all(e.real <= 0 for e in eigenvalues)``, its conclusion if all real parts are negative, and unstable if one is
@@ -28,7 +28,7 @@ CARTESIAN = "two_body"
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """What the Jacobian at a point of an orbit has for eigenvalues, and what is made of them."""
+    """The eigenvalues of the Jacobian at a point of an orbit, and the verdicts drawn from them."""
 
     distance: float
     """Distance of the point from the centre of attraction."""
@@ -42,27 +42,27 @@ class Point:
 
     @property
     def deviation(self) -> float:
-        """Largest distance of the computed eigenvalues from the closed form, relative to the largest eigenvalue."""
+        """Return the largest distance of computed eigenvalues from the closed form, relative to the largest."""
         return float(np.abs(self.eigenvalues - self.closed_form).max() / np.abs(self.closed_form).max())
 
     @property
     def rule_verdict(self) -> str:
-        """``"stable"`` or ``"unstable"`` by the rule of the paper's program."""
+        """Return ``"stable"`` or ``"unstable"`` by the rule of the paper's program."""
         return rule(self.eigenvalues)
 
     @property
     def conclusion_verdict(self) -> str | None:
-        """Stability verdict by the conclusion that the paper draws, ``None`` where it decides nothing."""
+        """Return the stability verdict by the paper's conclusion, ``None`` where that decides nothing."""
         return rule_of_the_conclusion(self.eigenvalues)
 
     @property
     def own_verdict(self) -> str | None:
-        """What the rule of the program says of the model's own coordinates."""
+        """Return the verdict of the program's rule for the model's own coordinates."""
         return None if self.own is None else rule(self.own)
 
     @property
     def note(self) -> str:
-        """What can be told from the eigenvalues, and what cannot."""
+        """Explain what the eigenvalues can tell about the orbit, and what they cannot."""
         found = (
             "The eigenvalues are ±sqrt(2 mu/r^3) and, twice, ±i sqrt(mu/r^3): they depend on the distance r "
             "alone, not on the velocity. One of them is positive at every distance, so the rule calls every "
@@ -82,12 +82,12 @@ class Point:
 
 
 def rule(eigenvalues: Iterable[complex]) -> str:
-    """The verdict of the paper's program."""
+    """Return the verdict of the paper's program on eigenvalues."""
     return STABLE if all(e.real <= 0 for e in eigenvalues) else UNSTABLE
 
 
 def rule_of_the_conclusion(eigenvalues: Iterable[complex]) -> str | None:
-    """The verdict of the paper's conclusion, which leaves out that the largest real part is zero."""
+    """Return the verdict of the paper's conclusion, which omits a largest real part of zero."""
     largest = max(e.real for e in eigenvalues)
     return UNSTABLE if largest > 0 else STABLE if largest < 0 else None
 
@@ -118,7 +118,7 @@ def at_start(case: Instance, orbit: Elements) -> Point:
 
 
 def _eigenvalues(A: Array) -> Complex:
-    """The largest real part first, then the largest imaginary part, real parts being the same within rounding."""
+    """Return the eigenvalues of a matrix, the largest real part first, then the largest imaginary part."""
     values = np.linalg.eigvals(A).astype(complex)
     size = np.abs(values).max() or 1.0
     return np.asarray(values[np.lexsort((-values.imag, -np.round(values.real / size, 9)))])

@@ -1,4 +1,4 @@
-"""States of many orbits, read from what a caller gave, and in units in which their numbers are of size one."""
+"""States of many orbits, read from a caller's arrays, and scaled to numbers of size one."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from satsym.status import BadInput
 
 @dataclass(frozen=True, eq=False)
 class States:
-    """Starts and durations of N motions, flat."""
+    """Initial states and durations of N motions, as flat arrays."""
 
     position: Array
     velocity: Array
-    """Shape (3, N)."""
+    """Positions and velocities, shape (3, N)."""
     mu: Array
     duration: Array
-    """Shape (N,)."""
+    """Gravitational parameters and durations, shape (N,)."""
     shape: tuple[int, ...]
-    """Shape of the caller's arrays behind their first axis, once they are broadcast."""
+    """Shape of the caller's broadcast arrays without their first axis."""
 
     def part(self, chosen: Any) -> States:
-        """The states of some of the columns."""
+        """Return the states of some of the columns."""
         arrays = (self.position[:, chosen], self.velocity[:, chosen], self.mu[chosen], self.duration[chosen])
         return States(*arrays, self.shape)
 
     def scaled(self) -> tuple[States, Array, Array]:
         """Return the states in units of length and speed that are powers of two, which is exact, and those units.
 
-        Positions are then of size one, and so is mu, save for a factor of four.
+        Positions are then of size one, and so is mu, up to a factor of four.
         """
         _, length = np.frexp(np.abs(self.position).max(axis=0))
         _, gravity = np.frexp(self.mu)
@@ -50,7 +50,7 @@ class States:
 
 
 def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: ArrayLike) -> States:
-    """What a caller gave, flat and of one size.
+    """Return a caller's states as flat arrays of equal size.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def _numbers(name: str, value: ArrayLike) -> Array:
 
 
 def _stretched(vector: Array, shape: tuple[int, ...]) -> Array:
-    """Shape (3, N), from three components with fewer axes than ``shape`` behind them."""
+    """Broadcast three components with fewer axes than ``shape`` to the shape (3, N)."""
     lead = vector.shape[1:]
     filled = vector.reshape(3, *(1,) * (len(shape) - len(lead)), *lead)
     return np.ascontiguousarray(np.broadcast_to(filled, (3, *shape)).reshape(3, -1))

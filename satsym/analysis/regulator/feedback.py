@@ -1,4 +1,4 @@
-"""Motions under the linear law u = -K (deviation): the nonlinear one, and the linear one it stems from."""
+"""Simulations under the linear law u = -K (deviation), of the nonlinear and of the linear equations."""
 
 from __future__ import annotations
 
@@ -21,40 +21,40 @@ FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 """Control laws that a simulation can follow."""
 
 GAINS_PER_TIME = 50.0
-"""Gains of a finite horizon that are kept in the time in which the closed loop's fastest motion decays to 1/e."""
+"""Number of gains of a finite horizon for each time constant of the closed loop's fastest motion."""
 MOST_GAINS = 20000
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A regulator, and what it was designed for."""
+    """A linear-quadratic regulator, with the linearisation and the instance it was designed for."""
 
     about: Linearisation
     """The linearisation."""
     regulator: Regulator
     """Regulator that closes the loop."""
     instance: Instance | None
-    """``None`` for the design of a model as such."""
+    """The instance that is regulated; ``None`` for the design of a model alone."""
 
     @property
     def title(self) -> str:
-        """What it is about, in a line."""
+        """Return a line that says what the design is about."""
         spec = self.about.model.spec
         return spec.title if self.instance is None else self.instance.title or spec.title
 
     @property
     def relative(self) -> bool:
-        """Whether its weights come from allowed deviations."""
+        """Tell whether the weights come from allowed deviations."""
         return self.instance is not None and self.instance.lqr is not None and self.instance.lqr.relative
 
     @property
     def deviation(self) -> Array | None:
-        """Where the instance starts, as seen from its reference or equilibrium; shape (n,)."""
+        """Return the initial deviation of the instance from its reference or equilibrium; shape (n,)."""
         return None if self.instance is None else np.array(self.instance.initial) - self.about.point
 
 
 def designed(subject: Kernels | Instance) -> Design:
-    """The regulator that the [lqr] table of an instance asks for; or that of a model, with all weights 1.
+    """Design the regulator of an instance's [lqr] table, or that of a model with all weights 1.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def law(about: Linearisation, found: Regulator) -> Law:
 
 
 def gain(about: Linearisation, found: Regulator) -> Callable[[float], list[list[float]]]:
-    """K at a time, row by row; for a finite horizon between those that were computed, and 0 after its end."""
+    """Return K at a time, by rows; for a finite horizon interpolated, and 0 after its end."""
     constant: list[list[float]] = found.K.tolist()
     if found.horizon is None:
         return lambda _: constant
@@ -161,13 +161,13 @@ def gain(about: Linearisation, found: Regulator) -> Callable[[float], list[list[
 
 
 def running_cost(found: Regulator, x: Array, u: Array) -> Array:
-    """x'Qx + 2x'Nu + u'Ru of deviations (n, M) and active inputs (m, M), shape (M,)."""
+    """Return x'Qx + 2x'Nu + u'Ru of deviations (n, M) and active inputs (m, M), shape (M,)."""
     terms = ((x, found.Q, x), (2.0 * x, found.N, u), (u, found.R, u))
     return np.asarray(sum(np.einsum("im,ij,jm->m", *term) for term in terms))
 
 
 def _integral(times: Array, values: Array) -> float:
-    """Integral over time of values on a fine grid, by a spline of order six; NaN where a value is NaN."""
+    """Integrate values on a fine grid over time by a spline of order six; NaN where a value is NaN."""
     from scipy.interpolate import make_interp_spline
 
     if not np.isfinite(values).all():

@@ -22,64 +22,64 @@ from satsym.instance import Instance, LqrOptions, weights
 from satsym.status import BadInput
 
 NOTHING = 1e-9
-"""What a motion costs at some frequency, relative to what its inputs do, that may be zero."""
+"""Cost of a motion of some frequency, relative to the effort of its inputs, up to which it may be zero."""
 
 DOUBTFUL = 1e-6
-"""A closed loop that decays more slowly than this, relative to the fastest eigenvalue, also of the open one, may be a
-rounding error."""
+"""Slowest decay of a closed loop, relative to the fastest eigenvalue of either loop, that is no rounding error."""
 
 
 @dataclass(frozen=True, eq=False)
 class Regulator:
-    """An optimal gain, and what it does."""
+    """An optimal gain with its Riccati solution and the properties of its closed loop."""
 
     system: LinearSystem
-    """What it is for, with the active inputs alone."""
+    """The linear system with its active inputs alone."""
     Q: Array
     R: Array
     N: Array
-    """Weights, shapes (n, n), (m, m) and (n, m)."""
+    """The weights Q, R and N, shapes (n, n), (m, m) and (n, m)."""
     horizon: float | None
-    """Length of time over which the cost is counted; ``None`` where it is infinite. If it is finite, K and P are those
-    at its beginning."""
+    """Length of time of the cost; ``None`` where it is infinite. For a finite one, K and P are those at the beginning.
+    """
     K: Array
     P: Array
-    """Shapes (m, n) and (n, n); x'Px is the cost to go."""
+    """The gain K, shape (m, n), and the Riccati solution P, shape (n, n); x'Px is the cost to go."""
     eigenvalues: NDArray[np.complexfloating]
     """Eigenvalues of A - B K, the largest real part first, shape (n,)."""
     residual: float
-    """Residual of the Riccati equation, relative to its terms; of the differential one where the horizon is finite."""
+    """Residual of the algebraic Riccati equation, relative to its terms; of the differential one for a finite horizon.
+    """
     error: float | None = None
-    """Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
-    change, with residuals in twice the precision. ``None`` where the horizon is finite."""
+    """Estimated error of P, relative to P in units in which its diagonal elements are 1: the change by another Newton
+    step with residuals in twice the precision. ``None`` where the horizon is finite."""
 
     @cached_property
     def positive(self) -> bool:
-        """Whether the cost to go from every deviation is positive."""
+        """Tell whether the cost to go from every deviation is positive."""
         return weights.smallest_eigenvalue(self.P.tolist()) > 0.0
 
     @cached_property
     def closed_loop(self) -> LinearSystem:
-        """The system under u = -K x."""
+        """Return the system under u = -K x."""
         return self.system.with_feedback(self.K)
 
     @cached_property
     def polynomial(self) -> Array:
-        """Characteristic polynomial of the closed loop, monic, highest power first."""
+        """Return the characteristic polynomial of the closed loop, monic, highest power first."""
         return characteristic(self.closed_loop.A)
 
     @cached_property
     def routh(self) -> Routh:
-        """Routh array of the closed loop."""
+        """Return the Routh array of the closed loop."""
         return routh(self.polynomial.tolist(), self.eigenvalues.tolist())
 
     def cost(self, deviation: ArrayLike) -> float:
-        """The least cost from a deviation on, of shape (n,)."""
+        """Return the minimum cost from a deviation of shape (n,)."""
         x = np.asarray(deviation, dtype=float)
         return float(x @ self.P @ x)
 
     def gains(self, steps: int) -> Array:
-        """K at evenly spaced times from the beginning of a finite horizon to its end, shape (steps + 1, m, n)."""
+        """Return K at evenly spaced times of a finite horizon, both ends included; shape (steps + 1, m, n)."""
         if self.horizon is None:
             return np.broadcast_to(self.K, (steps + 1, *self.K.shape))
         A, Q, ahead = riccati.without_cross(self.system.A, self.system.B, self.Q, self.R, self.N)
@@ -93,7 +93,7 @@ class Regulator:
 def lqr(
     given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None = None, N: ArrayLike | None = None
 ) -> Regulator:
-    """The regulator of a linear system, all of whose inputs are active.
+    """Design the regulator of a linear system, all of whose inputs are active.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def lqr(
 
 
 def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regulator:
-    """The regulator of a linearised model.
+    """Design the regulator of a linearised model.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regula
 
 
 def required(case: Instance) -> LqrOptions:
-    """The [lqr] table of an instance.
+    """Return the [lqr] table of an instance, which must have one.
 
     Raises
     ------
@@ -191,7 +191,7 @@ def required(case: Instance) -> LqrOptions:
 
 
 def _stabilising(given: LinearSystem, A: Array, Q: Array, R: Array) -> Refined:
-    """The solution; why there is none is looked for where there seems to be none."""
+    """Return the stabilising Riccati solution, or raise with the reason why there is none."""
     try:
         found = riccati.stabilising(A, given.B, Q, R)
     except riccati.NoSolution:
@@ -204,7 +204,7 @@ def _stabilising(given: LinearSystem, A: Array, Q: Array, R: Array) -> Refined:
 
 
 def _obstacle(given: LinearSystem, A: Array, Q: Array, R: Array) -> str:
-    """Why no gain is optimal; empty if there is one."""
+    """Explain why no gain is optimal; empty if there is one."""
     stuck = [each for each in controllability(given).lost if each.value.real >= 0.0]
     if stuck:
         return (
@@ -224,10 +224,10 @@ def _obstacle(given: LinearSystem, A: Array, Q: Array, R: Array) -> str:
 
 
 def _at_a_frequency(A: Array, B: Array, Q: Array, R: Array) -> str:
-    """Why there is no gain where Q is indefinite: a motion of some frequency that costs nothing, or less.
+    """Explain why no gain exists where Q is indefinite: a motion of some frequency costs nothing, or less.
 
-    There is a stabilising solution where, and only where, what a motion of any frequency costs is positive (J. C.
-    Willems). It is reckoned with under a gain that stabilises, which does not change its sign.
+    There is a stabilising solution if and only if a motion of any frequency costs a positive amount (J. C. Willems).
+    This is evaluated under a stabilising gain, which does not change the sign.
     """
     gain = np.linalg.solve(R, B.T @ riccati.stabilising(A, B, np.diag(1.0 / scaled(system(A, B)).states ** 2), R).P)
     closed, across = A - B @ gain, -gain.T @ R
@@ -262,7 +262,7 @@ def _listed(modes: list[Eigenvalue]) -> str:
 
 
 FIRST_STEP = 0.5
-"""The first step times the size of the Hamiltonian matrix."""
+"""First step of doubling times the size of the Hamiltonian matrix."""
 
 
 class NoLowerBound(ArithmeticError):
@@ -270,7 +270,7 @@ class NoLowerBound(ArithmeticError):
 
 
 class Flow(NamedTuple):
-    """What a linear-quadratic problem does over a length of time: E, S and T, shape (n, n) each.
+    """The matrices E, S and T, shape (n, n) each, of a linear-quadratic problem over a length of time.
 
     Over a time h the Hamiltonian system maps the state at the beginning and the costate at the end, x and mu, to
     E x - S mu at the end and T x + E' mu at the beginning. Two such steps in a row are one, with
@@ -287,7 +287,7 @@ class Flow(NamedTuple):
     T: Array
 
     def then(self, later: Flow) -> Flow:
-        """This length of time followed by another.
+        """Return the flow over this length of time followed by another.
 
         Raises
         ------
@@ -305,11 +305,11 @@ class Flow(NamedTuple):
         )
 
     def before(self, P: Array) -> Array:
-        """Cost to go at the beginning, x'Px, from that at the end."""
+        """Return the cost to go x'Px at the beginning, from the one at the end."""
         return _symmetric(self.T + self.E.T @ P @ np.linalg.solve(np.eye(len(P)) + self.S @ P, self.E))
 
     def closed(self, P: Array) -> Array:
-        """The state at the end from that at the beginning, under the best control where x'Px is paid at the end."""
+        """Map the state at the beginning to that at the end under the optimal control, with final cost x'Px."""
         return np.linalg.solve(np.eye(len(P)) + self.S @ P, self.E)
 
 

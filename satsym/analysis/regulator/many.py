@@ -1,4 +1,4 @@
-"""The regulators of many instances of one model at once; what is not clear is left to the design of one.
+"""Regulators of many instances of one model at once; unclear cases are left to the design of a single one.
 
 Units that balance the first one's Hamiltonian matrix are taken for all. Two routes must agree on each: gains by
 structured doubling, with the residual of the Riccati equation, and eigenvalues of the closed loop by those of the
@@ -28,18 +28,18 @@ from satsym.instance import Instance
 from satsym.status import BadInput
 
 BLOCK = 2048
-"""Problems at a time, so that a handful of matrices stay in the cache."""
+"""Number of problems solved at a time, so that their matrices stay in the cache."""
 MOST_DOUBLINGS = 60
 LAST_CHANGE = 1e-10
-"""Relative change after which nothing is left to gain: the next one would be its square."""
+"""Relative change after which doubling ends: the next change would be the square of it."""
 WANTED = 5e-13
-"""Residual above which a problem is solved anew."""
+"""Largest residual with which a problem counts as solved."""
 
 
 def solve(
     A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, N: ArrayLike | None = None
 ) -> tuple[Array, Array, Array]:
-    """Stabilising solutions and gains of many problems with J = integral of x'Qx + 2x'Nu + u'Ru.
+    """Compute stabilising solutions and gains of many problems with J = integral of x'Qx + 2x'Nu + u'Ru.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def solve(
 
 
 def _block(a: Array, g: Array, q: Array) -> tuple[Array, Array]:
-    """Solutions and residuals of a block of problems, first axis first."""
+    """Return solutions and residuals of a block of problems, with problems along the first axis."""
     A, G, Q = (np.ascontiguousarray(np.moveaxis(each, 0, -1)) for each in (a, g, q))
     with np.errstate(all="ignore"):  # what is not finite has a residual that says so
         P = _doubled(A, G, Q, _mean_eigenvalue(a, g, q))
@@ -86,14 +86,14 @@ def _block(a: Array, g: Array, q: Array) -> tuple[Array, Array]:
 
 
 def _mean_eigenvalue(a: Array, g: Array, q: Array) -> Array:
-    """Geometric mean of the absolute eigenvalues of the closed loops; shape (M,)."""
+    """Return the geometric mean of the absolute eigenvalues of the closed loops; shape (M,)."""
     n = a.shape[-1]
     matrix = np.block([[a, -g], [-q, -np.swapaxes(a, -1, -2)]])
     return np.asarray(np.exp(np.linalg.slogdet(matrix)[1] / (2 * n)))
 
 
 def _doubled(A: Array, G: Array, Q: Array, shift: Array) -> Array:
-    """Structured doubling from the Cayley transform with this shift; last axis last."""
+    """Apply structured doubling from the Cayley transform with this shift; the last axis counts problems."""
     one = np.eye(len(A))[:, :, None]
     shifted = A - shift * one
     inverse = _inverse(shifted)
@@ -114,7 +114,10 @@ def _doubled(A: Array, G: Array, Q: Array, shift: Array) -> Array:
 
 
 def _residual(A: Array, G: Array, Q: Array, P: Array) -> Array:
-    """As :func:`satsym.analysis.regulator.riccati.residual`, of each problem; shape (M,)."""
+    """Return the relative residual of the Riccati equation of each problem; shape (M,).
+
+    It is that of :func:`satsym.analysis.regulator.riccati.residual`.
+    """
     diagonal = _diagonal(P)
     unit = 1.0 / np.sqrt(np.where(diagonal == 0.0, 1.0, np.abs(diagonal)))
     weight = unit[:, None] * unit
@@ -124,7 +127,7 @@ def _residual(A: Array, G: Array, Q: Array, P: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """Inverses by Gauss and Jordan's elimination, without looking for pivots."""
+    """Invert matrices by Gauss-Jordan elimination without pivoting."""
     found = matrix.copy()
     for k in range(len(found)):
         pivot = 1.0 / found[k, k]
@@ -159,16 +162,16 @@ def _norm(matrix: Array) -> Array:
 
 
 AGREEING = 1e-7
-"""Relative difference of the characteristic polynomials by both routes, each coefficient in units of the largest
-eigenvalue, that is none: coefficients, for eigenvalues that coincide are half as accurate."""
+"""Largest relative difference of the closed loop's characteristic polynomials by both routes, each coefficient in units
+of the largest eigenvalue. Coefficients are compared, because coinciding eigenvalues are half as accurate."""
 
 
 @dataclass(frozen=True, eq=False)
 class Regulators:
-    """Regulators of M instances."""
+    """The regulators of M instances of one model."""
 
     clear: NDArray[np.bool_]
-    """Whether each regulator is sure, shape (M,)."""
+    """Whether each regulator is reliable, shape (M,)."""
     K: Array
     """Gains, shape (M, m, n)."""
     eigenvalues: NDArray[np.complexfloating]
@@ -180,7 +183,7 @@ class Regulators:
 
 
 def regulators(instances: Sequence[Instance]) -> Regulators | None:
-    """The regulators that the [lqr] tables ask for; ``None`` where each has to be designed by itself.
+    """Design the regulators of the [lqr] tables; ``None`` where each must be designed separately.
 
     Parameters
     ----------
@@ -217,7 +220,7 @@ def regulators(instances: Sequence[Instance]) -> Regulators | None:
 
 
 def _coefficients(instances: Sequence[Instance], unit: Scaled) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
-    """Where each starts to be regulated, A and B there, and whether they stay the same."""
+    """Return the initial deviations, A and B of the instances, and whether the coefficients are constant."""
     first, count = instances[0], len(instances)
     model, n, m = first.model, len(first.initial), len(first.model.spec.controls)
     p = tuple(np.array([one.parameters for one in instances]).reshape(count, -1).T)
@@ -243,7 +246,7 @@ def _coefficients(instances: Sequence[Instance], unit: Scaled) -> tuple[Array, A
 def _eigenvalues(
     a: Array, b: Array, q: Array, r: Array, K: Array
 ) -> tuple[NDArray[np.bool_], NDArray[np.complexfloating]]:
-    """Sorted eigenvalues of the closed loops, and whether they decay and are those of the Hamiltonian matrices."""
+    """Return sorted closed-loop eigenvalues, and whether they decay and are those of the Hamiltonian matrices."""
     count, n = a.shape[:2]
     g = b @ np.linalg.solve(r, b.swapaxes(1, 2))
     weights = np.broadcast_to(q, a.shape)
@@ -262,7 +265,7 @@ def _eigenvalues(
 
 
 def _polynomials(roots: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
-    """Coefficients of the polynomials with these roots, shape (M, n + 1)."""
+    """Return the coefficients of the polynomials with these roots, shape (M, n + 1)."""
     found = np.zeros((len(roots), roots.shape[1] + 1), dtype=complex)
     found[:, 0] = 1.0
     for k in range(roots.shape[1]):

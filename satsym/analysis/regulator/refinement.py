@@ -1,4 +1,4 @@
-"""Newton's method on the Riccati equation with residuals in twice the precision, and what is then left of the error.
+"""Newton's method on the Riccati equation with residuals in twice the precision, and an estimate of the error left.
 
 The residual of a nearly right P is a small difference of large terms, and what rounding leaves of it in one precision
 says little about P where fast and slow motions lie far apart. Evaluated in some 32 digits it is the residual of this
@@ -23,10 +23,10 @@ from satsym.arrays import Array
 from satsym.lapack import lapack
 
 ACCURATE = 1e-13
-"""A correction below this, found without more precision, shows that none is needed."""
+"""Largest correction, in double precision, after which no refinement in higher precision is needed."""
 
 LAST_CORRECTION = 2e-16
-"""A correction below this changes nothing."""
+"""Size of a correction after which refinement ends."""
 
 MOST_STEPS = 12
 """Most steps of Newton's method, which needs three or four from a P with some right digits."""
@@ -34,20 +34,19 @@ MOST_STEPS = 12
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """A solution made right to the last digits, as far as the problem allows."""
+    """A Riccati solution refined to the last digits, as far as the problem allows."""
 
     P: Array
-    """Shape (n, n)."""
+    """The refined solution, shape (n, n)."""
     error: float
-    """Estimate of the error of P, relative to it, in units of :func:`units_of`; infinite where
-    corrections do not become smaller."""
+    """Estimated error of P, relative to P in units of :func:`units_of`; infinite where corrections do not decrease."""
     eigenvalues: NDArray[np.complexfloating]
     """Eigenvalues of the closed loop, shape (n,); NaN where there is no correction of P."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Correction:
-    """What Newton's method would add to P, its size relative to P, and the eigenvalues under the gain of P."""
+    """The correction of P by Newton's method, its size relative to P, and the eigenvalues under the gain of P."""
 
     step: Array
     size: float
@@ -55,7 +54,7 @@ class _Correction:
 
 
 def refined(A: Array, B: Array, Q: Array, R: Array, P: Array) -> Refined:
-    """A nearly right solution made right to the last digits, as far as the problem allows.
+    """Refine a nearly right Riccati solution to the last digits, as far as the problem allows.
 
     Parameters
     ----------
@@ -98,9 +97,9 @@ def _correction(
 
 
 def units_of(P: Array) -> Array:
-    """Units of the states in which the diagonal elements of P are 1 or -1, shape (n,).
+    """Return units of the states in which the diagonal elements of P are 1 or -1, shape (n,).
 
-    A P that is indefinite may have larger elements beside its diagonal; then the largest of each row counts.
+    An indefinite P may have larger elements off its diagonal; then the largest of each row counts.
     """
     size = np.sqrt(np.abs(np.diag(P)))
     if (np.abs(P) > 2.0 * np.outer(size, size)).any():
@@ -113,7 +112,7 @@ def _none(P: Array) -> _Correction:
 
 
 def lyapunov(closed: Array, cost: Array) -> tuple[Array, NDArray[np.complexfloating]]:
-    """The symmetric X with closed' X + X closed + cost = 0, and the eigenvalues of the closed loop.
+    """Return the symmetric X with closed' X + X closed + cost = 0, and the eigenvalues of the closed loop.
 
     By the Schur form of the closed loop (R. H. Bartels and G. W. Stewart, CACM 15, 1972).
 
@@ -133,12 +132,12 @@ def lyapunov(closed: Array, cost: Array) -> tuple[Array, NDArray[np.complexfloat
 
 
 def _unsorted(*_: float) -> bool:
-    """For Schur forms whose eigenvalues may stand in any order."""
+    """Return the options of Schur forms whose eigenvalues may be in any order."""
     return True
 
 
 def residual(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, Array]:
-    """A'P + PA - P B R^-1 B'P + Q in twice the precision, rounded once, and the gain R^-1 B'P."""
+    """Return A'P + PA - P B R^-1 B'P + Q in twice the precision, rounded once, and the gain R^-1 B'P."""
     once = _times(_exact(A.T), _exact(P))
     paid = _times(_exact(P), _exact(B))
     gain = _solved(R, _turned(paid))
@@ -147,14 +146,14 @@ def residual(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, A
 
 
 def rounded(A: Array, B: Array, Q: Array, R: Array, P: Array) -> tuple[Array, Array]:
-    """Residual of the Riccati equation and gain R^-1 B'P, computed in double precision alone."""
+    """Return the residual of the Riccati equation and the gain R^-1 B'P, in double precision alone."""
     gain = np.linalg.solve(R, B.T @ P)
     once = A.T @ P
     return once + once.T - P @ B @ gain + Q, gain
 
 
 def _solved(R: Array, right: Pair) -> Pair:
-    """R^-1 times a matrix: a first solution and its corrections, until they tell nothing more."""
+    """Return R^-1 times a matrix, by a first solution and corrections until these are negligible."""
     found = _exact(np.linalg.solve(R, right[0]))
     for _ in range(3):
         left = add(right, negative(_times(_exact(R), found)))
@@ -163,7 +162,7 @@ def _solved(R: Array, right: Pair) -> Pair:
 
 
 def _times(a: Pair, b: Pair) -> Pair:
-    """The product of two matrices."""
+    """Return the product of two matrices in twice the precision."""
     columns = range(a[0].shape[1])
     return reduce(
         add, (multiply((a[0][:, k, None], a[1][:, k, None]), (b[0][None, k], b[1][None, k])) for k in columns)

@@ -1,4 +1,4 @@
-"""What becomes of a disturbance: without control and with the gain, by the linear system and by the exact motion."""
+"""Responses to a disturbance, without control and with the gain, of the linear system and of the exact motion."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Deviations x, shape (n, N+1), and active inputs u, shape (m, N+1)."""
+    """One response to a disturbance: deviations x, shape (n, N+1), and active inputs u, shape (m, N+1)."""
 
     x: Array
     u: Array
 
     def cost(self, found: Regulator, times: Array) -> Array:
-        """Integral of x'Qx + 2x'Nu + u'Ru from the first time to each, shape (N+1,)."""
+        """Return the integral of x'Qx + 2x'Nu + u'Ru from the first time to each, shape (N+1,)."""
         rate = running_cost(found, self.x, self.u)
         steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(times)
         return np.concatenate([[0.0], np.cumsum(steps)])
@@ -39,20 +39,20 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Responses to one disturbance: of the linear and of the whole equations, with and without feedback."""
+    """Responses to one disturbance, of the linear and the exact equations, with and without feedback."""
 
     times: Array
-    """Shape (N+1,)."""
+    """Times of the responses, shape (N+1,)."""
     free: Response
     steered: Response
-    """By the linear system, without control and with the gain."""
+    """Responses of the linear system, without control and with the gain."""
     exact_free: Response | None
     exact_steered: Response | None
-    """By the exact motion, within the instance's bounds; ``None`` where none is known but the linear one."""
+    """Responses of the exact motion, within the instance's bounds; ``None`` where only the linear one is known."""
 
 
 def responses(design: Design, case: Instance) -> Responses:
-    """Responses to the initial deviation of an instance, from its initial to its final time."""
+    """Compute the responses to the initial deviation of an instance, from its initial to its final time."""
     assert case.tf is not None
     times, start = Grid.uniform(case.t0, case.tf, STEPS).nodes, np.array(case.initial) - design.about.point
     system, rest = design.regulator.system, np.zeros((len(design.regulator.system.inputs), STEPS + 1))
@@ -66,7 +66,7 @@ def responses(design: Design, case: Instance) -> Responses:
 
 
 def linear_motion(system: LinearSystem, start: Array, times: Array) -> Array:
-    """Solution of x' = A x at evenly spaced times, shape (n, N+1)."""
+    """Solve x' = A x at evenly spaced times, shape (n, N+1)."""
     step = system.transition(float(times[1] - times[0]))
     path = [np.asarray(start, dtype=float)]
     for _ in times[1:]:
@@ -95,7 +95,7 @@ def _steered(design: Design, start: Array, times: Array) -> Response:
 
 
 def _exact(design: Design, case: Instance, times: Array, steered: bool) -> Response:
-    """The exact motion; by the same law with or without its effect."""
+    """Simulate the exact motion, with the law acting or not."""
     acting = law(design.about, design.regulator)
     nothing = [0.0] * len(case.model.spec.controls)
     driven = acting if steered else replace(acting, control=lambda t, x: nothing)
@@ -105,15 +105,15 @@ def _exact(design: Design, case: Instance, times: Array, steered: bool) -> Respo
 
 
 DIRECTIONS = 64
-"""Beside those of single states."""
+"""Number of directions in addition to those of single states."""
 SIZES = np.geomspace(1e-4, 1e2, 25)
-"""Deviations that are tried first, relative to the size of the motion itself."""
+"""Sizes of deviations that are tried first, relative to the size of the motion itself."""
 REFINED = 10
-"""Deviations between the last one that returns and the first one that does not, twice."""
+"""Number of sizes between the last deviation that returns and the first that does not, in each of two refinements."""
 RETURNED = 1e-6
-"""Largest share of the cost to go x'Px at the start that may be left where a motion counts as returned."""
+"""Fraction of the initial cost to go x'Px below which a motion counts as returned."""
 PATIENCE = 25.0
-"""Time to return, relative to that in which the closed loop's slowest motion decays to 1/e."""
+"""Time allowed for the return, in time constants of the closed loop's slowest motion."""
 STEP = 0.1
 """Step of RK4, relative to the time constant of the fastest motion."""
 MOST_STEPS = 20000
@@ -121,19 +121,19 @@ MOST_STEPS = 20000
 
 @dataclass(frozen=True)
 class RegionOfAttraction:
-    """Deviations from which the motion returns."""
+    """An estimate of the deviations from which the motion returns."""
 
     extents: Mapping[str, tuple[float, float]]
-    """By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to which
-    every one that was tried returns; infinite where all did."""
+    """By state, the most negative and the most positive deviation of this state alone, in the model's unit, up to which
+    every tried one returns; infinite where all did."""
     level: float
-    """The largest x'Px up to which every deviation returns that was tried in any direction."""
+    """The largest x'Px up to which every tried deviation returns."""
     time: float
-    """How long each had to do so."""
+    """The time allowed for the return."""
 
 
 def region_of_attraction(about: Linearisation, found: Regulator, case: Instance | None = None) -> RegionOfAttraction:
-    """Estimate the basin of attraction of a linear law.
+    """Estimate the region of attraction of a linear law.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
 
 
 def _directions(P: Array, n: int) -> Array:
-    """Deviations with x'Px = 1: of each state alone, up and down, then some in all; shape (n, count)."""
+    """Return deviations with x'Px = 1: along each state, up and down, then some others; shape (n, count)."""
     alone = np.repeat(np.eye(n), 2, axis=1) * np.tile([1.0, -1.0], n)
     unit = 1.0 / np.sqrt(np.diag(P))
     drawn = np.random.default_rng(0).normal(size=(n, DIRECTIONS))  # the same ones every time
@@ -189,7 +189,7 @@ def _directions(P: Array, n: int) -> Array:
 def _returns(
     about: Linearisation, found: Regulator, case: Instance | None, directions: Array, sizes: Array, time: float
 ) -> NDArray[np.bool_]:
-    """Which of the deviations, sizes (k, count) times directions (n, count), return in time; shape (k, count)."""
+    """Tell which deviations, sizes (k, count) times directions (n, count), return in time; shape (k, count)."""
     model, p = about.model, about.parameters
     K = np.zeros((len(about.system.inputs), len(about.point)))
     K[[about.system.inputs.index(name) for name in found.system.inputs]] = found.K

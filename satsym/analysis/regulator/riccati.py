@@ -23,15 +23,15 @@ from satsym.arrays import Array
 from satsym.lapack import lapack
 
 DOUBTFUL = 1e-6
-"""An estimated error above this, relative, is none to rely on."""
+"""Largest estimated relative error of a solution that is accepted."""
 
 
 class NoSolution(ArithmeticError):
-    """No solution for which the closed loop is stable was found."""
+    """No Riccati solution with a stable closed loop was found."""
 
 
 def without_cross(A: Array, B: Array, Q: Array, R: Array, N: Array | None) -> tuple[Array, Array, Array]:
-    """A - B R^-1 N', Q - N R^-1 N' and R^-1 N'; leading axes are broadcast."""
+    """Remove a cross weight: return A - B R^-1 N', Q - N R^-1 N' and R^-1 N', with broadcast leading axes."""
     if N is None or not N.any():
         return A, Q, np.zeros((B.shape[-1], A.shape[-1]))
     ahead = np.linalg.solve(R, np.swapaxes(N, -1, -2))
@@ -40,7 +40,7 @@ def without_cross(A: Array, B: Array, Q: Array, R: Array, N: Array | None) -> tu
 
 
 def hamiltonian(A: Array, G: Array, Q: Array) -> Array:
-    """The Hamiltonian matrix ((A, -G), (-Q, -A')), shape (2n, 2n)."""
+    """Return the Hamiltonian matrix ((A, -G), (-Q, -A')), shape (2n, 2n)."""
     n = len(A)
     found = np.empty((2 * n, 2 * n))
     found[:n, :n], found[:n, n:], found[n:, :n], found[n:, n:] = A, -G, -Q, -A.T
@@ -48,7 +48,7 @@ def hamiltonian(A: Array, G: Array, Q: Array) -> Array:
 
 
 def balancing(matrix: Array) -> Array:
-    """Powers of two for the states that make the rows and columns of a Hamiltonian matrix alike in size."""
+    """Return powers of two for the states that make rows and columns of a Hamiltonian matrix similar in size."""
     n = len(matrix) // 2
     *_, scale, _ = lapack().dgebal(np.abs(matrix), scale=1, permute=0)
     exponents = np.log2(scale)
@@ -56,7 +56,7 @@ def balancing(matrix: Array) -> Array:
 
 
 def stabilising(A: Array, B: Array, Q: Array, R: Array) -> Refined:
-    """The stabilising solution, right to the last digits where the problem allows.
+    """Return the stabilising Riccati solution, accurate to the last digits where the problem allows.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def _by_subspace(A: Array, B: Array, Q: Array, R: Array) -> Array:
 
 
 def _by_scipy(A: Array, B: Array, Q: Array, R: Array) -> Array:
-    """Solve Riccati's equation from an extended pencil, which does without B R^-1 B': better where that is large."""
+    """Solve the Riccati equation by SciPy's extended pencil, which avoids B R^-1 B': better where that is large."""
     from scipy.linalg import solve_continuous_are
 
     with warnings.catch_warnings():
@@ -95,16 +95,16 @@ def _by_scipy(A: Array, B: Array, Q: Array, R: Array) -> Array:
 
 
 def cost_of_control(B: Array, R: Array) -> Array:
-    """G = B R^-1 B'."""
+    """Return G = B R^-1 B'."""
     found = B @ np.linalg.solve(R, B.T)
     return np.asarray(0.5 * (found + found.T))
 
 
 def residual(A: Array, G: Array, Q: Array, P: Array, rate: Array | float = 0.0) -> float:
-    """The norm of A'P + PA - P G P + Q - rate, relative to the sum of those of the four terms.
+    """Return the norm of A'P + PA - P G P + Q - rate, relative to the sum of the norms of the four terms.
 
-    Both in units in which each diagonal element of P is 1 or -1, so that it is the same whatever the units are. In a
-    finite horizon P changes, with the time left, at a `rate`.
+    Both are taken in units in which each diagonal element of P is 1 or -1, so that the result does not depend on units.
+    In a finite horizon P changes, with the time left, at a `rate`.
     """
     if not np.isfinite(P).all():
         return float("inf")
@@ -116,7 +116,7 @@ def residual(A: Array, G: Array, Q: Array, P: Array, rate: Array | float = 0.0) 
 
 
 def _from_subspace(matrix: Array) -> Array:
-    """P from the decaying motions of the Hamiltonian matrix, which must be half of all."""
+    """Return P from the decaying motions of the Hamiltonian matrix, which must be half of all."""
     n = len(matrix) // 2
     _, decaying, *_, vectors, _, failed = lapack().dgees(
         lambda real, imaginary: real < 0.0, matrix, sort_t=1, lwork=40 * n
