@@ -23,26 +23,26 @@ from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Function, Kernels
 from satsym.kernels.evaluation import COPIES, Evaluation, Relation, deviations, size, with_copies
-from satsym.kernels.motion import of_motion
 from satsym.kernels.optimality import of_the_cost
+from satsym.kernels.relations import of_motion
 from satsym.spec import Variable
 
 LIMIT = 1e-9
-"""Largest difference of what must be equal, relative to the size of what it is made of; rounding stays far below."""
+"""Largest difference of equal sides, relative to the size of their terms; rounding stays far below."""
 
 PLACES = 24
 """Number of random places at which functions are compared."""
 
 STEPS, FRACTION = 3, 0.1
-"""Nodes over which loops are followed, and by which share of themselves states change in a step."""
+"""Number of nodes of compared loops, and the relative change of the states in a step."""
 
 FAR_FACTOR = 1e9
 BOUNDS_ASIDE = ((float("nan"), -0.2, 0.1, -0.5), (float("nan"), 0.2, 0.5, -0.1))
-"""Lower and upper bounds aside of a control, relative to it: in turn any, around it, above it and below it."""
+"""Lower and upper bounds relative to a control: in turn any, around it, above it and below it."""
 
 SEED = 20
 _FAILED = (ArithmeticError, ValueError, TypeError)
-"""What functions on floats raise beyond their domain; roots of negative numbers are complex, and no arguments."""
+"""Errors that functions on floats raise outside their domain."""
 
 
 Evaluating = TypeVar("Evaluating", bound=Evaluation)
@@ -54,13 +54,13 @@ class Contradiction:
 
     function: str
     claim: str
-    """Name of the function, and what it must be."""
+    """Name of the function, and the relation that it violates."""
     deviation: float
-    """Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
+    """Relative deviation, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
 
 
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
-    """The largest contradiction between the functions of a module at places; ``None`` where none is in their domain.
+    """Return the largest contradiction between the functions of a module; ``None`` where no place is in their domain.
 
     Where none is, but the form on floats has numbers that the one on arrays has not, that is the contradiction. What
     floats would refuse is compared once more with many digits, if the text of the module is known.
@@ -93,7 +93,7 @@ def _contradictions(
     evaluating: Callable[[Kernels, Mapping[str, Any]], Evaluating],
     loops: Callable[[Evaluating, Mapping[str, Any], tuple[Array, Array, Array]], Iterator[Relation]],
 ) -> list[Contradiction]:
-    """How far the sides of each relation are apart, by one way to evaluate functions; none outside their domain."""
+    """Return how far the sides of each relation are apart, for one way to evaluate functions."""
     with np.errstate(all="ignore"):
         evaluation = evaluating(kernels, with_copies(at, seed))
         finite = _finite(evaluation)
@@ -118,14 +118,14 @@ def _contradictions(
 
 
 def _finite(of: Evaluation) -> NDArray[np.bool_]:
-    """Which places are in the domain of all functions, the laws of switching curves apart, with their copies."""
+    """Tell which places, with their copies, are in the domain of all functions except laws of switching curves."""
     names = [name for name in of.signatures if name not in CURVE]
     rows = np.concatenate([of(name).reshape(-1, len(of.at["t"])) for name in names])
     return np.asarray(np.isfinite(rows).all(axis=0).reshape(1 + COPIES, -1).all(axis=0))
 
 
 def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
-    """Arguments of size one, parameters about their defaults, with bounds that some controls meet and others do not."""
+    """Draw arguments of size one, parameters near their defaults, and bounds that are active for some controls."""
     spec, counts, rng = kernels.spec, sizes(kernels.spec), random.Random(seed)
 
     def drawn(count: int, positive: Mapping[int, float]) -> Array:
@@ -158,16 +158,16 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
 
 
 def _about_defaults(table: Array, parameters: Sequence[Variable]) -> Array:
-    """Parameters of size one in units of their defaults: any others need not be possible together.
+    """Scale parameters of size one by their defaults, since other values need not fit together.
 
-    Masses that are no masses make a nearly singular matrix of inertia, along whose elimination all digits are lost.
+    Masses that are no masses make a nearly singular matrix of inertia, whose elimination loses all digits.
     """
     each = zip(table, parameters, strict=True)
     return np.array([np.abs(row) * p.default if p.default else row for row, p in each]).reshape(table.shape)
 
 
 def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
-    """Bounds of a box of which most lie near the control without any: around it, above it or below."""
+    """Return bounds of a box of which most are near the unbounded control: around it, above it or below."""
     m = len(kernels.spec.controls)
     with np.errstate(all="ignore"):
         unlimited = ControlSet("box", (-FAR_FACTOR,) * m, (FAR_FACTOR,) * m).arguments
@@ -186,7 +186,7 @@ def _positive(variables: tuple[Variable, ...]) -> dict[int, float]:
 
 
 def _both_forms(of: Evaluation) -> Iterator[Relation]:
-    """The form on floats and that on arrays, of every function; also where costates vanish and no law is decided."""
+    """Relate the form on floats to that on arrays, of every function, also at zero costates."""
     columns = _columns_of(of.at, len(of.at["t"]) // (1 + COPIES))
     columns.append({**columns[0], "lam": (0.0,) * len(of.at["lam"])})
     for name, signature in of.signatures.items():
@@ -201,7 +201,7 @@ def _both_forms(of: Evaluation) -> Iterator[Relation]:
 def _singly(
     function: Function, arguments: tuple[str, ...], columns: Sequence[Mapping[str, Any]]
 ) -> tuple[Array, list[int]]:
-    """A function on floats, a row for each place where it has a value, and these places: arrays may get over others."""
+    """Evaluate a function on floats at each place; return the rows and the places that have a value."""
     every, given = list(range(len(columns))), [[at[a] for a in arguments] for at in columns]
     try:
         return np.array([function(*one) for one in given], dtype=float).reshape(len(given), -1), every
@@ -212,7 +212,7 @@ def _singly(
 
 
 def _single(function: Function, given: Sequence[Any]) -> list[float] | None:
-    """One row; ``None`` where something in it has no value."""
+    """Evaluate a function at one place; ``None`` where a number has no value."""
     try:
         found = function(*given)
         return [*map(float, found)] if isinstance(found, tuple) else [float(found)]
@@ -221,26 +221,26 @@ def _single(function: Function, given: Sequence[Any]) -> list[float] | None:
 
 
 def column(at: Mapping[str, Any], k: int) -> dict[str, Any]:
-    """One place of many, as floats."""
+    """Return the arguments at one of many places, as floats."""
     return _columns_of({name: np.asarray(values)[..., k : k + 1] for name, values in at.items()}, 1)[0]
 
 
 def _columns_of(at: Mapping[str, Any], count: int) -> list[dict[str, Any]]:
-    """The first places, each as floats."""
+    """Return the first places, each as floats."""
     tables = {name: np.asarray(values, dtype=float).reshape(-1, len(at["t"])) for name, values in at.items()}
     rows = {name: table[:, :count].T.tolist() for name, table in tables.items()}
     return [{name: own[k][0] if name == "t" else tuple(own[k]) for name, own in rows.items()} for k in range(count)]
 
 
 def _first_steps(kernels: Kernels, at: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[Array, Array, Array]]:
-    """The first place, and a few times from there, with controls at and between these, which are those of others."""
+    """Return the first place, and a few times from there, with the controls of other places at and between them."""
     first, u = column(at, 0), at["u"][:, :STEPS]
     times = first["t"] + _short(kernels, first) * np.array([0.0, 1.0, 1.5])
     return first, (times, u, 0.3 * u[:, :-1] + 0.7 * u[:, 1:])
 
 
 def _loops(of: Evaluation, first: Mapping[str, Any], along: tuple[Array, Array, Array]) -> Iterator[Relation]:
-    """Trajectory loops over a few steps from a place."""
+    """Relate trajectory loops over a few steps to plain ones."""
     kernels, (times, u, u_mid) = of.kernels, along
     p, start, end = first["p"], first["x"], first["lam"]
     x, x_mid, cost = kernels.forward(times, start, u, u_mid, p)
@@ -270,7 +270,7 @@ def _largest(rows: Array) -> Array:
 
 
 def _short(kernels: Kernels, at: Mapping[str, Any]) -> float:
-    """A time in which the states change by some tenth of themselves."""
+    """Return a time in which the states change by about a tenth of themselves."""
     try:
         rates = np.abs(kernels.dynamics(at["t"], at["x"], at["u"], at["p"]))
     except _FAILED:

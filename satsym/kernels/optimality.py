@@ -1,4 +1,4 @@
-"""What the functions of a problem with a cost, and of its path constraints, must have to do with each other.
+"""Relations between the functions of a problem with a cost, and of its path constraints.
 
 Where controls switch, the Hamiltonian of the regularised problem is H + smoothing/2 u^2 with a factor of the weights of
 |u|.
@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
-from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
 from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, Relation, along, derivative, size
+from satsym.kernels.relations import effort, of_sets, outside_ball, outside_box, relaxed, slope_terms
 
 
 def of_the_cost(of: Evaluation) -> Iterator[Relation]:
-    """Relations of the Hamiltonian, the law, the canonical equations and the right end."""
+    """Yield relations of the Hamiltonian, the law, the canonical equations and the boundary residuals."""
     yield from _of_hamiltonian(of)
     if of.kernels.spec.switching:
         yield from of_switching(of)
@@ -73,7 +73,7 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
 
 
 def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Relation]:
-    """The rates of states and costates with the law in them, and what is derived from these."""
+    """Yield relations of the rates of states and costates under the law, and of their derivatives."""
     rates = (_under_law(of, name, control) for name in ("dynamics", "costate_rate"))
     expected = np.concatenate([*rates]) + surplus
     terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
@@ -85,12 +85,12 @@ def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Re
 
 
 def _under_law(of: Evaluation, name: str, control: Array) -> Array:
-    """A function of the controls under the law; of the regularised problem, where directions may be shorter."""
+    """Evaluate a function of the controls under the law of the problem, or of the regularised problem."""
     return relaxed(of, name) if of.kernels.spec.directional else of(name, u=control)
 
 
 def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
-    """The boundary residuals, put together from cost, reference and constraints."""
+    """Yield relations of the boundary residuals with cost, reference and constraints."""
     x, lam, n = of.at["x"], of.at["lam"], len(of.at["x"])
     given, on_reference, target = (_rows(of.at["final"][k * n : (k + 1) * n], x) for k in range(3))
     found = of("boundary")
@@ -118,7 +118,7 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
 
 
 def _smoothing(of: Evaluation, control: Array) -> Array | float:
-    """What the companion's Hamiltonian has besides, where there is one."""
+    """Return the additional terms of the regularised problem's Hamiltonian, where there are any."""
     if of.kernels.spec.directional:
         return effort(of)
     if not of.kernels.spec.switching:
@@ -127,12 +127,12 @@ def _smoothing(of: Evaluation, control: Array) -> Array | float:
 
 
 def _rows(values: Any, like: Array) -> Array:
-    """A tuple of numbers or arrays as a table of as many columns."""
+    """Return a tuple of numbers or arrays as a table with equally many columns."""
     return np.array([np.broadcast_to(value, like.shape[-1:]) for value in values]).reshape(len(values), like.shape[-1])
 
 
 def of_switching(of: Evaluation) -> Iterator[Relation]:
-    """Switching functions and weights, their rates, and the exact law."""
+    """Yield relations of switching functions and weights, their rates, and the exact law."""
     u = of.at["u"]
     sigma, weight = of("switching_function"), _weights(of)
     alone = u[:, None, :] * np.eye(len(u))[:, :, None]
@@ -163,7 +163,7 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
 
 
 def _slope(of: Evaluation, name: str, by: str) -> Array:
-    """A derivative, zero where the function does not have the argument."""
+    """Return a derivative of a function, zero where the function does not have the argument."""
     if by in of.signatures[name].arguments:
         return of.slope(name, by)
     value = of(name)
@@ -171,7 +171,7 @@ def _slope(of: Evaluation, name: str, by: str) -> Array:
 
 
 def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
-    """Lower and upper bounds as tables, smoothing and share."""
+    """Return lower and upper bounds as tables, with smoothing and the factor of weights."""
     u = of.at["u"]
     bounds = [np.broadcast_to(value, u.shape[-1:]) for value in of.at["bounds"]]
     limits = ControlSet.from_arguments(of.kernels.spec, bounds)
@@ -179,7 +179,10 @@ def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
 
 
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
-    """The least of sigma u + weight |u| in the box; where all of an interval is, of minimum magnitude or its middle."""
+    """Return the minimiser of sigma u + weight |u| in the box.
+
+    Where all of an interval minimises, it is the value of least magnitude, or the middle.
+    """
     low, high, *_ = _limits(of)
     least = np.minimum(np.maximum(0.0, low), high)
     rest = np.where((weight > 0.0) | _moving(of)[:, None], least, 0.5 * (low + high))
@@ -191,7 +194,7 @@ def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
 
 
 def regularised_law(of: Evaluation) -> tuple[Array, Array]:
-    """Controls of the companion, and what its states and costates change by besides."""
+    """Return the controls of the regularised problem, and the additional rates of states and costates."""
     low, high, smoothing, fraction = _limits(of)
     sigma, width = of("switching_function"), fraction * _weights(of)
     rest = np.minimum(np.maximum(0.0, low), high)
@@ -204,12 +207,12 @@ def regularised_law(of: Evaluation) -> tuple[Array, Array]:
 
 
 def _moving(of: Evaluation) -> NDArray[np.bool_]:
-    """Whether the magnitude of a control stands in the motion, shape (m,)."""
+    """Tell whether the magnitude of each control occurs in the motion, shape (m,)."""
     return np.asarray(_slope(of, "magnitude_weight", "lam").any(axis=(1, 2)))
 
 
 def extra_cost(of: Evaluation, control: Array) -> Array:
-    """What the companion's Hamiltonian has besides."""
+    """Return the additional terms of the regularised problem's Hamiltonian."""
     *_, smoothing, fraction = _limits(of)
     return np.asarray((0.5 * smoothing * control**2 - (1.0 - fraction) * _weights(of) * np.abs(control)).sum(axis=0))
 
@@ -219,7 +222,7 @@ def _weights(of: Evaluation, **given: Array) -> Array:
 
 
 def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
-    """Gradients and rates are derivatives; what vanishes on the boundary stays there with the multiplier."""
+    """Yield relations of gradients and rates of path constraints, and of quantities that vanish on the boundary."""
     orders = np.array([one.order for one in of.kernels.spec.path_constraints])
     second, derived = orders > 1, orders > 0
     yield from derivative(of, "path_gradient", "path_constraints", ("x",))
@@ -247,25 +250,25 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
 
 
 def _constrained_law(of: Evaluation) -> Array:
-    """Controls of the law without bounds; any controls where it has no closed form, for which all looks hold."""
+    """Return the unbounded law; where it has no closed form, any controls, for which the relations hold as well."""
     closed = of.has("boundary_control") and not of.kernels.spec.switching
     return of("control_law", bounds=_none(of)) if closed else np.asarray(of.at["u"])
 
 
 def _effect(of: Evaluation) -> Array:
-    """What controls do to the last rate of each constraint, shape (h, m, N)."""
+    """Return the derivatives of the last rate of each constraint by the controls, shape (h, m, N)."""
     first, second = np.moveaxis(of.slope("path_rates", "u"), 1, 0)
     return np.where(np.any(second, axis=(1, 2), keepdims=True), second, first)
 
 
 def _none(of: Evaluation) -> Any:
-    """Bounds where there are none."""
+    """Return infinite bounds where there are none."""
     bounds = of.at["bounds"]
     return tuple(np.full(len(of.at["t"]), np.inf if 2 * k >= len(bounds) else -np.inf) for k in range(len(bounds)))
 
 
 def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
-    """Relate a constraint that holds controls with its multiplier: they make H stationary, and keep it zero."""
+    """Relate a constraint that contains controls with its multiplier: they make H stationary, and keep it zero."""
     u = of("boundary_control")[which]
     eta, effect = of("path_multiplier")[which], of("path_effect", u=u)[which]
     kept, sizes = of("path_constraints", u=u)[which], np.abs(effect * u).sum(axis=0)
@@ -312,7 +315,7 @@ def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
 def _along_extremal(
     of: Evaluation, name: str, u: Array, moving: Array, forced: tuple[Array, Array]
 ) -> tuple[Array, Array]:
-    """The rate of change of a function with states and costates, controls being held, and sizes of its terms.
+    """Return the rate of a function along states and costates with constant controls, and the sizes of its terms.
 
     ``forced`` are the rates of the costates, and the sizes of the terms of these.
     """
