@@ -1,7 +1,7 @@
-"""A model of whose inequalities at the end some are active: they are constraints there, and the others are none.
+"""Models in which some inequalities at the end are active: these are treated as constraints, the others are left out.
 
-Inequalities have multipliers and rows of the boundary functions like constraints. Those that are not active are left
-out of both, which is the problem with the active ones stated as constraints.
+Inequalities have multipliers and rows of the boundary functions like constraints. Without those of the inactive ones,
+the problem is that with the active ones stated as constraints.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from satsym.kernels.core import Function, Kernels
 
 @dataclass(frozen=True, eq=False)
 class Active(Kernels):
-    """Kernels with some of a model's inequalities at the end as constraints."""
+    """Kernels in which some of a model's inequalities at the end are constraints."""
 
     whole: Kernels | None = None
-    """Kernels with all inequalities as they were stated."""
+    """The kernels with all inequalities as they were stated."""
     names: frozenset[str] = frozenset()
     """Names of the constraints that are active."""
 
     def compiled(self) -> Kernels:
-        """The compiled kernels; rows are left out in Python."""
+        """Return the compiled kernels; rows are left out in Python."""
         return self if self.backend == "numba" else with_active(stated(self).compiled(), self.names)
 
 
 def stated(model: Kernels) -> Kernels:
-    """The model with all of its inequalities at the end."""
+    """Return the model with all of its inequalities at the end."""
     return model.whole if isinstance(model, Active) and model.whole is not None else model
 
 
 def with_active(model: Kernels, names: Iterable[str]) -> Kernels:
-    """A model with these of its inequalities at the end as constraints, and no other one."""
+    """Return a model with the named inequalities at the end as constraints, and no others."""
     whole, chosen = stated(model), frozenset(names)
     spec, n, c = whole.spec, len(whole.spec.states), len(whole.spec.multipliers)
     if not spec.terminal_inequalities:
@@ -59,7 +59,7 @@ def with_active(model: Kernels, names: Iterable[str]) -> Kernels:
 
 
 def _with_fewer(function: Function, count: int, kept: list[int], wanted: list[int]) -> Function:
-    """A boundary function of fewer multipliers, with fewer entries."""
+    """Return a boundary function with fewer multipliers and fewer entries."""
 
     def fewer(t: Any, x: Any, lam: Any, nu: Any, *others: Any) -> tuple[Any, ...]:
         found = function(t, x, lam, _padded(nu, count, kept), *others)
@@ -82,6 +82,6 @@ def _with_fewer_in_batches(function: Function, count: int, kept: list[int], want
 
 
 def _padded(nu: Any, count: int, kept: list[int]) -> tuple[Any, ...]:
-    """Multipliers of all rows, zero for those that are left out."""
+    """Return multipliers of all rows, zero for the rows that are left out."""
     given = dict(zip(kept, nu, strict=True))
     return tuple(given.get(k, 0.0) for k in range(count))

@@ -1,7 +1,7 @@
-"""Steps for many motions at once, compiled: ``advance(t, h, steps, y, u, p)`` moves every column of y, in place.
+"""Compiled steps for many motions at once: ``advance(t, h, steps, y, u, p)`` moves every column of y, in place.
 
 A motion is a column of arrays, so that neighbours in memory are the same component of different motions. The generated
-scalar form stands in line, for blocks of columns that stay in the processor's registers and its cache for all steps.
+scalar form is inlined, for blocks of columns that stay in the processor's registers and its cache for all steps.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from satsym.status import BadInput
 
 @lru_cache(maxsize=32)
 def block_step(kernels: Kernels, symplectic: bool = False) -> Any:
-    """Steps for the columns of arrays, by RK4 or by kicks and drifts.
+    """Return compiled steps for the columns of arrays, by RK4 or by kicks and drifts.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def block_step(kernels: Kernels, symplectic: bool = False) -> Any:
 
 
 def rk4(kernels: Kernels) -> Any:
-    """RK4 under constant controls."""
+    """Return compiled RK4 steps under constant controls."""
     writer = _Writer(kernels)
     n = range(writer.n)
     body = [
@@ -63,7 +63,7 @@ def rk4(kernels: Kernels) -> Any:
 
 
 def kicks_and_drifts(kernels: Kernels) -> Any:
-    """The symplectic composition of a separable motion, without control."""
+    """Return compiled symplectic steps of a separable motion, without control."""
     writer = _Writer(kernels)
     body = writer.rates("a", "t", [writer.at(i) for i in range(writer.n)])
     for q, v in pairs(kernels.spec):
@@ -80,13 +80,13 @@ def kicks_and_drifts(kernels: Kernels) -> Any:
 
 
 def pairs(spec: ProblemSpec) -> list[tuple[int, int]]:
-    """Numbers of each coordinate and of its velocity among the states of a separable motion."""
+    """Return the positions of each coordinate and of its velocity among the states of a separable motion."""
     place = {name: k for k, name in enumerate(spec.state_names)}
     return [(place[q], place[v]) for q, v in zip(spec.coordinates, spec.velocities, strict=True)]
 
 
 class _Writer:
-    """Writes a loop of a model."""
+    """Writer of the source text of one model's loop."""
 
     def __init__(self, kernels: Kernels) -> None:
         spec = kernels.spec
@@ -95,11 +95,11 @@ class _Writer:
         self.places = {name: self.own.place(name, rows) for name, rows in {"y": self.n, **self.rows}.items()}
 
     def at(self, state: int) -> str:
-        """A state."""
+        """Write a state."""
         return element(self.places["y"], state)
 
     def rates(self, prefix: str, time: str, states: list[str]) -> list[str]:
-        """Lines that give the rates there names: the prefix and a number each."""
+        """Write the lines that compute the rates, named by the prefix and a number each."""
 
         def row(name: str) -> Callable[[int], str]:
             return lambda k: element(self.places[name], k)
@@ -109,7 +109,7 @@ class _Writer:
         return [*found.lines, *(f"{prefix}_{i} = {result}" for i, result in enumerate(found.results))]
 
     def compiled(self, first: list[str], step: list[str]) -> Any:
-        """The loop over the steps, for each block of columns."""
+        """Compile the loop over the steps, for each block of columns."""
         loads = [line for name, at in self.places.items() for line in loaded(at, name, self.rows.get(name, self.n))]
         block = [*loads, "for i in range(steps):", *indented(step), *stored(self.places["y"], "y", self.n)]
         body = [f"w = np.zeros({self.own.size})", *first, *over_blocks("y.shape[1]", block)]

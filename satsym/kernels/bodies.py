@@ -1,9 +1,10 @@
-"""Whether the body of a function is one that the generator writes.
+"""Checks whether the body of a function is one that the generator writes.
 
-A body unpacks its arguments, assigns numbers to names, and returns numbers or stores them. A pointwise function
-is straight-line, but for iterations of a stated number of steps; a loop has one ``for`` over the steps. Whole numbers
+A body unpacks its arguments, assigns numbers to names, and returns numbers or stores them. A pointwise function is
+straight-line, except for iterations of a stated number of steps; a loop has one ``for`` over the steps. Whole numbers
 occur only as indices, in the few forms that stay within nodes and midpoints: compiled code does not check them again.
-Nothing calls a function of the file, so what passes takes time in proportion to its length and to the number of nodes.
+No function of the file is called, so code that passes takes time in proportion to its length and to the number of
+nodes.
 """
 
 from __future__ import annotations
@@ -28,11 +29,11 @@ _FUNCTIONS = {
 
 
 MOST_REPEATED = 60
-"""Steps of an iteration at most."""
+"""Largest number of steps of an iteration."""
 
 
 class Unexpected(Exception):
-    """Something in a module that the generator does not write.
+    """A line of a module is not one that the generator writes.
 
     Parameters
     ----------
@@ -48,12 +49,12 @@ class Unexpected(Exception):
 
 
 def refuse(node: ast.AST, reason: str) -> NoReturn:
-    """Refuse the line of a node."""
+    """Refuse the line of a syntax node."""
     raise Unexpected(getattr(node, "lineno", 1), reason)
 
 
 def text_of(node: ast.AST) -> str:
-    """The node in Python's own layout: two nodes of one text are the same code."""
+    """Return a node in Python's own layout: two nodes with the same text are the same code."""
     try:
         return ast.unparse(node)
     except ValueError:  # an int of thousands of digits, some f-strings
@@ -61,7 +62,7 @@ def text_of(node: ast.AST) -> str:
 
 
 class Body:
-    """Checks a function, statement by statement.
+    """Checker of a function's body, statement by statement.
 
     Parameters
     ----------
@@ -146,7 +147,7 @@ class Body:
                 self.numbers.add(self._new(node, target.id))
 
     def _new(self, node: ast.AST, name: str) -> str:
-        """A name that is given a meaning here, which it then keeps."""
+        """Give a name its one meaning."""
         if name in self.taken or "__" in name or not name.isascii():
             refuse(node, "gives a name another meaning")
         self.taken.add(name)
@@ -163,7 +164,7 @@ class Body:
         self.looped, self.index, self.numbers = True, "", before
 
     def _repeat(self, node: ast.For) -> None:
-        """An iteration, in which numbers are given names and new values."""
+        """Check an iteration, in which numbers get names and new values."""
         match node.iter:
             case ast.Call(func=ast.Name(id="range"), args=[ast.Constant(value=int() as steps)], keywords=[]):
                 if not 0 < steps <= MOST_REPEATED:
@@ -178,7 +179,7 @@ class Body:
         self.repeated = False
 
     def _allocation(self) -> str:
-        """How a batch form makes its result."""
+        """Check how a batch form allocates its result."""
         arguments = self.signature.arguments
         sized = [a for a in arguments if a not in TUPLES and self.packed.get(a) != 0]
         parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in sized]
@@ -191,7 +192,7 @@ class Body:
         )
 
     def _store(self, place: ast.expr) -> None:
-        """An entry of the result of a batch form."""
+        """Check a store into an entry of the result of a batch form."""
         match place:
             case ast.Constant(value=value) if value is ...:
                 entry: tuple[object, ...] = ()
@@ -220,7 +221,10 @@ class Body:
                 refuse(node, "returns something of another shape")
 
     def _number(self, node: ast.expr) -> None:
-        """A float, or an array of floats in a batch form. Loops rather than generators: one frame a level."""
+        """Check an expression: a float, or an array of floats in a batch form.
+
+        It loops instead of using generators: one frame a level.
+        """
         match node:
             case ast.Constant(value=float()):
                 pass
@@ -258,7 +262,7 @@ class Body:
                 refuse(node, f"has an expression of another kind ({_kind(node)})")
 
     def _element(self, node: ast.Subscript) -> None:
-        """An element of a sequence over nodes or midpoints, with an index that is certainly inside."""
+        """Check an element of a sequence over nodes or midpoints, whose index must be inside."""
         inside: set[str] = set()
         if isinstance(node.value, ast.Name):
             if node.value.id in self.nodes:
@@ -270,7 +274,7 @@ class Body:
 
 
 def _kind(node: ast.AST) -> str:
-    """What a reader calls a node, as far as Python has a word for it."""
+    """Return the common name of a syntax node, as far as Python has one."""
     if isinstance(node, ast.Constant):
         return f"a constant that is not a float, but {type(node.value).__name__}"
     if isinstance(node, ast.Name):

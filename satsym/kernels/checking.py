@@ -1,7 +1,7 @@
-"""Whether a text is a module that the generator writes; nothing of it runs here.
+"""Check whether a text is a module that the generator writes, without running any of it.
 
-The generator writes a docstring, two imports, one literal and functions of known names, arguments and results,
-nothing else. What is accepted is that language and no more.
+The generator writes a docstring, two imports, one literal and functions of known names, arguments and results. This
+language is accepted and nothing more.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ _IMPORTS = ("import math", "import numpy as np")
 _LARGEST_INTEGER = 10**6
 _LONGEST_NAME = 1000
 _MOST_WORDS = 200_000
-"""Names, numbers and signs, ends of lines among them; shipped modules have a tenth of that. What Python makes of a text
-takes thousandfold its memory."""
+"""Largest number of tokens of a module, ends of lines included; shipped modules have a tenth of that. Parsing a text
+takes a thousand times its memory."""
 _WORD = re.compile(r"\w+|[^\w ]")
 _NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
 

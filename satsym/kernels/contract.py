@@ -1,4 +1,4 @@
-"""What a generated module holds, function by function: the contract between the generator and everyone else."""
+"""The contents of a generated module, function by function: the contract between the generator and its users."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight"
 
 @dataclass(frozen=True)
 class Signature:
-    """Arguments of a function, and the shape of its result."""
+    """The arguments of a function, and the shape of its result."""
 
     arguments: tuple[str, ...]
-    """Names, in order."""
+    """Names of the arguments, in order."""
     shape: str = ""
     """A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a matrix."""
     over_parameters: bool = False
-    """Whether parameters count for the shape of a batch, so that each of them may be an array."""
+    """Whether parameters count for the shape of a batch, so that each may be an array."""
 
 
 def _signature(arguments: str, shape: str = "") -> Signature:
@@ -72,17 +72,15 @@ _SWITCHING = {
     "magnitude_weight": _signature("t x lam p", "m"),
     "extremal_jacobian": _signature("t x u lam p", "zz"),
 }
-"""What a problem has, in place of the former, whose Hamiltonian is linear in the controls and their magnitudes.
-
-Its ``canonical`` functions and ``boundary`` are those of the smoothed companion, see
-:mod:`satsym.codegen.switching`.
-"""
+"""Functions of a problem whose Hamiltonian is linear in the controls and their magnitudes, in place of the previous
+ones. Its ``canonical`` functions and ``boundary`` are those of the regularised problem, see
+:mod:`satsym.codegen.switching`."""
 DIRECTIONS = {"regularised_cost": _signature("t x lam p bounds")}
-"""What a problem has besides in which some controls are directions: its ``canonical`` functions and ``boundary`` are
-those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."""
+"""Additional functions of a problem in which some controls are directions: its ``canonical`` functions and ``boundary``
+are those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."""
 
 THROTTLES = {"throttle_slope": _signature("t x lam p bounds", "r")}
-"""What such a problem has besides in which vectors may be none: their norms switch by its sign."""
+"""Additional functions of a problem with directions whose vectors may vanish: the norms of these switch by the sign."""
 
 PATH_CONSTRAINTS = {
     "path_constraints": _signature("t x u p bounds", "h"),
@@ -92,21 +90,20 @@ PATH_CONSTRAINTS = {
     "path_vanishing": _signature("t x u lam p bounds", "hw"),
     "path_multiplier": _signature("t x u lam p bounds", "h"),
 }
-"""What a problem has besides that must keep to inequalities along the way, see
-:mod:`satsym.symbolic.principle.path`; second rates of constraints of order one are 0, and of those of order zero, which
-hold a control, all are. The controls of the last two are those of the law; see :data:`BOUNDARY_CONTROLS` for where they
-say nothing of them."""
+"""Additional functions of a problem with path constraints, see :mod:`satsym.symbolic.principle.path`; second rates of
+constraints of order one are 0, and so are all rates of constraints of order zero, which contain a control. The controls
+of the last two functions are those of the law; see :data:`BOUNDARY_CONTROLS` for where these depend on no control."""
 
 BOUNDARY_CONTROLS = {"boundary_control": _signature("t x lam p bounds", "hm")}
-"""Where H is known to be quadratic in the controls. Elsewhere controls are where H_u vanishes, or that of H with a
-constraint that holds them, which Newton's method finds with its multiplier."""
+"""Additional functions where H is known to be quadratic in the controls. Elsewhere Newton's method finds the controls,
+with the multiplier, where the derivative by the controls of H, or of H with the constraint adjoined, vanishes."""
 
 INTERIOR = {
     "interior": _signature("t x p", "j"),
     "interior_gradient": _signature("t x p", "jn"),
     "interior_drift": _signature("t x p", "j"),
 }
-"""What a problem has besides that must pass points on the way, see :mod:`satsym.symbolic.principle.path.interior`."""
+"""Additional functions of a problem with points on the way, see :mod:`satsym.symbolic.principle.path.interior`."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
@@ -114,7 +111,7 @@ CURVE = {
     "transition_time": _signature("t x p bounds final"),
     "first_arc_time": _signature("t x p bounds final"),
 }
-"""What a problem of least time has besides whose switching curve is known in closed form."""
+"""Additional functions of a minimum-time problem whose switching curve is known in closed form."""
 LINEAR = {
     "state_matrix": _of_parameters("t p", "nn"),
     "input_matrix": _of_parameters("t p", "nm"),
@@ -153,7 +150,7 @@ LOOPS = _FORWARD | _BACKWARD | _SYMPLECTIC
 
 
 def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
-    """Signatures of the functions of one point in time that a model with this description has."""
+    """Return the signatures of all functions of one point in time for a model with this description."""
     found = dict(_MOTION)
     found |= _REFERENCE if spec.has_reference else {}
     found |= _INVARIANTS if spec.invariants else {}
@@ -175,12 +172,12 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
 
 
 def loops(spec: ProblemSpec) -> dict[str, Signature]:
-    """Signatures of the trajectory loops that a model with this description has."""
+    """Return the signatures of the trajectory loops for a model with this description."""
     return _FORWARD | (_BACKWARD if spec.has_cost else {}) | (_SYMPLECTIC if spec.separable else {})
 
 
 def sizes(spec: ProblemSpec) -> dict[str, int]:
-    """What each letter counts.
+    """Return the number that each letter of a shape stands for.
 
     States (n), controls (m), parameters (k), bounds (b; with what regularises a switching problem or directions),
     invariants (i), position components (q), constraints at the final time (c), choices and targets there (f), states
@@ -202,6 +199,6 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
 
 
 def missing(spec: ProblemSpec, present: Collection[str]) -> list[str]:
-    """Names of functions that a module with this description must have and has not."""
+    """Return the names of functions that a module with this description must have but lacks."""
     functions = pointwise(spec)
     return [name for name in (*functions, *loops(spec), *(f + BATCH for f in functions)) if name not in present]

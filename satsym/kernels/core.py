@@ -1,6 +1,6 @@
 """The Kernels object: a model's description and functions, and the trajectory loops on arrays.
 
-Its scalar functions and loops may be compiled with numba, from the code that Python runs.
+Scalar functions and loops may be compiled with numba, from the code that Python runs.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ else:
 
 
 def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str, Any]:
-    """The functions with their scalar forms and loops as numba dispatchers, which compile at the first call.
+    """Return the functions with scalar forms and loops as numba dispatchers, which compile at the first call.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Kernels(Functions):
     """
 
     spec: ProblemSpec
-    """Names, units and kinds."""
+    """Names, units and kinds of the model."""
     functions: Mapping[str, Function]
     """The generated functions by name."""
     backend: Backend = "python"
@@ -95,7 +95,7 @@ class Kernels(Functions):
     origin: tuple[str, Path | None] | None = None
     """What :func:`satsym.kernels.load` was given, so that another process can load it again."""
     text: str | None = None
-    """Text of a module that is not a shipped one; another process makes the same kernels from it."""
+    """Text of a module that is not shipped, from which another process makes the same kernels."""
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.
@@ -228,12 +228,12 @@ class Kernels(Functions):
             raise BadInput(f"{self.spec.name}: no symplectic integrator applies to this model: {reason}")
 
     def in_domain(self, x: ArrayLike) -> bool:
-        """Whether the states that must be positive are so, at every node of ``x``, shape (n,) or (n, N+1)."""
+        """Tell whether the states that must be positive are so, at every node of ``x``, shape (n,) or (n, N+1)."""
         rows = np.asarray(x, dtype=float)
         return all(bool((rows[i] > 0.0).all()) for i, state in enumerate(self.spec.states) if state.positive)
 
     def compiled(self) -> Kernels:
-        """Compile the functions with numba (extra ``fast``) from the very same code; they are made once.
+        """Return kernels whose functions are compiled with numba (extra ``fast``) from the same code; they are cached.
 
         Raises
         ------

@@ -1,8 +1,7 @@
-"""The digests that a generated module carries: its own, and those of the derivation files that it was made of.
+"""The digests in a generated module: its own, and those of the derivation files that it was made from.
 
-By the one a module that was edited by hand is known from one that was not, by the others one that is older than its
-derivation. They guard against accidents, not against malice: whoever recomputes them meets
-:mod:`satsym.kernels.consistency`.
+Its own digest shows whether a module was edited by hand, the others whether it is older than its derivation. They guard
+against accidents, not against malice: a module with forged digests still has to pass :mod:`satsym.kernels.consistency`.
 """
 
 from __future__ import annotations
@@ -19,11 +18,11 @@ _LINE = re.compile(r"^Digest: ([0-9a-f]{64})\n", re.MULTILINE)
 _SOURCE = re.compile(r"^Source: ([^\n\0]{1,400}\.py) ([0-9a-f]{32})\n", re.MULTILINE)
 _PLACE = "    satsym derive "
 _MOST_BYTES = 10_000_000
-"""Bytes of a derivation file, at most."""
+"""Largest size of a derivation file, in bytes."""
 
 
 def sealed(text: str, folder: Path | None = None, stating: Mapping[Path, str] | None = None) -> str:
-    """The text of a module with its digests in the docstring, below the command that writes it.
+    """Return the text of a module with its digests in the docstring, in place of those it has.
 
     Those that it has already are replaced.
 
@@ -43,14 +42,14 @@ def sealed(text: str, folder: Path | None = None, stating: Mapping[Path, str] | 
 
 
 def intact(text: str) -> bool:
-    """Whether a module says of itself what it is; one without a digest does not. Ends of lines do not count."""
+    """Tell whether the digest of a module fits its text; without a digest it does not. Line ends do not count."""
     text = text.replace("\r\n", "\n")
     found = _LINE.search(text)
     return found is not None and found[1] == _of(_without(text))
 
 
 def changed(text: str, folder: Path) -> tuple[Path, Path] | None:
-    """A derivation file that is not what it was when a module was made of it, and the one with the module's problem.
+    """Return a derivation file that has changed since a module was made from it, and the file of the module's problem.
 
     ``None`` where all are the same; what is not there is not known to have changed.
 
@@ -66,7 +65,7 @@ def changed(text: str, folder: Path) -> tuple[Path, Path] | None:
 
 
 def _source_line(path: Path, digest: str, folder: Path) -> str:
-    """Where a derivation file lies, seen from the module, and its digest; empty where no relative path leads there."""
+    """Return a derivation file's path relative to the module, with its digest; empty without such a path."""
     try:
         place = Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
     except ValueError:  # another drive
@@ -76,7 +75,7 @@ def _source_line(path: Path, digest: str, folder: Path) -> str:
 
 
 def _now(path: Path) -> str:
-    """The digest of a derivation file; empty where there is none that could be one."""
+    """Return the digest of a derivation file; empty where there is no readable file."""
     try:
         small = path.is_file() and path.stat().st_size <= _MOST_BYTES
     except (OSError, ValueError):

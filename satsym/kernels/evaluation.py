@@ -1,8 +1,8 @@
-"""Batch forms at several places: values, derivatives by complex steps, and relations that hold between them.
+"""Evaluation of batch forms at several places: values, derivatives by complex steps, and relations between them.
 
-The Hamiltonian says it all: its derivatives are the rates of states and costates, where it is least over the admissible
-controls is the law, and with the law in it these rates are the canonical equations. Each relation is two sides that
-were generated apart.
+The Hamiltonian determines the other functions: its derivatives are the rates of states and costates, its minimiser over
+the admissible controls is the law, and with the law in it these rates are the canonical equations. The two sides of
+each relation were generated separately.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from satsym.kernels.core import Function, Kernels
 
 COMPLEX_STEP = 1e-30
 COPIES, COPY_DISTANCE = 2, 1e-4
-"""Copies of each place, and how far aside of it they are, relative to each argument."""
+"""Number of displaced copies of each place, and their distance from it, relative to each argument."""
 
 SMALLEST_FRACTION = 1e-4
-"""Share of what a row of derivatives comes to at most, at which something smaller in it counts: terms may cancel."""
+"""Fraction of the largest entry in a row of derivatives below which an entry is not resolved, since terms may cancel.
+"""
 
 TOGETHER = {
     "dynamics": ("x", "u"),
@@ -38,12 +39,12 @@ TOGETHER = {
     "inertial_state": ("x", "t"),
     "switching_function": ("x", "lam", "t"),
 }
-"""Functions whose derivatives by several arguments are wanted: one call gives them all."""
+"""Arguments by which derivatives of a function are computed in one call."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The functions of a model at places, and at copies a little aside of them."""
+    """The functions of a model, evaluated at places and at copies displaced a little from them."""
 
     kernels: Kernels
     """Kernels whose functions are evaluated."""
@@ -53,22 +54,22 @@ class Evaluation:
 
     @cached_property
     def signatures(self) -> dict[str, Signature]:
-        """Signatures of the functions that the model has."""
+        """Return the signatures of the functions that the model has."""
         return pointwise(self.kernels.spec)
 
     def has(self, *names: str) -> bool:
-        """Whether the model has all of these functions."""
+        """Tell whether the model has all of these functions."""
         return set(names) <= set(self.signatures)
 
     @cached_property
     def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of the functions' values at one place."""
+        """Return the shapes of the functions' values at one place."""
         counts = sizes(self.kernels.spec)
         return {name: tuple(counts[k] for k in signature.shape) for name, signature in self.signatures.items()}
 
     @cached_property
     def _and_without_costates(self) -> dict[str, Any]:
-        """The arguments with a column more: the first place, without costates."""
+        """Return the arguments with one more column: the first place, with zero costates."""
         found: dict[str, Any] = {}
         for name in self.at:
             table = self._table(name, {})
@@ -78,11 +79,11 @@ class Evaluation:
 
     @cached_property
     def _known(self) -> dict[tuple[str, str], Array]:
-        """Values (with no argument) and derivatives by an argument at the columns themselves, kept."""
+        """Return the cache of values (with no argument) and derivatives by an argument at the columns themselves."""
         return {}
 
     def __call__(self, name: str, **instead: Any) -> Array:
-        """A function at all columns, some arguments being others; the last axis counts the columns."""
+        """Evaluate a function at all columns, with some arguments replaced; the last axis counts the columns."""
         columns = len(self.at["t"])
         if instead:
             return self._value(name, {**self.at, **instead}, columns)
@@ -92,16 +93,19 @@ class Evaluation:
         return self._known[name, ""]
 
     def single(self, name: str) -> Function:
-        """The form on floats of a function."""
+        """Return the form on floats of a function."""
         return self.kernels.functions[name]
 
     def without_costates(self, name: str) -> Array:
-        """A function at the first place if all costates vanish there, where laws may decide nothing; a column."""
+        """Evaluate a function at the first place with zero costates, where laws may be undecided; a column."""
         self(name)
         return self._known[name, "without costates"]
 
     def slope(self, name: str, by: str, **instead: Any) -> Array:
-        """Derivatives by all components of an argument, exact but for rounding; the last axis but one counts these."""
+        """Return derivatives by all components of an argument, exact up to rounding.
+
+        The last axis but one counts the components.
+        """
         if instead:
             return self._slopes(name, (by,), instead)[by]
         if (name, by) not in self._known:
@@ -116,7 +120,7 @@ class Evaluation:
         return found
 
     def _slopes(self, name: str, by: Sequence[str], instead: Mapping[str, Any]) -> dict[str, Array]:
-        """Derivatives of a function by several arguments, computed in one call."""
+        """Return derivatives of a function by several arguments, computed in one call."""
         tables = {a: self._table(a, instead) for a in by}
         count, columns, first = sum(map(len, tables.values())), len(self.at["t"]), 0
         steps = 1j * COMPLEX_STEP * np.eye(count)[:, :, None]
@@ -134,7 +138,7 @@ class Evaluation:
         return found
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
-        """How small derivatives may be before what they are made of is lost: see :data:`SMALLEST_FRACTION`."""
+        """Return the size below which a derivative is lost in rounding: see :data:`SMALLEST_FRACTION`."""
         if instead:
             unit, value = size(self._table(by, instead)), size(self(name, **instead))
         else:
@@ -143,7 +147,7 @@ class Evaluation:
 
     @cached_property
     def _sizes(self) -> dict[tuple[str, str], Array]:
-        """Sizes of functions at the columns themselves, and of arguments, told in one go."""
+        """Return the sizes of functions at the columns themselves, and of arguments, computed together."""
         tables = {(name, ""): self(name) for name in self.signatures} | {("", a): self._table(a, {}) for a in self.at}
         columns, found, end = len(self.at["t"]), dict[tuple[str, str], Array](), 0
         every = size(np.concatenate([table.reshape(-1, columns) for table in tables.values()]))
@@ -156,12 +160,12 @@ class Evaluation:
         return np.asarray(instead.get(by, self.at[by]), dtype=float).reshape(-1, len(self.at["t"]))
 
     def _called(self, name: str, at: Mapping[str, Any], out: Array) -> None:
-        """A function into an array that is given, so that it need not find out shapes and types."""
+        """Evaluate a function into a given array, so that shapes and types need not be found."""
         self.kernels.functions[name + BATCH](*(at[a] for a in self.signatures[name].arguments), out=out)
 
 
 def with_copies(at: Mapping[str, Any], seed: int) -> dict[str, Any]:
-    """Arguments at places (K,) with copies aside of each, every component by another share of itself."""
+    """Return arguments at places (K,) with displaced copies of each, every component by a different fraction."""
     tables = {name: np.asarray(values, dtype=float).reshape(-1, len(at["t"])) for name, values in at.items()}
     all_rows = np.concatenate(list(tables.values()))
     aside = _aside(seed, COPIES * all_rows.size).reshape(len(all_rows), COPIES, -1)
@@ -175,16 +179,17 @@ def with_copies(at: Mapping[str, Any], seed: int) -> dict[str, Any]:
 
 @lru_cache(maxsize=8)
 def _aside(seed: int, count: int) -> Array:
-    """Factors by which arguments are moved."""
+    """Return the factors by which arguments are displaced."""
     rng = random.Random(seed)
     drawn = np.array([rng.random() - 0.5 for _ in range(count)])
     return np.asarray(1.0 + COPY_DISTANCE * (drawn + np.copysign(0.5, drawn)))
 
 
 def size(values: Array) -> Array:
-    """What errors of values are relative to, over all columns; the last axis becomes one.
+    """Return the size to which errors of values are relative, over all columns; the last axis becomes one.
 
-    Their magnitude, and what they change by, for one part in the arguments: rounding does as much to them.
+    It is the magnitude of the values plus their change for a relative change of the arguments by one: rounding of the
+    arguments affects them as much.
     """
     if not np.isfinite(values).all():
         values = np.where(np.isfinite(values), values, 0.0)
@@ -195,21 +200,21 @@ def size(values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Relation:
-    """Two sides that must be equal but for rounding."""
+    """Two sides that must be equal up to rounding."""
 
     function: str
-    """The one that is held against the others."""
+    """Name of the function that is compared with others."""
     claim: str
-    """What it must be."""
+    """The relation that the function must satisfy, in words."""
     left: Array
     right: Array
     """The two sides that must be equal, of one shape; the last axis counts columns."""
     terms: Array | float = 0.0
-    """Sizes of what the sides are sums of, where these may cancel; broadcast against the sides."""
+    """Sizes of the terms of both sides, where these may cancel; broadcast against the sides."""
 
 
 def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> list[float]:
-    """Largest difference of the sides of each relation, relative to their size; all of as many columns.
+    """Return the largest difference of the sides of each relation, relative to their size.
 
     Where neither side is finite there is nothing to compare; where one is, they could not differ more.
 
@@ -239,7 +244,7 @@ def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> li
 def derivative(
     of: Evaluation, name: str, function: str, by: tuple[str, ...], factor: float = 1.0
 ) -> Iterator[Relation]:
-    """A function must be the derivative of another, by one argument or by several in turn."""
+    """Relate a function to the derivative of another, by one argument or by several in turn."""
     arguments = [a for a in by if len(of.at[a])]
     if not arguments:
         return
@@ -250,7 +255,7 @@ def derivative(
 
 
 def along(of: Evaluation, name: str, rates: Array, **instead: Array) -> tuple[Array, Array]:
-    """The rate of change of a function along a motion of the states, and the terms it consists of."""
+    """Return the rate of change of a function along a motion of the states, and the terms of this rate."""
     by_time = of.slope(name, "t", **instead)[..., 0, :]
     parts = of.slope(name, "x", **instead) * rates
     return by_time + parts.sum(axis=-2), np.abs(by_time) + np.abs(parts).sum(axis=-2)

@@ -1,8 +1,8 @@
 """Find a model by name or by path, and make its Kernels.
 
-Shipped modules are imported like any other. A file that an instance names by path is data from someone else:
-it must lie in the instance's folder, and it is checked node by node before anything in it runs; then its digest, and
-its functions against one another.
+Shipped modules are imported like any other. A file that an instance names by path is foreign data: it must lie in the
+instance's folder, and it is checked node by node before anything in it runs; then its digest is checked, and its
+functions against each other.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
 MOST_BYTES = 1_000_000
-"""Bytes of a module file; the shipped ones have a twentieth of that."""
+"""Largest size of a module file, in bytes; the shipped ones have a twentieth of that."""
 
 _DECLARING = "satsym.symbolic"
-"""What derivation files import, and no module that is derived."""
+"""The package that derivation files import, and generated modules never do."""
 _STATED = re.compile(r"""\bProblem\(\s*(?:name\s*=\s*)?["']([a-z][a-z0-9_]{0,99})["']""")
 
 _ANEW = "write it anew with `satsym derive`"
@@ -42,12 +42,12 @@ _EDITED = "edited by hand or damaged since it was written; run `satsym derive` a
 
 
 def shipped() -> list[str]:
-    """Names of the shipped models, without importing them."""
+    """Return the names of the shipped models, without importing them."""
     return source_files.models()
 
 
 def load(model: str, folder: Path | None = None) -> Kernels:
-    """The kernels of a shipped model, or of a generated file in ``folder``.
+    """Return the kernels of a shipped model, or of a generated file in ``folder``.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def load(model: str, folder: Path | None = None) -> Kernels:
 
 @lru_cache(maxsize=32)
 def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
-    """The kernels of a module that has not been written to a file, its code checked as that of one that has.
+    """Return the kernels of a module that has not been written to a file, after the same checks of its code.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _refuse_ending(model: str) -> NoReturn:
 
 
 def _refuse_derivation(model: str, path: Path, root: Path, text: str) -> None:
-    """Refuse a file that states a problem, with what makes the module of it that is wanted."""
+    """Refuse a file that states a problem, and advise how to generate the wanted module from it."""
     if _DECLARING not in source_files.imports(text):
         return
     out, stating = (os.path.relpath(place) for place in (root / "generated", path))
@@ -135,7 +135,7 @@ def _refuse_derivation(model: str, path: Path, root: Path, text: str) -> None:
 
 
 def _lying(name: str) -> tuple[str, Path]:
-    """The text of a shipped module, empty where nothing tells it, and the folder in which it lies."""
+    """Return the text of a shipped module, empty where it cannot be read, and its folder."""
     module = importlib.import_module(f"{source_files.GENERATED}.{name}")
     loader = module.__loader__
     text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
@@ -143,12 +143,12 @@ def _lying(name: str) -> tuple[str, Path]:
 
 
 def shipped_text(name: str) -> str:
-    """The text of a shipped module; empty where nothing tells it."""
+    """Return the text of a shipped module; empty where it cannot be read."""
     return _lying(name)[0]
 
 
 def _refuse_older(model: str, text: str, folder: Path) -> None:
-    """Refuse a module that is older than its derivation file: what it solves is no longer what that file states."""
+    """Refuse a module that is older than its derivation file, because that file now states another problem."""
     if (found := changed(text, folder)) is None:
         return
     edited, stating, out = (printable(os.path.relpath(path.resolve()), 150) for path in (*found, folder))
@@ -170,7 +170,7 @@ def _load_shipped(name: str) -> Kernels:
 
 
 def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
-    """The file that a relative path names, and the folder that it cannot leave, symbolic links followed."""
+    """Return the file that a relative path names, and the folder that it cannot leave, with symbolic links followed."""
     if Path(model).is_absolute():
         raise BadInput(
             f"{shown(model)}: absolute paths are not allowed; write a path relative to the folder of the instance file"
@@ -195,7 +195,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
 
 
 def _read(model: str, path: Path) -> str:
-    """The text of the file, read once: what is checked is what runs."""
+    """Return the text of the file, read once: the text that is checked is the text that runs."""
     try:
         with path.open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
@@ -210,7 +210,7 @@ def _read(model: str, path: Path) -> str:
 
 @lru_cache(maxsize=32)
 def _load_file(model: str, root: Path, path: Path, text: str) -> Kernels:
-    """The kernels of a file, which must be as it was written, and must not contradict itself."""
+    """Return the kernels of a file that is as it was written and does not contradict itself."""
     from satsym.kernels import consistency
 
     found = _load_text(model, root, path, text)
@@ -249,7 +249,7 @@ def _defined(namespace: Mapping[str, Any]) -> dict[str, Function]:
 
 
 def _parts(kernels: Kernels) -> tuple[Callable[..., Kernels], tuple[Any, ...]]:
-    """How kernels travel between processes: by where they come from, to be loaded there again."""
+    """Return how to rebuild kernels in another process: by their source, to be loaded there again."""
     if kernels.origin is None:
         return Kernels, (kernels.spec, kernels.functions, kernels.backend)
     return _restored, (*kernels.origin, kernels.text, kernels.backend)

@@ -1,8 +1,8 @@
-"""Generated functions with any number of digits: their very text, with mpmath in the place of ``math`` and ``np``.
+"""Generated functions with any number of digits: their own text, with mpmath in place of ``math`` and ``np``.
 
-Where terms cancel, floats keep nothing but rounding, which is neither the same in two forms of a function nor the
-derivative of anything. The text of the functions tells what they are without it. A constant is the number that the
-generator wrote down, of which the text has the first 17 digits, or the decimal that stands there.
+Where terms cancel, floats keep nothing but rounding errors, which differ between two forms of a function and are not
+the derivative of anything. The text of the functions shows their values without rounding. A constant is the number that
+the generator wrote down, of which the text has the first 17 digits, or the decimal in the text.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from satsym.kernels.evaluation import Evaluation, Relation
 from satsym.spec import ProblemSpec
 
 DIGITS = 60
-"""Digits of derivatives; values have twice as many."""
+"""Number of digits of derivatives; values have twice as many."""
 
 NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
-"""What functions raise outside their domain: roots of negative numbers are complex, which have no order."""
+"""Errors that functions raise outside their domain."""
 
 Place = Mapping[str, Any]
 """Arguments by name: numbers, and tuples of numbers."""
 
 
 def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]:
-    """The functions of a module by name, in the working precision of mpmath.
+    """Return the functions of a module by name, in the working precision of mpmath.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function
 
 
 def _noting(seen: dict[int, Any]) -> Function:
-    """A function that takes note of the difference of two numbers and returns the first."""
+    """Return a function that records the difference of two numbers and returns the first."""
 
     def note(number: int, left: Any, right: Any) -> Any:
         seen[number] = left - right
@@ -79,7 +79,7 @@ def _noting(seen: dict[int, Any]) -> Function:
 def _defined(
     body: list[ast.FunctionDef], written: Mapping[float, Any], besides: Mapping[str, Any]
 ) -> dict[str, Function]:
-    """The functions of syntax trees by name, in the working precision of mpmath."""
+    """Return the functions of syntax trees by name, in the working precision of mpmath."""
     constants = _Constants(written)
     body = [constants.visit(node) for node in body]
     names: dict[str, Any] = {
@@ -96,18 +96,18 @@ def _defined(
 
 @dataclass(frozen=True, eq=False)
 class LongEvaluation(Evaluation):
-    """An evaluation whose values and derivatives have many digits until they are rounded.
+    """An evaluation whose values and derivatives are computed with many digits and then rounded.
 
-    Floats stay where the text has no numbers: what arrays compute beyond a condition, and do not use, may be none.
+    Floats are kept where the text has no numbers: arrays may compute, beyond a condition, values that are not used.
     """
 
     @cached_property
     def text(self) -> dict[str, Function]:
-        """The functions by name, in the working precision of mpmath."""
+        """Return the functions by name, in the working precision of mpmath."""
         return functions_of(self.kernels.text or "", {})
 
     def single(self, name: str) -> Function:
-        """The form on floats of a function."""
+        """Return the form on floats of a function."""
 
         def function(*given: Any) -> tuple[float, ...]:
             with mp.workdps(2 * DIGITS):
@@ -134,7 +134,7 @@ class LongEvaluation(Evaluation):
         return found
 
     def _place(self, name: str, at: Mapping[str, Any], column: int, columns: int) -> dict[str, Any]:
-        """The arguments of a function in one column, in numbers of mpmath."""
+        """Return the arguments of a function in one column as numbers of mpmath."""
         found: dict[str, Any] = {}
         for a in self.signatures[name].arguments:
             table = np.asarray(at[a], dtype=float).reshape(-1, columns)[:, column]
@@ -147,7 +147,7 @@ class LongEvaluation(Evaluation):
         return out.ravel().tolist()
 
     def _moved(self, name: str, place: Place, argument: str, component: int, by: Any) -> list[Any]:
-        """The numbers of a function where one component of an argument is another."""
+        """Return the values of a function where one component of an argument is changed."""
         value = place[argument]
         if isinstance(value, tuple):
             moved: Any = tuple(v + by if i == component else v for i, v in enumerate(value))
@@ -157,7 +157,7 @@ class LongEvaluation(Evaluation):
 
     @staticmethod
     def _put(into: Array, digits: int, numbers: Callable[[], Sequence[Any]]) -> None:
-        """Round numbers into a part of a table, if there are such."""
+        """Round numbers into a part of a table, if they exist."""
         try:
             with mp.workdps(digits):
                 found = _rounded(numbers())
@@ -168,7 +168,7 @@ class LongEvaluation(Evaluation):
 
 
 def of_loops(of: LongEvaluation, place: Place, along: tuple[Array, Array, Array]) -> Iterator[Relation]:
-    """Loops and those of textbooks, as :func:`loops`, where the rates have numbers."""
+    """Return generated and plain loops, as :func:`loops`, where the rates have numbers."""
     for name, sides in loops(of.kernels.spec, of.text, place, along).items():
         try:
             left, right = (np.array([_rounded(side)]).T for side in sides(2 * DIGITS))
@@ -180,7 +180,7 @@ def of_loops(of: LongEvaluation, place: Place, along: tuple[Array, Array, Array]
 def loops(
     spec: ProblemSpec, text: Mapping[str, Function], place: Place, along: tuple[Array, Array, Array]
 ) -> dict[str, Callable[[int], Sides]]:
-    """Digits -> what a loop and the same one of textbooks give, by name of the loop.
+    """Return, by name of the loop, functions from digits to results of the generated and of a plain loop.
 
     Parameters
     ----------
@@ -233,32 +233,32 @@ def loops(
 
 
 def exactly(value: Any) -> Any:
-    """A number, or several, of mpmath."""
+    """Convert a value, or several, to numbers of mpmath."""
     return tuple(map(mp.mpf, value)) if isinstance(value, tuple) else mp.mpf(value)
 
 
 def _to_objects(values: Array) -> Any:
-    """An array of numbers of mpmath."""
+    """Return an array of mpmath numbers."""
     found = np.empty(values.size, dtype=object)
     found[:] = [mp.mpf(float(v)) for v in values.flat]
     return found.reshape(values.shape)
 
 
 def _rounded(values: Sequence[Any]) -> list[float]:
-    """Floats; what is next to nothing beside one and the largest of them is what cancelling leaves, and zero."""
+    """Round numbers to floats; numbers that are negligible because terms cancelled become zero."""
     faint = NEGLIGIBLE_FRACTION * max((abs(v) for v in values if abs(v) < mp.inf), default=1)
     return [0.0 if abs(v) <= max(faint, NEGLIGIBLE_FRACTION) else float(v) for v in values]
 
 
 class _Constants(ast.NodeTransformer):
-    """Gives floats in a text names, by which they are found with all their digits."""
+    """Gives the floats in a text names, by which they are found with all their digits."""
 
     def __init__(self, written: Mapping[float, Any]) -> None:
         self.written = written
         self.values: dict[str, Any] = {}
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
-        """A name in the place of a float."""
+        """Replace a float by a name."""
         if not isinstance(node.value, float):
             return node
         name = f"_number_{node.value!r}".replace(".", "_").replace("-", "_minus_").replace("+", "")
@@ -269,7 +269,7 @@ class _Constants(ast.NodeTransformer):
 
 
 class _Watched(ast.NodeTransformer):
-    """Has the left side of each condition pass through a function that takes note of the difference of both sides."""
+    """Passes the left side of each condition through a function that records the difference of both sides."""
 
     NOTE = "_note_condition"
     CHOICES = frozenset({"np.minimum", "np.maximum"})
@@ -299,7 +299,7 @@ class _Watched(ast.NodeTransformer):
         return node
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        """Watch what a value is no number for where it is negative: ``0.0*sqrt(...)``."""
+        """Watch a value that is undefined where it is negative: ``0.0*sqrt(...)``."""
         self.generic_visit(node)
         root = node.right
         nothing = isinstance(node.left, ast.Constant) and node.left.value == 0.0
@@ -313,7 +313,7 @@ class _Watched(ast.NodeTransformer):
 
 
 def _real(function: Function) -> Function:
-    """No number where the function has no real one."""
+    """Return a real function whose value is NaN where the function has no real one."""
 
     def value(*arguments: Any) -> Any:
         found = function(*arguments)

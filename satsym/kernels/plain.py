@@ -1,7 +1,7 @@
-"""The trajectory loops once more, as textbooks have them, by calls of functions of one point in time.
+"""The trajectory loops in textbook form, by calls of functions of one point in time.
 
-Slow, and therefore only what the generated loops are held against; on arrays of objects with any number of digits. The
-shares of kicks and drifts of symplectic steps, which all of these loops have, stand here as well.
+They are slow, and serve only to check the generated loops; they also run on arrays of objects with any number of
+digits. The fractions of kicks and drifts of symplectic steps, which all of these loops use, are here as well.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from satsym.kernels.core import Kernels
 def forward(
     kernels: Kernels, times: Array, x0: Sequence[float], u: Array, u_mid: Array, p: tuple[float, ...]
 ) -> tuple[Array, Array, float]:
-    """As :meth:`satsym.kernels.Kernels.forward`."""
+    """Integrate states forward, with the arguments of :meth:`satsym.kernels.Kernels.forward`."""
     n, costs = len(x0), kernels.spec.has_cost
 
     def rates(t: float, y: Array, u_now: Array) -> Array:
@@ -40,7 +40,7 @@ def backward(
     u_mid: Array,
     p: tuple[float, ...],
 ) -> tuple[Array, Array]:
-    """As :meth:`satsym.kernels.Kernels.backward`."""
+    """Integrate costates backward, with the arguments of :meth:`satsym.kernels.Kernels.backward`."""
     n = len(x)
 
     def rates(t: float, lam: Array, given: Array) -> Array:
@@ -53,7 +53,7 @@ def backward(
 
 
 def symplectic(kernels: Kernels, times: Array, x0: Sequence[float], p: tuple[float, ...]) -> Array:
-    """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
+    """Integrate without control by alternating kicks of the velocities and drifts of the coordinates."""
     spec = kernels.spec
     moved, kicked = (np.isin(spec.state_names, group) for group in (spec.coordinates, spec.velocities))
     kicks, drifts = exact_weights()
@@ -71,7 +71,7 @@ def symplectic(kernels: Kernels, times: Array, x0: Sequence[float], p: tuple[flo
 def _rk4(
     rates: Callable[[float, Array, Array], Array], times: Array, start: Array, given: Array, given_mid: Array
 ) -> tuple[Array, Array]:
-    """RK4 and Hermite midpoints; times may run backward."""
+    """Integrate by RK4 with Hermite midpoints; times may run backward."""
     y, middles = [start], []
     for i, h in enumerate(np.diff(times)):
         t, here = times[i], y[-1]
@@ -87,17 +87,17 @@ def _rk4(
 
 KICKS = ("0.0414649985182624", "0.198128671918067", "-0.0400061921041533", "0.0752539843015807", "-0.0115113874206879")
 DRIFTS = ("0.123229775946271", "0.290553797799558", "-0.127049212625417", "-0.246331761062075", "0.357208872795928")
-"""The first of each, of twelve kicks and of the eleven drifts between them; those missing make the sums one."""
+"""The first fractions of the twelve kicks and of the eleven drifts; symmetric, with sums of one."""
 
 
 def weights() -> tuple[list[float], list[float]]:
-    """Shares of the step of the twelve kicks, and of the eleven drifts between them."""
+    """Return the fractions of the step of the twelve kicks, and of the eleven drifts between them."""
     kicks, drifts = exact_weights()
     return [float(k) for k in kicks], [float(d) for d in drifts]
 
 
 def exact_weights() -> tuple[list[Fraction], list[Fraction]]:
-    """Shares of the step of the twelve kicks, and of the eleven drifts between them, as exact fractions.
+    """Return the fractions of the step of the twelve kicks and the eleven drifts exactly.
 
     Kicks and drifts whose composition is symplectic and of sixth order: SRKN_11^b of Blanes and Moan, Practical
     symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, Journal of Computational and Applied Mathematics

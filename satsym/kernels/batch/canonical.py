@@ -1,8 +1,8 @@
-"""Text of steps of the canonical equations for many columns at once, to be compiled.
+"""Source text of steps of the canonical equations for many columns at once, to be compiled.
 
-Every column has its own time, step and parameters; bounds are the same for all. A step is one of an explicit
-Runge-Kutta method, or of the extrapolated midpoint rule, with the running cost or how the end follows the beginning
-integrated along.
+Every column has its own time, step and parameters; bounds are the same for all. A step is one of an explicit Runge-
+Kutta method, or of the extrapolated midpoint rule; the running cost, or the derivatives of the end by the beginning,
+are integrated along.
 """
 
 from __future__ import annotations
@@ -29,31 +29,31 @@ from satsym.kernels.batch.workspace import (
 from satsym.spec import ProblemSpec
 
 Tableau = tuple[Sequence[Sequence[float]], Sequence[float], Sequence[float]]
-"""A, b and c of an explicit Runge-Kutta method."""
+"""The coefficients A, b and c of an explicit Runge-Kutta method."""
 
 CLASSICAL: Tableau = (
     ((0.0,) * 4, (0.5, 0.0, 0.0, 0.0), (0.0, 0.5, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0)),
     (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0),
     (0.0, 0.5, 0.5, 1.0),
 )
-"""The method of order four."""
+"""The tableau of the classical method of order four."""
 
 COLUMNS = 8
-"""Columns of an extrapolation table at most."""
+"""Largest number of columns of an extrapolation table."""
 
 
 @dataclass(frozen=True)
 class Rows:
-    """What is integrated together."""
+    """The quantities that are integrated together."""
 
     name: str
     count: int
     columns: int = 0
-    """Columns of the derivatives by where the step begins, among these rows."""
+    """Number of columns of the derivatives by the beginning of a step, among these rows."""
 
 
 def text(spec: ProblemSpec, module: str, bounds: Sequence[float], accurate: Tableau) -> str:
-    """The module.
+    """Return the source text of the module with the steps.
 
     Parameters
     ----------
@@ -83,21 +83,21 @@ def text(spec: ProblemSpec, module: str, bounds: Sequence[float], accurate: Tabl
 
 
 class _Writer:
-    """Writes functions of one model."""
+    """Writer of the functions of one model."""
 
     def __init__(self, spec: ProblemSpec, module: str, bounds: Sequence[float]) -> None:
         self.module, self.bounds = module, [repr(float(bound)) for bound in bounds]
         self.n, self.parameters = len(spec.states), len(spec.parameters)
 
     def workspace(self) -> Workspace:
-        """A workspace in which what all functions share is at the same places."""
+        """Return a workspace in which the rows that all functions share are at the same places."""
         found = Workspace()
         for name, rows in (("p", self.parameters), ("t", 1), ("h", 1), ("slopes", 4 * self.n**2)):
             found.place(name, rows)
         return found
 
     def loads(self, **more: object) -> Loads:
-        """Where arguments of generated functions are: states and costates at ``y``."""
+        """Map the arguments of generated functions to their places; states and costates are at ``y``."""
         own = self.workspace()
         found: dict[str, object] = {
             "t": lambda _: f"(w[{own['t']} + j] + c * w[{own['h']} + j])",
@@ -109,11 +109,11 @@ class _Writer:
         return found | more  # type: ignore[return-value]
 
     def inlined(self, name: str, prefix: str, **more: object) -> Inlined:
-        """A function of the model."""
+        """Return a function of the model as inlined lines."""
         return inlined(self.module, name, self.loads(**more), prefix)
 
     def canonical(self) -> list[str]:
-        """Rates of states and costates times the step, at ``y`` and after the share ``c`` of it, stored at ``k``."""
+        """Write rates of states and costates, times the step, at ``y`` and the time ``c`` of the step."""
         found, step = self.inlined("canonical", "a_"), self.workspace()["h"]
         stores = [f"{element('k', i)} = w[{step} + j] * ({result})" for i, result in enumerate(found.results)]
         return function("canonical(w, c, y, k)", over_lanes([*found.lines, *stores]))
@@ -145,7 +145,7 @@ class _Writer:
         return function("varied(w, c, y, k)", [*over_lanes([*found.lines, *stores]), *every])
 
     def stepping(self, name: str, rows: Rows, tableau: Tableau) -> list[str]:
-        """Steps of a Runge-Kutta method, each of ``parts`` equal ones."""
+        """Write steps of a Runge-Kutta method, each of ``parts`` equal ones."""
         own, (a, b, c) = self.workspace(), tableau
         z, y = own.place("z", rows.count), own.place("y", rows.count)
         stages = [own.place(f"stage {i}", rows.count) for i in range(len(b))]
@@ -171,7 +171,7 @@ class _Writer:
         return function(head, [f"w = np.zeros({own.size})", *over_blocks("len(t)", block)])
 
     def leaping(self, rows: Rows) -> list[str]:
-        """Extrapolated steps, and how far the last two columns of the table are apart."""
+        """Write extrapolated steps, with the difference of the last two columns of the table."""
         own, size = self.workspace(), rows.count * LANES
         z, before, now, slope, rate = (own.place(name, rows.count) for name in ("z", "before", "now", "slope", "rate"))
         table = own.place("table", rows.count * COLUMNS)
@@ -217,7 +217,7 @@ class _Writer:
         return function(head, [f"w = np.zeros({own.size})", *over_blocks("len(t)", block)])
 
     def _begun(self, own: Workspace, rows: Rows) -> list[str]:
-        """Arguments of a block of columns, and the beginning of what is integrated."""
+        """Write the loads of arguments of a block of columns, and of initial values."""
         lines = loaded(own["p"], "p", self.parameters)
         for name in ("t", "h"):
             lines += over_lanes([f"w[{own[name]} + j] = {name}[at + min(j, width - 1)]"])

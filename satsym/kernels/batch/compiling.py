@@ -1,6 +1,7 @@
-"""Text that was written for a model, compiled; machine code is kept in the user's folder for such things.
+"""Compilation of texts written for a model; machine code is kept in the user's cache folder.
 
-Its place there is a digest of the text, which follows from the generated module: what is derived anew is compiled anew.
+The place of machine code is a digest of the text, which follows from the generated module: a module that is derived
+anew is compiled anew.
 """
 
 from __future__ import annotations
@@ -22,23 +23,23 @@ from satsym.kernels.core import Kernels
 from satsym.status import BadInput
 
 HEAD = ('"""Written by satsym; it may be removed at any time."""', "", "import math", "", "inf = math.inf")
-"""With which such texts begin."""
+"""The head of every text that is compiled."""
 
 FAST_MATH_FLAGS = {"contract", "nsz", "arcp"}
-"""What compilers may do to sums and products; never assume that numbers are finite, for whether they are is asked."""
+"""Transformations of sums and products that compilers may use; numbers are never assumed to be finite."""
 
 
 MOST_KEPT = 500 * 10**6
-"""Bytes of machine code that are kept: what was used longest ago is removed when more is made."""
+"""Bytes of cached machine code, beyond which the least recently used code is removed."""
 
 
 def able() -> bool:
-    """Whether there is a compiler."""
+    """Tell whether a compiler is installed."""
     return find_spec("numba") is not None
 
 
 def module_text(kernels: Kernels) -> str:
-    """The text of the generated module that kernels come from.
+    """Return the text of the generated module that kernels come from.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def module_text(kernels: Kernels) -> str:
 
 @lru_cache(maxsize=32)
 def compiled(name: str, text: str) -> Mapping[str, Any]:
-    """The functions of a text by name, each compiled when it is first called, or read from where it was kept.
+    """Return the functions of a text by name, compiled at their first call or read from the cache.
 
     Parameters
     ----------
@@ -92,12 +93,12 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
 
 
 ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many", "combine")
-"""Functions that are called from outside, of which machine code is kept with all that they call."""
+"""Functions that are called from outside; their machine code, with all that they call, is cached."""
 
 
 @contextmanager
 def alone(name: str) -> Iterator[None]:
-    """While no other process makes machine code for a model: who had to wait finds it made."""
+    """Hold a lock while machine code is made for a model: a process that waited finds the code made."""
     path = user_cache.folder("kernels") / f"{name}.lock"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

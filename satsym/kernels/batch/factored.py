@@ -1,7 +1,7 @@
-"""Values of a tape with what they are still to be multiplied by, which is done only where it must be.
+"""Values of a tape with postponed factors, so that few multiplications are left.
 
 Numbers, and values that never change, go along with products and quotients, and meet again in sums: there a value that
-never changes takes up what the other is multiplied by, once and for all. So `a - 2*b*c` is `2*(a/2 - b*c)`, one
+never changes takes over the factors of the other one, once and for all. So `a - 2*b*c` is `2*(a/2 - b*c)`, one
 operation less in each run.
 """
 
@@ -20,30 +20,30 @@ NAMED = {"fabs": np.abs, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan
 """Functions of ``math`` that have other names in NumPy."""
 
 UNIT, INVERSE = "unit", "inverse unit"
-"""What values are multiplied by powers of, and its inverse, as they are given to a tape."""
+"""Names of the unit, by whose powers values are multiplied, and of its inverse, among the inputs of a tape."""
 
 
 class Unsuited(Exception):
-    """Code that is no straight line of operations."""
+    """The code is not a straight line of operations."""
 
 
 @dataclass(frozen=True)
 class Factored:
-    """A number times a power of the unit times a value of a tape; without a value, the number alone."""
+    """A value of a tape times a number and a power of the unit; without a value, the number alone."""
 
     value: int | None
     factor: float = 1.0
     power: int = 0
     fixed: int | None = None
-    """Another value, which never changes, that it is to be multiplied by as well."""
+    """Another value, which never changes, that is a postponed factor as well; ``None`` without one."""
 
     def times(self, factor: float, power: int = 0) -> Factored:
-        """Return the value with a factor, and a power of the unit, more."""
+        """Return the value with one more factor and power of the unit."""
         return replace(self, factor=self.factor * factor, power=self.power + power)
 
 
 class Arithmetic:
-    """What is done with such values.
+    """Arithmetic of factored values.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Arithmetic:
         self.tape, self.scales, self.late, self.quotients = tape, scales, late, 0
 
     def lines(self, statements: Sequence[ast.stmt], names: Mapping[str, Factored]) -> dict[str, Factored]:
-        """Assignments, by the names that they give values.
+        """Run assignments; return the values by name.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class Arithmetic:
         return known
 
     def expression(self, node: ast.expr, names: Mapping[str, Factored]) -> Factored:
-        """The value of an expression."""
+        """Return the value of an expression."""
         match node:
             case ast.Name(id=name):
                 return names[name]
@@ -126,11 +126,11 @@ class Arithmetic:
         return replace(a, value=self.tape.apply(np.subtract, left, right))
 
     def like(self, a: Factored, other: Factored) -> Factored:
-        """Return the value with the factors of another."""
+        """Return the value with the factors of another one."""
         return Factored(self.plain(a.times(1.0 / other.factor, -other.power)), other.factor, other.power)
 
     def plain(self, a: Factored) -> int:
-        """The value on the tape that it is, multiplied by all that it is to be multiplied by."""
+        """Return the value on the tape after all its postponed multiplications."""
         if a.value is not None and a.fixed is None and (abs(a.factor), a.power) == (1.0, 0):
             return a.value if a.factor > 0.0 else self.tape.apply(np.negative, a.value)
         by = self.tape.constant(a.factor) if a.fixed is None else a.fixed
@@ -171,7 +171,7 @@ class Arithmetic:
         return replace(a, value=value, fixed=self._both(np.divide, a.fixed, b.fixed))
 
     def _both(self, function: Callable[..., Any], a: int | None, b: int | None) -> int | None:
-        """Combine two values that never change, ``None`` standing for one."""
+        """Combine two values that never change, of which ``None`` stands for one."""
         if b is None:
             return a
         if a is None:

@@ -1,8 +1,8 @@
-"""RK4 on arrays, by as few calls of NumPy as are found: each goes through memory, and that is what takes the time.
+"""RK4 on arrays with as few NumPy calls as possible, since each call moves whole arrays through memory.
 
-Half a step is the unit of time, so that slopes are added as they are; and states whose rates are themselves states need
-no slopes of their own. Which states are multiplied by that unit, and which quotients by a number, is tried out
-beforehand. What a step comes to is a sum of rows, the states and the slopes, which products of matrices form.
+Half a step is the unit of time, so that slopes are added unscaled; states whose rates are themselves states need no
+slopes of their own. Which states are multiplied by that unit, and which quotients by a number, is tried beforehand. The
+result of a step is a sum of rows, of states and slopes, formed by matrix products.
 """
 
 from __future__ import annotations
@@ -26,32 +26,32 @@ from satsym.spec import ProblemSpec
 T = TypeVar("T")
 
 STAGES = (("now", 0.0), ("middle", 1.0), ("middle", 1.0), ("end", 2.0))
-"""The time of each, and how many units the slopes before lead on."""
+"""The time of each stage, and the units of time by which the slopes before it are applied."""
 
 WEIGHTS = (1.0, 2.0, 2.0, 1.0)
 """Weights of the stages' slopes, in thirds of a unit."""
 
 SCALES = (2.0, 0.5)
-"""By which quotients are tried to be multiplied."""
+"""Factors that are tried for quotients."""
 
 BLOCK, SMALLEST_BLOCK, CACHE = 8192, 2048, 2.5e6
-"""Columns at a time, at most and at least, and bytes of rows that are used again and again: few enough to stay in
-the cache, many enough that calls do not count."""
+"""Largest and smallest number of columns at a time, and bytes of reused rows: few enough for the cache, many enough
+that the overhead of calls is negligible."""
 
 MOST_TRIED, MOST_OPERATIONS = 6, 400
-"""Quotients that are tried to be multiplied, and operations of a step up to which anything is tried."""
+"""Largest number of quotients whose factors are tried, and of operations of a step for which anything is tried."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Form in which a step is written."""
+    """The form in which a step is written."""
 
     powers: tuple[int, ...]
     """Powers of the unit by which states are multiplied."""
     scales: tuple[float, ...] = ()
     """Powers of the unit by which quotients are multiplied."""
     late: bool = True
-    """Whether values that never change are multiplied in late."""
+    """Whether factors that never change are applied late."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,13 @@ class Slope:
 
     @property
     def row(self) -> int | None:
-        """The value of its own."""
+        """Return the value of a slope that has one of its own."""
         return self.rate.value if self.state is None else None
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A step on a tape."""
+    """An RK4 step on a tape."""
 
     tape: Tape
     powers: tuple[int, ...]
@@ -83,23 +83,23 @@ class Step:
 
     @property
     def rows(self) -> list[int]:
-        """Slopes that are values of their own."""
+        """Return the slopes that are values of their own."""
         every = (slope.row for stage in self.slopes for slope in stage)
         return list(dict.fromkeys(row for row in every if row is not None))
 
     @property
     def operations(self) -> int:
-        """Number of operations in each step."""
+        """Count the operations in each step."""
         return self.tape.operations(self.rows)
 
     @property
     def moved(self) -> list[int]:
-        """States that the last stage moves in place."""
+        """Return the states that the last stage moves in place."""
         needed = set(self.tape.needed(self.rows))
         return [i for i, value in enumerate(self.ahead) if value in needed]
 
     def ends(self, unit: float) -> Array:
-        """What states come to, as sums of states and rows when the last stage is over, shape (n, n + rows)."""
+        """Return the final states as sums of states and rows after the last stage, shape (n, n + rows)."""
         start = now = np.eye(len(self.powers), len(self.powers) + len(self.rows))
         for _ in self.moved:  # each may follow from others
             change = STAGES[-1][1] * self._rates(start, unit)[-2][self.moved]
@@ -109,7 +109,7 @@ class Step:
         return np.asarray(start + sum(weight / 3.0 * one for weight, one in zip(WEIGHTS, rates, strict=True)))
 
     def _rates(self, start: Array, unit: float) -> list[Array]:
-        """Slopes times the unit, stage by stage, as sums of states and rows, from the states in this form."""
+        """Return slopes times the unit, stage by stage, as sums of states and rows, from states in this form."""
         n, places = len(self.powers), {value: k for k, value in enumerate(self.rows)}
         basis, point, found = np.eye(n + len(places))[n:], start, list[Array]()
         for (_, by), slopes in zip(STAGES, self.slopes, strict=True):
@@ -150,7 +150,7 @@ def fewest(kernels: Kernels) -> Step:
 
 
 def _improved(written: Callable[[Choice], Step], choice: Choice, quotients: int) -> Choice:
-    """Another choice, as long as one is better that differs in one place."""
+    """Return a better choice that differs in one place, repeatedly, as long as there is one."""
     best = replace(choice, scales=(1.0,) * quotients)
     fewest, powers = written(best).operations, range(len(choice.powers))
     for scale, k in [(scale, k) for k in range(quotients) for scale in SCALES] + [(None, i) for i in powers]:
@@ -164,7 +164,7 @@ def _improved(written: Callable[[Choice], Step], choice: Choice, quotients: int)
 
 
 def _with(values: tuple[T, ...], place: int, value: T) -> tuple[T, ...]:
-    """Return values with another one in one place."""
+    """Return values with one of them replaced."""
     return (*values[:place], value, *values[place + 1 :])
 
 
@@ -173,7 +173,7 @@ def _numbered(name: str) -> Callable[[int], str]:
 
 
 def _written(spec: ProblemSpec, statements: Sequence[ast.stmt], choice: Choice) -> Step:
-    """A step in the form that was chosen."""
+    """Return a step in the chosen form."""
     tape, powers = Tape(), choice.powers
     arithmetic = Arithmetic(tape, choice.scales, choice.late)
     counts = {"u": len(spec.controls), "p": len(spec.parameters)}
@@ -198,7 +198,7 @@ def _written(spec: ProblemSpec, statements: Sequence[ast.stmt], choice: Choice) 
 
 
 def _in_place(tape: Tape, x: Factored, rate: Factored) -> int | None:
-    """Where the slope before leads on from a state, in its place; ``None`` where it must be multiplied first."""
+    """Return a state moved in place by the previous slope; ``None`` where the slope must be scaled first."""
     suited = rate.value in tape.changing and rate.fixed is None and rate.power == x.power
     if not suited or x.value is None or rate.value is None:
         return None
@@ -206,7 +206,7 @@ def _in_place(tape: Tape, x: Factored, rate: Factored) -> int | None:
 
 
 def _slope(arithmetic: Arithmetic, rate: Factored, point: Sequence[Factored], state: int) -> Slope:
-    """The rate of a state at a point."""
+    """Return the rate of a state at a point."""
     tape, values = arithmetic.tape, [one.value for one in point]
     if not rate.factor:
         return Slope(rate, 0)
@@ -222,7 +222,7 @@ def _slope(arithmetic: Arithmetic, rate: Factored, point: Sequence[Factored], st
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Sums of the same shape: states that depend on each other, with the slopes that they depend on."""
+    """Sums of the same shape: states that depend on each other, and the slopes in these sums."""
 
     states: tuple[tuple[int, ...], ...]
     rows: tuple[tuple[int, ...], ...]
@@ -231,7 +231,7 @@ class Group:
     """Weights of states and rows, shape (sums, states, states + rows)."""
     now: Array
     after: Array
-    """States and rows before a step and after it, in turns, shape (sums, states + rows, columns)."""
+    """States and rows before a step and after it, alternating, shape (sums, states + rows, columns)."""
 
 
 class OnTape:
@@ -254,7 +254,7 @@ class OnTape:
         self._kept: dict[int, Arranged] = {}
 
     def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
-        """So many steps of size h from t, in place."""
+        """Take steps of size h from t, in place."""
         if not h:
             return
         columns, unit = y.shape[1], 0.5 * h
@@ -277,14 +277,14 @@ class OnTape:
 
     @property
     def block(self) -> int:
-        """Columns that are best taken at a time."""
+        """Return how many columns are best taken at a time."""
         rows, found = 2 * (len(self.step.powers) + len(self.step.rows)), BLOCK
         while found > SMALLEST_BLOCK and 8 * found * rows > CACHE:
             found //= 2
         return found
 
     def arranged(self, columns: int) -> Arranged:
-        """Arrays for so many columns, which are not made anew for the next motions, and the tape with them."""
+        """Return arrays for a number of columns, reused for later motions, with the tape bound to them."""
         given = {f"{name}_{k}": aligned(columns) for name, k in self._given}
         given |= {name: np.empty(()) for name in (*self._times, UNIT, INVERSE)}
         groups = [_group(shape, sums, columns) for shape, sums in self._sums.items()]
@@ -308,14 +308,14 @@ class OnTape:
 
 @dataclass(frozen=True, eq=False)
 class Arranged:
-    """Arrays of a step: what is given, by name, the groups of its sums, and the calls of steps in turns."""
+    """The arrays of a step: given values by name, groups of sums, and alternating calls of steps."""
 
     given: dict[str, Array]
     groups: list[Group]
     turns: tuple[Bound, ...]
 
     def begin(self, ends: Array, unit: float) -> None:
-        """Prepare for the first of some steps."""
+        """Prepare the arrays for the first of some steps."""
         self.given[UNIT][()], self.given[INVERSE][()] = unit, 1.0 / unit
         for group in self.groups:
             for weights, states, rows in zip(group.weights, group.states, group.rows, strict=True):
@@ -324,7 +324,7 @@ class Arranged:
             turn.begin()
 
     def states(self, steps: int) -> list[Array]:
-        """Rows of the states after so many steps, in the model's order."""
+        """Return the rows of the states after some steps, in the model's order."""
         found = dict[int, Array]()
         for group in self.groups:
             for states, part in zip(group.states, (group.now, group.after)[steps % 2], strict=True):
@@ -333,7 +333,7 @@ class Arranged:
 
 
 Sums = dict[tuple[int, int], list[tuple[tuple[int, ...], tuple[int, ...]]]]
-"""By how many they are: states that depend on each other, and the rows that they depend on."""
+"""For each number of dependent states and of rows, the states and the rows of each such sum."""
 
 
 def _sums(step: Step) -> Sums:

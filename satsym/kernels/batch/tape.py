@@ -1,6 +1,6 @@
-"""Straight-line code on arrays: each operation once, what stays as it is beforehand, into buffers that are used again.
+"""Straight-line code on arrays: equal operations once, constant ones beforehand, results in reused buffers.
 
-NumPy spends more time in making arrays than in computing them. Here every operation has its place for the result, which
+NumPy spends more time in making arrays than in computing them. Here every operation has a place for its result, which
 is free again after its last use, and equal operations of a step are made once.
 """
 
@@ -17,14 +17,14 @@ from satsym.arrays import Array
 from satsym.lapack import blas
 
 ALIGNED = 64
-"""Bytes at whose multiples buffers begin, so that vectors are loaded whole."""
+"""Alignment of buffers in bytes, for vector loads."""
 
 COMMUTATIVE = (np.add, np.multiply)
 
 
 @dataclass(frozen=True)
 class Moved:
-    """What adds to an array a multiple of another, in its place: BLAS does so at once, NumPy with two calls."""
+    """The in-place addition of a multiple of one array to another: one call of BLAS, two of NumPy."""
 
     by: float
 
@@ -34,7 +34,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class Operation:
-    """What is done with which values."""
+    """An operation of a tape and the numbers of its arguments."""
 
     function: Callable[..., Any]
     operands: tuple[int, ...]
@@ -42,23 +42,23 @@ class Operation:
 
 @dataclass
 class Tape:
-    """Values, by number, and how each is made."""
+    """Numbered values, each with the operation that makes it."""
 
     made: list[Operation | float | str] = field(default_factory=list)
-    """An operation, a constant, or the name of what is given."""
+    """For each value, its operation, its constant, or its name as an input."""
     changing: set[int] = field(default_factory=set)
-    """Values that are others in each run."""
+    """Numbers of the values that change from run to run."""
     _known: dict[Any, int] = field(default_factory=dict)
 
     def given(self, name: str, changes: bool) -> int:
-        """What has a name, and whether it changes from run to run."""
+        """Add a named input, and whether it changes from run to run."""
         value = self._number(name, name)
         if changes:
             self.changing.add(value)
         return value
 
     def apply(self, function: Callable[..., Any], *operands: int) -> int:
-        """An operation."""
+        """Add an operation on values."""
         ordered = tuple(sorted(operands)) if function in COMMUTATIVE else operands
         value = self._number((function, ordered), Operation(function, operands))
         if self.changing.intersection(operands):
@@ -66,11 +66,11 @@ class Tape:
         return value
 
     def constant(self, value: float) -> int:
-        """A number."""
+        """Add a number."""
         return self._number(("constant", value), value)
 
     def needed(self, wanted: Collection[int]) -> list[int]:
-        """The values that some are made of, and these, in order."""
+        """Return the values that some values depend on, and these, in order."""
         found, stack = set[int](), list(wanted)
         while stack:
             value = stack.pop()
@@ -81,7 +81,7 @@ class Tape:
         return sorted(found)
 
     def operations(self, wanted: Collection[int]) -> int:
-        """How many are made in each run."""
+        """Count the operations for some values in each run."""
         return sum(value in self.changing and isinstance(self.made[value], Operation) for value in self.needed(wanted))
 
     def _number(self, key: Any, made: Operation | float | str) -> int:
@@ -96,40 +96,40 @@ Calls = list[tuple[Callable[..., Any], tuple[Any, ...]]]
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """A tape with arrays."""
+    """A tape with arrays for its values."""
 
     first: Calls
     each: Calls
-    """What is called once, and in each run, with what."""
+    """The calls made once, and those of each run, with their arguments."""
 
     def begin(self) -> None:
-        """What does not change from run to run."""
+        """Compute the values that do not change from run to run."""
         for function, arguments in self.first:
             function(*arguments)
 
     def run(self) -> None:
-        """The rest."""
+        """Compute the values that change from run to run."""
         for function, arguments in self.each:
             function(*arguments)
 
 
 @dataclass
 class Buffers:
-    """Arrays for values, which several runs of one tape share."""
+    """Arrays for values, shared by several runs of one tape."""
 
     columns: int
     fixed: dict[int, Array] = field(default_factory=dict)
-    """Arrays that hold values which do not change, by their place on the tape."""
+    """Arrays of values that do not change, by their place on the tape."""
     free: list[Array] = field(default_factory=list)
-    """Arrays that nobody needs now."""
+    """Arrays that are free for reuse."""
 
     def taken(self) -> Array:
-        """One of those that are free, or a new one."""
+        """Return a free buffer, or a new one."""
         return self.free.pop() if self.free else aligned(self.columns)
 
 
 def bound(tape: Tape, given: Mapping[str, Array], results: Mapping[int, Array], buffers: Buffers) -> Bound:
-    """Give every value a place.
+    """Bind a tape to arrays: give every value a place.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def _operands(tape: Tape, value: int) -> tuple[int, ...]:
 
 
 def aligned(*shape: int) -> Array:
-    """A buffer."""
+    """Return a buffer whose memory is aligned for vector instructions."""
     size = 8 * math.prod(shape)
     raw = np.empty(size + ALIGNED, dtype=np.uint8)
     begin = -raw.ctypes.data % ALIGNED

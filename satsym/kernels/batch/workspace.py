@@ -1,8 +1,8 @@
-"""One flat array that holds all numbers of a block of columns, at places that are known when code is written.
+"""Workspaces: one flat array for all numbers of a block of columns, at places fixed when code is written.
 
-With constant places nobody need ask whether two rows overlap, and a loop over the columns of a block becomes vector
-instructions. What calls a function for each column hardly ever does; so the body of a generated scalar function stands
-in such a loop, line by line, under names of its own.
+With constant places the compiler need not check whether two rows overlap, and a loop over the columns of a block
+becomes vector instructions. Code that calls a function for each column hardly ever does; so the body of a generated
+scalar function is written into such a loop, line by line, under names of its own.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 LANES = 16
-"""Columns of a block: a few vectors, so that one is computed while another waits for its divisions."""
+"""Number of columns of a block: a few vectors, so that one is computed while another waits for its divisions."""
 
 
 @dataclass
 class Workspace:
-    """Where rows of a block lie."""
+    """The places of the rows of a block."""
 
     size: int = 0
-    """Numbers, so far."""
+    """Number of places reserved so far."""
     places: dict[str, int] = field(default_factory=dict)
-    """Where what has a name begins."""
+    """First places of named rows."""
 
     def place(self, name: str, rows: int) -> int:
-        """Where so many rows lie, which are new."""
+        """Reserve a number of new rows, and return their place."""
         begin = self.places[name] = self.size
         self.size += rows * LANES
         return begin
@@ -37,40 +37,40 @@ class Workspace:
 
 
 def element(begin: int | str, row: int) -> str:
-    """Write the entry of a row in the column at hand."""
+    """Write the entry of a row in the current column."""
     return f"w[{begin} + {row * LANES} + j]"
 
 
 def over_lanes(lines: Sequence[str]) -> list[str]:
-    """Lines of a loop over the columns of a block, with these lines as its body."""
+    """Write a loop over the columns of a block around some lines."""
     return [f"for j in range({LANES}):", *indented(lines)]
 
 
 def over_rows(rows: int, lines: Sequence[str]) -> list[str]:
-    """For each entry ``q`` of so many rows: of all columns, one after the other in memory."""
+    """Write a loop over the entries ``q`` of several rows, all columns of which lie together in memory."""
     return [f"for q in range({rows * LANES}):", *indented(lines)]
 
 
 def indented(lines: Sequence[str]) -> list[str]:
-    """One level further in."""
+    """Indent lines by one level."""
     return [f"    {line}" for line in lines]
 
 
 def function(head: str, lines: Sequence[str]) -> list[str]:
-    """A function."""
+    """Write a function with a head and lines."""
     return ["", "", f"def {head}:", *indented(lines)]
 
 
 def over_blocks(columns: str, lines: Sequence[str]) -> list[str]:
-    """For each block of columns ``at``, ``at + 1``, ..., of which ``width`` are there."""
+    """Write a loop over blocks of columns ``at``, ``at + 1``, ..., of which ``width`` exist."""
     head = [f"for at in range(0, {columns}, {LANES}):", f"    width = min({LANES}, {columns} - at)"]
     return [*head, *indented(lines)]
 
 
 def lanes_of(target: str, source: str) -> list[str]:
-    """For each column of a block ``target = source``; where columns are missing the last one stands in.
+    """Write ``target = source`` for each column of a block; the last column stands in for missing ones.
 
-    In the source the column is ``{column}``. Blocks that are full are read as vectors, which others cannot be.
+    In the source the column is ``{column}``. Full blocks are read as vectors, which incomplete ones cannot be.
     """
     return [
         f"if width == {LANES}:",
@@ -81,7 +81,7 @@ def lanes_of(target: str, source: str) -> list[str]:
 
 
 def loaded(begin: int, source: str, rows: int) -> list[str]:
-    """Rows of an array into the workspace."""
+    """Write the copy of an array's rows into the workspace."""
     if not rows:
         return []
     take = lanes_of(f"w[{begin} + i * {LANES} + j]", f"{source}[i, {{column}}]")
@@ -89,7 +89,7 @@ def loaded(begin: int, source: str, rows: int) -> list[str]:
 
 
 def stored(begin: int, target: str, rows: int) -> list[str]:
-    """Rows of the workspace into an array."""
+    """Write the copy of workspace rows into an array."""
     give = f"{target}[i, at + j] = w[{begin} + i * {LANES} + j]"
     return [
         f"for i in range({rows}):",
@@ -102,27 +102,27 @@ def stored(begin: int, target: str, rows: int) -> list[str]:
 
 
 Loads = Mapping[str, Callable[[int], str]]
-"""By argument: the expression of each of its components; of a number that of the component 0."""
+"""For each argument, a function from a component's number to its expression."""
 
 KEPT = frozenset({"math", "range", "float"})
-"""Names that a body shares with its surroundings."""
+"""Names in a body that are not prefixed."""
 
 
 @dataclass(frozen=True)
 class Inlined:
-    """Lines that compute, and the expressions of what is returned, row by row."""
+    """Lines of an inlined function, and the expressions of its results, row by row."""
 
     lines: tuple[str, ...]
     results: tuple[str, ...]
 
     @property
     def nonzero(self) -> list[int]:
-        """Places of results that are not always zero."""
+        """Return the places of results that are not identically zero."""
         return [k for k, result in enumerate(self.results) if result != "0.0"]
 
 
 def inlined(text: str, function: str, loads: Loads, prefix: str) -> Inlined:
-    """A function of a module's text.
+    """Return a function of a module's text as lines for a loop over columns.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def inlined(text: str, function: str, loads: Loads, prefix: str) -> Inlined:
 
 
 class _Renamed(ast.NodeTransformer):
-    """Every name with a prefix, but for those that stand for something else."""
+    """Prefixes every name, except those that are replaced by an expression."""
 
     def __init__(self, given: Mapping[str, str], prefix: str) -> None:
         self.given, self.prefix = given, prefix
@@ -170,5 +170,5 @@ def _parsed(text: str) -> dict[str, ast.FunctionDef]:
 
 
 def _definition(text: str, name: str) -> ast.FunctionDef:
-    """A fresh one each time: renaming changes it."""
+    """Return a fresh syntax tree of a function each time, because renaming changes it."""
     return copy.deepcopy(_parsed(text)[name])
