@@ -1,12 +1,20 @@
-"""The text of a generated module, from a derivation."""
+"""The text of a generated module, from a derivation, with the units of its cost and of conserved quantities.
+
+These units are composed of the author's own units alone: a model in km and s has a cost in km**2/s**3. Where the
+author's units can be combined to units of several sizes, as m and km can, or count angles other than in radians, no
+unit is stated.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+import math
+from collections.abc import Callable, Iterable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import derived_units, loops, searching
+from satsym import units
+from satsym.codegen import loops, searching
 from satsym.codegen.block import Assignment, Emitter, build
 from satsym.codegen.functions import Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
@@ -17,7 +25,11 @@ from satsym.control_part import ControlPart
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
 from satsym.spec import PRODUCT, Condition, InteriorPoint, PathConstraint, ProblemSpec, Variable, names
+from satsym.status import BadInput
+from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.dimension_algebra import Dimension, Disagreement, dimension_of
+from satsym.symbolic.dimensions import declared, of_unit
 from satsym.symbolic.functions.roots import Argmin, Root, Vertex
 from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.motion.central_force import strength_of
@@ -27,9 +39,77 @@ from satsym.symbolic.switching.curve import states_of
 from satsym.symbolic.switching.functions import moving_magnitudes
 from satsym.symbolic.switching.singular import chattering
 
+UNKNOWN = ""
+SIZE_TOLERANCE = 1e-9
+"""Largest relative difference of the sizes of two equal units."""
+
+
+def unit_of_objective(derivation: Derivation) -> str:
+    """Return the unit of the cost: the stated one, or that of its terms; empty where it is not clear."""
+    problem = derivation.problem
+    if problem is None or problem.unit:
+        return problem.unit if problem else UNKNOWN
+    return unit_of(declared(derivation)[n.TERMINAL_COST.name], _names(derivation))
+
+
+def units_of_expressions(derivation: Derivation, expressions: Iterable[sp.Expr]) -> list[str]:
+    """Return the units of expressions in the symbols of a model, ``"1"`` where a unit is not clear."""
+    known, names = declared(derivation), _names(derivation)
+    found = []
+    for expression in expressions:
+        try:
+            found.append(unit_of(dimension_of(expression, known), names) or "1")
+        except Disagreement:
+            found.append("1")
+    return found
+
+
+def unit_of(dimension: Dimension | None, names: Sequence[str]) -> str:
+    """Return the shortest unit of a dimension that is composed of the given names.
+
+    Returns
+    -------
+    str
+        ``"1"`` for a plain number; empty where there is none, or units of several sizes.
+    """
+    if dimension is None:
+        return UNKNOWN
+    if not dimension:
+        return "1"
+    by_name = {name: found for name in names if (found := of_unit(name))}
+    bases = sorted({base for found in by_name.values() for base in found} | set(dimension))
+    wanted = sp.Matrix([dimension.get(base, 0) for base in bases])
+    candidates: list[dict[str, int]] = []
+    for count in range(1, len(bases) + 1):
+        for chosen in itertools.combinations(by_name, count):
+            columns = sp.Matrix([[by_name[name].get(base, 0) for name in chosen] for base in bases])
+            if columns.rank() < count or columns.row_join(wanted).rank() > count:
+                continue
+            exponents = (columns.T * columns).LUsolve(columns.T * wanted)
+            if all(e.is_Integer for e in exponents) and all(exponents):
+                candidates.append({name: int(e) for name, e in zip(chosen, exponents, strict=True)})
+    sizes = [math.prod(units.in_base_units(name) ** e for name, e in one.items()) for one in candidates]
+    if not candidates or max(sizes) > (1.0 + SIZE_TOLERANCE) * min(sizes):
+        return UNKNOWN
+    shortest = min(candidates, key=lambda one: sum(map(abs, one.values())))
+    # such as N*m*s: what is made of most comes first, time last
+    order = sorted(shortest, key=lambda name: (list(by_name[name]) == ["[time]"], -len(by_name[name])))
+    return units.expression({name: shortest[name] for name in order})
+
+
+def _names(derivation: Derivation) -> list[str]:
+    """Return the names of the author's units, in order of first use; none where angles are not in radians."""
+    stated = [v.unit for v in variables_of(derivation.model)]
+    try:
+        names = list(dict.fromkeys(name for unit in stated for name in units.factors(unit)))
+        angular = {name for name in names if not of_unit(name) and units.in_base_units(name) != 1.0}
+    except BadInput:
+        return []
+    return [] if angular else names
+
 
 def render(derivation: Derivation, source: str) -> str:
-    """Source text of the module generated from a derivation.
+    """Return the source text of the module generated from a derivation.
 
     Parameters
     ----------
@@ -58,7 +138,7 @@ def render(derivation: Derivation, source: str) -> str:
 
 
 def spec(derivation: Derivation, source: str) -> ProblemSpec:
-    """What the module says of itself."""
+    """Return the description of the model that its module contains."""
     model, problem = derivation.model, derivation.problem
     conserved = derivation.step("conserved").equations if "conserved" in derivation else ()
     particle = model.particle()
@@ -74,7 +154,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
         maximise=bool(problem and problem.maximise),
-        objective_unit=derived_units.of_objective(derivation),
+        objective_unit=unit_of_objective(derivation),
         has_reference=bool(model.reference),
         terminal_inequalities=tuple(problem.terminal_inequalities) if problem else (),
         path_constraints=tuple(PathConstraint(one.name, one.order) for one in mixed_constraints.every(derivation)),
@@ -87,9 +167,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         ),
         invariants=tuple(
             Variable(e.name, derivation.notation[e.name], unit)
-            for e, unit in zip(
-                conserved, derived_units.of_expressions(derivation, (e.rhs for e in conserved)), strict=True
-            )
+            for e, unit in zip(conserved, units_of_expressions(derivation, (e.rhs for e in conserved)), strict=True)
         ),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(particle.position) if particle else 0]),
@@ -114,7 +192,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
 
 
 def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
-    """The sets of a product."""
+    """Return the sets of a product of control sets as plain data."""
     if product.STEP not in derivation:
         return ()
     return tuple(
@@ -131,13 +209,13 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
 
 
 def _condition(demand: Demand) -> Condition:
-    """A demand as plain numbers."""
+    """Return a demand on parameters as plain numbers."""
     weights = {s.name: float(sp.diff(demand.margin, s)) for s in demand.margin.free_symbols}
     return Condition(tuple(sorted(weights.items())), demand.strict, demand.reason)
 
 
 def _quantities(derivation: Derivation) -> tuple[Variable, ...]:
-    """The variables behind the equations of the step that derived them."""
+    """Return the variables of the equations in the step that derived quantities."""
     if "quantities" not in derivation:
         return ()
     declared = {v.symbol: v for v in variables_of(derivation.model)}
@@ -158,7 +236,7 @@ import numpy as np
 
 
 def _literal(described: ProblemSpec) -> str:
-    """``MODEL``, a line for each variable."""
+    """Return the lines of ``MODEL``, one for each variable."""
     lines = []
     for key, value in described.to_literal().items():
         if isinstance(value, tuple) and value:
@@ -169,7 +247,7 @@ def _literal(described: ProblemSpec) -> str:
 
 
 def _unpack(function: Function, s: Symbols) -> list[str]:
-    """Lines that give the arguments' components their names."""
+    """Return lines that give the arguments' components their names."""
     groups = [(a, s.of(a)) for a in function.arguments if a != "t"]
     return [f"{loops.unpacking(names)} = {a}" for a, names in groups if names]
 
@@ -177,7 +255,7 @@ def _unpack(function: Function, s: Symbols) -> list[str]:
 def _straight_line(
     function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]
 ) -> tuple[list[Assignment], list[sp.Expr]]:
-    """Assignments and outputs of a function under their final names."""
+    """Return assignments and outputs of a function under their final names."""
     names = {symbol.name for a in function.arguments for symbol in s.of(a)} | NEEDED
     emit = Emitter(names)
     outputs = emit.inline(build(function.outputs, constants, (), chain), {}, function.hints)
@@ -185,7 +263,7 @@ def _straight_line(
 
 
 def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
-    """The statements that assign a value."""
+    """Return the statements that assign a value to a symbol."""
     written = (
         searching.root_lines
         if isinstance(value, Root)
@@ -239,7 +317,7 @@ def _function(signature: str, summary: str, body: Sequence[str]) -> str:
 
 
 def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) -> list[loops.Loop]:
-    """The forward loop and, where there is a cost, the backward one."""
+    """Return the text of the forward loop and, where there is a cost, the backward one."""
     problem, s = derivation.problem, code.symbols
     fixed = {*s.p, *(c for c, _ in constants)}
     rates = [*derivation.rhs("first_order"), *([sp.sympify(problem.running_cost)] if problem else [])]

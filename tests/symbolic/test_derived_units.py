@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym import kernels, units
-from satsym.codegen.derived_units import unit_of
+from satsym.codegen.module import unit_of
 from satsym.symbolic.dimensions import of_unit
 
 POWERS = st.integers(-4, 4)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from satsym.codegen.extremals import all_functions
 from satsym.codegen.functions import chain_of
+from satsym.codegen.naming import all_functions
 from satsym.symbolic import Ball, FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.pipeline import derive
 
