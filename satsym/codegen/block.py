@@ -1,4 +1,4 @@
-"""An expression graph as lines of assignments: invariants taken out, powers made cheap, repeats shared."""
+"""Expression graphs as lines of assignments: invariants extracted, powers made cheap, repeated parts shared."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Assignment = tuple[sp.Symbol, sp.Expr]
 
 @dataclass(frozen=True)
 class Block:
-    """Assignments in an order that can be executed, and the expressions they lead to.
+    """Assignments in an executable order, and the expressions of their outputs.
 
     The symbols assigned to are internal: whoever emits the block renames them.
     """
@@ -25,7 +25,7 @@ class Block:
 
     @property
     def inputs(self) -> set[sp.Symbol]:
-        """Symbols the block reads and does not assign."""
+        """Return the symbols that the block reads and does not assign."""
         read = set().union(*(e.free_symbols for _, e in self.assignments), *(e.free_symbols for e in self.outputs))
         return read - {s for s, _ in self.assignments}
 
@@ -68,12 +68,12 @@ def build(
 
 
 def printable(expression: sp.Expr) -> sp.Expr:
-    """The expression without the sign function, which is the side of a strip of no width."""
+    """Remove sign functions from an expression, which are the limit of a strip of zero width."""
     return expression.replace(sp.sign, lambda value: Side(value, sp.Integer(0)))
 
 
 def used(chain: Sequence[Assignment], outputs: Iterable[sp.Expr]) -> list[Assignment]:
-    """The parts that the outputs need, in order."""
+    """Return the parts that the outputs need, in order."""
     wanted, kept = set().union(*(sp.sympify(e).free_symbols for e in outputs)), []
     for symbol, value in reversed(chain):
         if symbol in wanted:
@@ -83,7 +83,7 @@ def used(chain: Sequence[Assignment], outputs: Iterable[sp.Expr]) -> list[Assign
 
 
 class _Extraction:
-    """Takes out the largest compound parts that use no symbol outside a set."""
+    """Extracts the largest compound parts that use no symbol outside a set."""
 
     def __init__(self, allowed: set[sp.Symbol], prefix: str) -> None:
         self.allowed, self.prefix = allowed, prefix
@@ -114,12 +114,12 @@ class _Extraction:
 
 
 def _negative(expression: sp.Expr) -> bool:
-    """Whether every term has a minus sign."""
+    """Tell whether every term of an expression has a minus sign."""
     return all(term.as_coeff_Mul()[0].is_negative for term in sp.Add.make_args(expression))
 
 
 class _Cheapened:
-    """Rewrites what is dear or awkward to print.
+    """Rewrites expressions that are expensive or awkward to print.
 
     Powers become products, one division and one root a base; projections get names for their arguments and for
     themselves, so that they print as one conditional.
@@ -150,13 +150,13 @@ class _Cheapened:
         return self._power(base, abs(exponent.p))
 
     def _power(self, base: sp.Expr, exponent: int) -> sp.Expr:
-        """A high power from a named square; ``**`` would call pow, also where the code is compiled."""
+        """Write a high power by a named square, since ``**`` would call pow, also in compiled code."""
         if exponent <= LARGEST_PRODUCT or base.is_Number:
             return base**exponent
         return self._power(self._take(base**2), exponent // 2) * base ** (exponent % 2)
 
     def _of_either_sign(self, part: sp.Expr) -> sp.Expr:
-        """A name that nothing is assumed of, as it is of others, where a sign matters."""
+        """Return a symbol without assumptions in place of one whose sign would matter."""
         if part.is_Symbol and not part.name.startswith("_cheap"):
             return part
         symbol = sp.Symbol(f"_signed{len(self.assignments)}", real=True)
@@ -173,7 +173,7 @@ class _Cheapened:
 
 
 def _shared(assignments: list[Assignment], outputs: list[sp.Expr]) -> tuple[list[Assignment], list[sp.Expr]]:
-    """Give what occurs more than once a name."""
+    """Give parts that occur more than once a name."""
     names = sp.utilities.numbered_symbols("_shared", real=True)
     repeats, reduced = sp.cse([e for _, e in assignments] + outputs, symbols=names, order="canonical")
     kept = [(s, e) for (s, _), e in zip(assignments, reduced, strict=False)]
@@ -181,7 +181,7 @@ def _shared(assignments: list[Assignment], outputs: list[sp.Expr]) -> tuple[list
 
 
 def _ordered(assignments: list[Assignment], outputs: list[sp.Expr]) -> Block:
-    """Only what the outputs need, each before its first use."""
+    """Return only the assignments that the outputs need, each before its first use."""
     value = dict(assignments)
     done: dict[sp.Symbol, sp.Expr] = {}
 
@@ -218,7 +218,7 @@ class Emitter:
         self._known: dict[sp.Expr, sp.Symbol] = {}
 
     def fresh(self, hint: str) -> sp.Symbol:
-        """A symbol whose name is not in use: the hint, or the hint with a number."""
+        """Return a symbol whose name is not in use: the hint, or the hint with a number."""
         name, count = hint, 2
         while name in self.names:
             name, count = f"{hint}_{count}", count + 1
@@ -226,7 +226,7 @@ class Emitter:
         return sp.Symbol(name, real=True)
 
     def assign(self, expression: sp.Expr, hint: str = "") -> sp.Expr:
-        """The symbol that holds the expression's value: an earlier one if it was computed before."""
+        """Return the symbol that holds the expression's value: an earlier one if it was computed before."""
         if not expression.args:
             return expression
         if expression not in self._known:
@@ -240,7 +240,7 @@ class Emitter:
         return self._known[expression]
 
     def inline(self, block: Block, values: Mapping[sp.Symbol, sp.Expr], hints: Sequence[str] = ()) -> list[sp.Expr]:
-        """Emit a block with the given values for its inputs; its outputs in terms of what is now known.
+        """Emit a block with the given values of its inputs, and return its outputs.
 
         ``hints`` are names for the outputs that the block assigns to a symbol.
         """
@@ -252,14 +252,14 @@ class Emitter:
         return [e.xreplace(value) for e in block.outputs]
 
     def take_lines(self) -> list[Assignment]:
-        """Hand over the lines so far and forget what they computed: they run once, what follows often."""
+        """Return the lines so far and forget their values: they run once, the following lines often."""
         taken, self.lines = self.lines, []
         self._known = {e: s for e, s in self._known.items() if s in self.invariant}
         return taken
 
 
 def live(lines: Sequence[Assignment], roots: Iterable[sp.Expr]) -> list[Assignment]:
-    """The lines that the roots need."""
+    """Return the lines that the roots need."""
     needed = free_symbols(roots)
     kept = []
     for symbol, expression in reversed(lines):
@@ -270,12 +270,12 @@ def live(lines: Sequence[Assignment], roots: Iterable[sp.Expr]) -> list[Assignme
 
 
 def free_symbols(expressions: Iterable[sp.Expr]) -> set[sp.Symbol]:
-    """Symbols that occur in any of the expressions."""
+    """Return the symbols that occur in any of the expressions."""
     return set().union(*(sp.sympify(e).free_symbols for e in expressions))
 
 
 def _name(expression: sp.Expr) -> str:
-    """A telling name for a simple expression, ``w`` for any other."""
+    """Return a telling name for a simple expression, and ``w`` for any other."""
     name = "w"
     if expression.is_Pow and expression.base.is_Symbol:
         base = expression.base.name

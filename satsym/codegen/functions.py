@@ -1,4 +1,4 @@
-"""Which functions a module has: their arguments, what they return, and the expressions behind them."""
+"""The functions of a generated module: their arguments, results, and the expressions behind them."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Function:
 
     name: str
     summary: str
-    """Its name, and the first line of its docstring."""
+    """Name of the function, and the first line of its docstring."""
     arguments: tuple[str, ...]
-    """The names from :data:`ARGUMENTS` that it takes, in that order."""
+    """The arguments of the function, from :data:`ARGUMENTS` and in their order."""
     value: sp.Matrix
-    """The expression it returns, or the matrix; a column is returned as a vector."""
+    """The returned expression or matrix; a column is returned as a vector."""
     kind: str
     """``"scalar"``, ``"vector"`` or ``"matrix"``."""
     hints: tuple[str, ...] = ()
@@ -46,7 +46,7 @@ class Function:
 
     @property
     def outputs(self) -> list[sp.Expr]:
-        """The expressions, row by row."""
+        """Return the expressions of the results, row by row."""
         return list(self.value)
 
 
@@ -69,13 +69,13 @@ class Symbols:
     control_weight: tuple[sp.Symbol, ...]
 
     def of(self, argument: str) -> tuple[sp.Symbol, ...]:
-        """Symbols of an argument; time alone is not a tuple."""
+        """Return the symbols of an argument; time alone is not a tuple."""
         found = getattr(self, argument)
         return found if isinstance(found, tuple) else (found,)
 
 
 def symbols(derivation: Derivation) -> Symbols:
-    """The symbols of a derivation, argument by argument."""
+    """Return the symbols of a derivation, argument by argument."""
     model, problem = derivation.model, derivation.problem
     states = symbols_of(model.states)
     n, m = len(states), len(model.controls)
@@ -97,7 +97,7 @@ def symbols(derivation: Derivation) -> Symbols:
 
 
 def functions(derivation: Derivation) -> list[Function]:
-    """Every function that follows from a derivation, in the order in which a module has them."""
+    """Return every function that follows from a derivation, in the order of a module."""
     a, b = _jacobians(derivation)
     found = [
         _vector("dynamics", "Rates of change of the states, f(t, x, u).", "t x u p", derivation.rhs("first_order")),
@@ -128,7 +128,7 @@ def functions(derivation: Derivation) -> list[Function]:
 
 
 def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
-    """What the argument ``bounds`` holds."""
+    """Return the symbols in the argument ``bounds``."""
     problem = derivation.problem
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
@@ -139,12 +139,12 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
 
 
 def chain_of(derivation: Derivation) -> tuple[Assignment, ...]:
-    """The named parts of functions that are not written in closed form, with those of their derivatives."""
+    """Return the named parts of functions without closed form, and of their derivatives."""
     return jacobians(derivation)[0] if parts_of(derivation) else law_parts(derivation).parts
 
 
 def _jacobians(derivation: Derivation) -> tuple[sp.Matrix, sp.Matrix]:
-    """A and B."""
+    """Return A and B."""
     if parts_of(derivation):
         return jacobians(derivation)[1:]
     n, m = len(derivation.model.states), len(derivation.model.controls)
@@ -180,7 +180,7 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
 
 
 def _of_interior(derivation: Derivation) -> list[Function]:
-    """Functions of points on the way, a row for each condition."""
+    """Return the functions of points on the way, with a row for each condition."""
     if interior.STEP not in derivation or derivation.problem is None:
         return []
     stated = sp.Matrix(list(interior.named(derivation.problem).values()))
@@ -193,7 +193,7 @@ def _of_interior(derivation: Derivation) -> list[Function]:
 
 
 def _of_path_constraints(derivation: Derivation) -> list[Function]:
-    """Functions of constraints along the way, a row for each of these."""
+    """Return the functions of path constraints, with a row for each constraint."""
     if not (found := mixed_constraints.every(derivation)):
         return []
     states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
@@ -233,7 +233,7 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
 def _boundary_control(
     derivation: Derivation, found: list[path_constraints.Constraint], stated: dict[str, sp.Expr]
 ) -> Function:
-    """The law on boundaries, where it is written in closed form; beside the control that keeps to one others are 0."""
+    """Return the law on boundaries in closed form; where one control stays on a boundary, others are 0."""
     controls = symbols_of(derivation.model.controls)
     if switching.switches(derivation):
         bounds = (one for one in found if not one.order)
@@ -307,7 +307,7 @@ def _regular_law(derivation: Derivation) -> list[Function]:
 
 
 def _law(derivation: Derivation) -> sp.Matrix:
-    """The law as it is stated, control by control, without named parts; of directions that of the regularised one."""
+    """Return the stated law of each control, without named parts; for directions, the regularised law."""
     if product.STEP in derivation:
         problem, every = set_laws.problem_of(derivation), set_laws.found(derivation)
         pairs = [zip(one.part.symbols, set_laws.continuous_law(problem, one), strict=True) for one in every]
@@ -317,7 +317,7 @@ def _law(derivation: Derivation) -> sp.Matrix:
 
 
 def _regularised_cost(derivation: Derivation) -> Function:
-    """What the problem costs in which directions may be shorter, under its law."""
+    """Return the running cost of the regularised problem under its law."""
     assert derivation.problem is not None
     (cost,) = set_laws.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
     value = (cost + set_laws.effort(derivation)).xreplace(set_laws.regularised_law(derivation))

@@ -1,6 +1,7 @@
 """Long control laws as a chain of named parts with derivatives.
 
-In one piece, what depends on such a law holds it many times over, and its derivatives more often still.
+Substituted in one piece, such a law would occur many times in the functions that depend on it, and more often still in
+their derivatives.
 """
 
 from __future__ import annotations
@@ -17,25 +18,25 @@ from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle import product, set_laws
 
 MOST_OPERATIONS = 250
-"""Operations of the laws of a problem above which they are named: thrust on equinoctial elements has 600, and the
-Jacobian of its canonical equations in one piece a million."""
+"""Largest number of operations of laws that are substituted; longer ones become named parts. Thrust on equinoctial
+elements has 600, and the Jacobian of its canonical equations in one piece a million."""
 
 
 @dataclass(frozen=True)
 class LawParts:
-    """The chain, the symbols in it for the controls, and the derivatives of all its parts."""
+    """The chain of long laws, the symbols in it for the controls, and the derivatives of all its parts."""
 
     parts: tuple[Assignment, ...] = ()
     values: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     slopes: Mapping[sp.Symbol, Mapping[sp.Symbol, sp.Expr]] = field(default_factory=dict)
 
     def jacobian(self, column: sp.Matrix, by: tuple[sp.Symbol, ...]) -> sp.Matrix:
-        """The derivatives of expressions in which such controls are those symbols."""
+        """Return the derivatives of expressions in which long laws are represented by their symbols."""
         return sp.Matrix([[along(e, self.slopes.get(s, {s: sp.Integer(1)})) for s in by] for e in column])
 
 
 def law_parts(derivation: Derivation) -> LawParts:
-    """The chain of a derivation's control laws; an empty one where all laws are short enough to be substituted."""
+    """Return the chain of a derivation's control laws; empty where all laws are short enough to be substituted."""
     if product.STEP not in derivation or not (laws := _long_laws(derivation)):
         return LawParts()
     names = sp.utilities.numbered_symbols("law_part_", start=1, real=True)
@@ -53,7 +54,7 @@ def law_parts(derivation: Derivation) -> LawParts:
 
 
 def _long_laws(derivation: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """Laws without a closed form, and those of the other sets where these are long together."""
+    """Return laws without a closed form, and those of other sets where these are long together."""
     without = {
         u: law
         for one in set_laws.found(derivation)

@@ -1,4 +1,4 @@
-"""Functions that only linear models have: matrices, polynomials, closed forms and residuals, over parameters."""
+"""Functions of linear models: matrices, polynomials, closed forms and residuals, as functions of parameters."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.symbolic.linear.regulator import MOST_INPUTS, MOST_STATES, inverse, 
 
 
 def linear_functions(derivation: Derivation) -> list[Function]:
-    """The functions that a model has for being linear and without a cost; none for any other."""
+    """Return the functions of a linear model without a cost; none for any other model."""
     kind = coefficients_of(derivation) if derivation.problem is None else None
     if kind is None:
         return []
@@ -44,7 +44,7 @@ def _matrices(derivation: Derivation) -> list[Function]:
 
 
 def _deviations(derivation: Derivation) -> list[Function]:
-    """The exact equations in the same variables, and the change of variables in both directions."""
+    """Return the exact equations in the same variables, and the change of variables in both directions."""
     n = len(derivation.model.states)
     back = sp.Matrix([e.rhs for e in derivation.step("original_states").equations[:n]])
     there = sp.Matrix([e.rhs for e in derivation.step("deviations").equations[:n]])
@@ -57,7 +57,7 @@ def _deviations(derivation: Derivation) -> list[Function]:
 
 
 def _constant(derivation: Derivation) -> list[Function]:
-    """What constant coefficients allow."""
+    """Return the functions of a model with constant coefficients."""
     system = system_of(derivation)
     of = spectrum(system.a)
     array = routh(of.coefficients)
@@ -78,7 +78,7 @@ def _constant(derivation: Derivation) -> list[Function]:
 
 
 def _feedback(derivation: Derivation) -> list[Function]:
-    """Functions for a linear feedback u = -K x and for its Riccati equation."""
+    """Return functions of a linear feedback u = -K x and of its Riccati equation."""
     system, s = system_of(derivation), symbols(derivation)
     n, m = system.b.shape
     coefficients = _coefficients(system.a - system.b * matrix_symbols("K", m, n))
@@ -103,13 +103,16 @@ def _feedback(derivation: Derivation) -> list[Function]:
 
 @lru_cache(maxsize=16)
 def _coefficients(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, ...]:
-    """Coefficients of det(s I - M), highest power first, each collected as a product of as few terms as may be."""
+    """Return the coefficients of det(s I - M), highest power first, each as a product of few terms."""
     found = sp.Matrix(matrix).charpoly(sp.Dummy("s")).all_coeffs()
     return tuple(sp.factor_terms(sp.expand(c)) for c in found)
 
 
 def _regular_column(coefficients: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """The first column of a Routh array without special cases; empty where an element but the last vanishes always."""
+    """Return the first column of a Routh array without special cases.
+
+    It is empty where an element other than the last vanishes identically.
+    """
     above, line = list(coefficients[0::2]), list(coefficients[1::2])
     column = [above[0]]
     while line:

@@ -32,26 +32,25 @@ HALF, SIXTH, EIGHTH = sp.Rational(1, 2), sp.Rational(1, 6), sp.Rational(1, 8)
 
 @dataclass(frozen=True)
 class Loop:
-    """What an RK4 loop integrates."""
+    """The quantities that an RK4 loop integrates, and their rates."""
 
     name: str
     summary: str
     signature: str
     """Name, docstring and arguments of the generated function."""
     backward: bool
-    """Whether it runs from the last node to the first."""
+    """Whether the loop runs from the last node to the first."""
     time: sp.Symbol
     parameters: tuple[sp.Symbol, ...]
     """Symbols of the time and of the parameters."""
     integrated: tuple[sp.Symbol, ...]
-    """Symbols of what is integrated, under the names of the arguments that give its start, its nodes and its
-    midpoints."""
+    """Symbols of the integrated quantities, under the names of the arguments for their start, nodes and midpoints."""
     start: str
     nodes: str
     mids: str
-    """Names of those three arguments."""
+    """Names of the arguments for start, nodes and midpoints."""
     given: tuple[tuple[str, str, tuple[sp.Symbol, ...]], ...]
-    """(argument of nodes, argument of midpoints, symbols) of each group that is known beforehand."""
+    """For each group of given quantities: argument of nodes, argument of midpoints, symbols."""
     rates: Block
     """Block from time, integrated and given symbols to the rates; with ``sums``, one output more."""
     sums: bool
@@ -59,14 +58,14 @@ class Loop:
 
 
 def source(loop: Loop) -> str:
-    """Source text of the function."""
+    """Return the source text of the loop's function."""
     names = _Names(loop)
     step = _Step(loop, names)
     return _text(loop, names, step)
 
 
 class _Names:
-    """The names a loop uses beside those of its symbols; all distinct."""
+    """The names that a loop uses besides those of its symbols; all are distinct."""
 
     def __init__(self, loop: Loop) -> None:
         self.given = [s for *_, group in loop.given for s in group]
@@ -83,7 +82,7 @@ class _Names:
         self.slopes = [self._slope(loop, k, output) for k, output in enumerate(loop.rates.outputs)]
 
     def _slope(self, loop: Loop, k: int, output: sp.Expr) -> sp.Expr:
-        """The rate at departure: carried from step to step, unless it is a number or itself integrated."""
+        """Return the rate at departure, carried from step to step unless it is a number or an integrated state."""
         if output.is_Number or output in loop.integrated:
             return output
         what = loop.integrated[k].name if k < len(loop.integrated) else "total"
@@ -91,7 +90,7 @@ class _Names:
 
 
 class _Step:
-    """The assignments of a loop: before it, at its first node, and of one step."""
+    """The assignments of a loop: before it, at its first node, and in one step."""
 
     def __init__(self, loop: Loop, names: _Names) -> None:
         self.loop, self.names, self.emit = loop, names, names.emit
@@ -117,7 +116,7 @@ class _Step:
         self.before = live(self.emit.before, self.used | self.used_first)
 
     def _stages(self) -> list[sp.Expr]:
-        """Emit the stages; h times the mean slope of everything integrated."""
+        """Emit the stages; return h times the mean slope of each integrated quantity."""
         loop, names, emit = self.loop, self.names, self.emit
         half, sixth = emit.assign(HALF * names.h, "half"), emit.assign(SIXTH * names.h, "sixth")
         middle, end = (half, loop.time + half, names.half), (names.h, names.end[loop.time], names.end)
@@ -140,7 +139,7 @@ class _Step:
         return [self.emit.assign(r, hint) for r, hint in zip(rates, hints, strict=False)]
 
     def _means(self, sixth: sp.Expr, slopes: Sequence[Sequence[sp.Expr]]) -> list[sp.Expr]:
-        """h/6 (k1 + 2 k2 + 2 k3 + k4) of each.
+        """Return h/6 (k1 + 2 k2 + 2 k3 + k4) of each quantity.
 
         Where the rate of y is itself an integrated v, this is h (v + h/6 (k1 + k2 + k3)) with the slopes of v: RK4
         takes Nystrom's form (II.14 of the same book), whose sums serve y and v.
@@ -159,14 +158,14 @@ class _Step:
         return means
 
     def _middles(self, final: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """The Hermite midpoints."""
+        """Return the Hermite midpoints."""
         eighth = self.emit.assign(EIGHTH * self.names.h, "eighth")
         ends = zip(self.loop.integrated, self.arrival, self.names.slopes, final, strict=False)
         return [_scaled(HALF, a + b) + eighth * (p - q) for a, b, p, q in ends]
 
 
 def _scaled(factor: sp.Expr | int, total: sp.Expr) -> sp.Expr:
-    """A number times a sum, not multiplied out: one operation less."""
+    """Return a number times a sum without expanding it, which saves an operation."""
     return sp.Mul(factor, total, evaluate=not total.is_Add)
 
 
@@ -237,24 +236,24 @@ def _text(loop: Loop, names: _Names, step: _Step) -> str:
 
 
 def unpacking(names: Iterable[object]) -> str:
-    """Left-hand side that unpacks a tuple, also one of length one."""
+    """Write the left-hand side that unpacks a tuple, also one of length one."""
     found = [str(n) for n in names]
     return f"({found[0]},)" if len(found) == 1 else ", ".join(found)
 
 
 @dataclass(frozen=True)
 class Split:
-    """A motion q' = v, v' = a(q) without control."""
+    """A separable motion q' = v, v' = a(q) without control."""
 
     coordinates: tuple[sp.Symbol, ...]
     velocities: tuple[sp.Symbol, ...]
-    """The states q, and v in the same order."""
+    """The coordinates q, and the velocities v in the same order."""
     accelerations: tuple[sp.Expr, ...]
-    """a, as the derivation has it."""
+    """The accelerations a(q)."""
 
 
 def split(derivation: Derivation) -> Split | None:
-    """Coordinates, velocities and accelerations of a separable motion; None where the motion is no such.
+    """Return coordinates, velocities and accelerations of a separable motion; ``None`` for other motions.
 
     Without control each coordinate's rate must be a state of its own, whose rate depends on the coordinates and on
     nothing else but parameters, as the gradient of some function: then the motion has a Hamiltonian v^2/2 + V(q).
@@ -280,7 +279,7 @@ def split(derivation: Derivation) -> Split | None:
 
 
 def kicks_and_drifts(code: Code, of: Split, constants: Sequence[Assignment]) -> str:
-    """Source text of the loop."""
+    """Return the source text of the symplectic loop."""
     s, names = code.symbols, code.names
     states = s.x
     q, v = ([names.get(y, y) for y in group] for group in (of.coordinates, of.velocities))

@@ -1,4 +1,4 @@
-"""Expressions as source text: floats and ``math`` for the scalar form, arrays and ``np`` for the batch form."""
+"""Printers of expressions as source text: floats and ``math`` in scalar form, arrays and ``np`` in batch form."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ LARGEST_PRODUCT = 4
 """Integer powers up to this one are printed as products, which are several times faster."""
 
 WRITTEN: dict[float, Any] = {}
-"""Magnitudes of floats that were written -> the numbers of mpmath that they are the nearest ones of."""
+"""Magnitudes of printed floats with the mpmath numbers that they approximate."""
 
 
 class _Printer(PythonCodePrinter):
-    """What both forms share. Numbers are floats: an int literal makes float code slower."""
+    """The printing that both forms share; numbers are floats, because an int literal makes float code slower."""
 
     module: str
     functions: Mapping[str, str]
@@ -31,11 +31,11 @@ class _Printer(PythonCodePrinter):
         super().__init__({"fully_qualified_modules": False, "contract": False})
 
     def _as_ordered_terms(self, expr: Any, order: Any = None) -> list[Any]:
-        """A term with a plus sign first where there is one: a leading minus is one operation more."""
+        """Order terms with a plus sign first where there is one: a leading minus costs an operation."""
         return sorted(super()._as_ordered_terms(expr, order), key=lambda term: term.could_extract_minus_sign())
 
     def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
-        """Brackets where needed, but none around a fraction that prints as one literal."""
+        """Add brackets where needed, but none around a fraction that prints as one literal."""
         return self._print(item) if _literal(item) else super().parenthesize(item, level, strict)
 
     def _print_Integer(self, expr: Any) -> str:
@@ -79,7 +79,7 @@ class _Printer(PythonCodePrinter):
 
 
 class ScalarPrinter(_Printer):
-    """Floats and the ``math`` module; what numba compiles as well."""
+    """Printer for floats and the ``math`` module, whose code numba can compile."""
 
     module = "math"
     functions = {name: name for name in FUNCTIONS} | {"Abs": "fabs"}
@@ -180,7 +180,7 @@ class ScalarPrinter(_Printer):
 
 
 class BatchPrinter(_Printer):
-    """Arrays and ``np``, real or complex."""
+    """Printer for arrays and ``np``, real or complex."""
 
     module = "np"
     functions = {name: name for name in FUNCTIONS} | {
@@ -277,7 +277,7 @@ class BatchPrinter(_Printer):
         return f"-np.heaviside({curvature}, 0.0)*{inside}/{curved}"
 
     def _curved(self, curvature: str) -> str:
-        """A curvature to divide by; one where there is no such."""
+        """Print a curvature to divide by, replaced by one where it is zero."""
         return f"np.where({curvature} <= 0.0, 1.0, {curvature})"
 
     def _print_Bearing(self, expr: Any) -> str:
@@ -303,7 +303,7 @@ class BatchPrinter(_Printer):
 
 
 def _noted(number: Any) -> str:
-    """A number as a literal; :data:`WRITTEN` has what its nearest float is short of."""
+    """Return a number as a literal, and record its rounding error in :data:`WRITTEN`."""
     nearest = float(number)
     with mp.workdps(DIGITS):
         WRITTEN[abs(nearest)] = abs(sp.N(number, DIGITS)._to_mpmath(mp.mp.prec))
@@ -311,7 +311,7 @@ def _noted(number: Any) -> str:
 
 
 def _exact(number: Any) -> bool:
-    """Whether a rational is a binary fraction, so that one literal holds it."""
+    """Tell whether a rational is a binary fraction, so that one literal represents it."""
     return number.q & (number.q - 1) == 0
 
 

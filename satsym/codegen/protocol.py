@@ -1,6 +1,6 @@
-"""The contract of generated modules as types: the stub by which everything that is typed sees their functions.
+"""The contract of generated modules as a type stub, by which type checkers see their functions.
 
-``python -m satsym.codegen.protocol`` writes it anew. It is not there when a program runs.
+``python -m satsym.codegen.protocol`` writes the stub anew; a running program does not use it.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Functions(Protocol):
 
 
 def text() -> str:
-    """The whole stub."""
+    """Return the text of the whole stub."""
     return HEAD + "".join(line for one in contract.POINTWISE.items() for line in _stated(*one))
 
 
 def _stated(name: str, signature: Signature) -> list[str]:
-    """Lines that state the types of both forms of a function."""
+    """Return the lines that declare the types of both forms of a function."""
     of_point = ", ".join(f"{a}: {'float' if a == 't' else 'Row'}" for a in signature.arguments)
     of_many = ", ".join(f"{a}: {_of_many(a)}" for a in signature.arguments)
     value = "tuple[float, ...]" if signature.shape else "float"
@@ -50,7 +50,7 @@ def _stated(name: str, signature: Signature) -> list[str]:
 
 
 def _line(name: str, arguments: str, value: str) -> str:
-    """A method as the formatter has it."""
+    """Return the declaration of a method in the formatter's layout."""
     line = f"    def {name}(self, {arguments}) -> {value}: ...\n"
     return line if len(line) <= WIDTH + 1 else f"    def {name}(\n        self, {arguments}\n    ) -> {value}: ...\n"
 

@@ -1,14 +1,11 @@
-"""The lines that search: for a root, and for where a polynomial is least between two ends.
+"""Generated lines of searches: for a root, and for the minimiser of a polynomial on an interval.
 
-A root is found by Newton's method, kept between ends that enclose it and to steps that shrink. Both forms do the same,
-and always as often: a few steps more than doubling from one, and halving down to the last digits, can take. Where the
-slope vanishes nowhere, the result is no number.
-
-For the least value all places are compared where the slope vanishes.
-
-Between zeros of its derivative a polynomial is monotone, so that each zero of the slope is enclosed by zeros of the
-slope's derivative, and these by those of the next one, down to a quadratic polynomial. Where there is none between two,
-one of them or some place in between is taken for it, which does no harm: all of them are admissible.
+A root is found by Newton's method, kept between ends that enclose it and to steps that shrink. Both forms take the same
+fixed number of steps: a few more than are needed for doubling from one and halving down to the last digits. Where the
+slope does not vanish, the result is NaN. For the minimiser, all zeros of the slope are compared. Between zeros of its
+derivative a polynomial is monotone, so that each zero of the slope is enclosed by zeros of the slope's derivative, and
+these by those of the next one, down to a quadratic polynomial. Where there is no zero between two, an end or some point
+between is taken for it, which does no harm: all of them are admissible.
 """
 
 from __future__ import annotations
@@ -22,39 +19,39 @@ import sympy as sp
 from satsym.symbolic.functions.roots import Argmin, Root
 
 STEPS, POLISHED = 60, 2
-"""Halvings of an interval, and steps of Newton's method at the best place."""
+"""Number of bisections of an interval, and of Newton steps at the best point."""
 
 SMALLEST_SQUARE = 1e-200
-"""By what has a smaller square nothing is divided."""
+"""Smallest square of a divisor."""
 
 _AT = sp.Symbol("at", real=True)
 
 Ends = Sequence[str | None]
-"""Lower and upper one; ``None`` where there is none."""
+"""Lower and upper end; ``None`` where there is none."""
 
 
 @dataclass(frozen=True)
 class _Form:
-    """How a form compares, and how it prints expressions."""
+    """The comparisons of a form, and its printer of expressions."""
 
     name: str
     code: Callable[[sp.Expr], str]
 
     def chosen(self, left: str, right: str, one: str, other: str) -> str:
-        """One where the left is less than the right, else the other."""
+        """Print the choice of ``one`` where the left is less than the right, else of the other."""
         if self.name == "np":
             return f"np.where({left} < {right}, {one}, {other})"
         return f"{one} if {left} < {right} else {other}"
 
     def within(self, place: str, ends: Ends) -> list[str]:
-        """Statements that bring a place between ends."""
+        """Return statements that bring a value between ends."""
         low, high = ends
         found = [] if low is None else [f"{place} = {self.chosen(place, low, low, place)}"]
         return found + ([] if high is None else [f"{place} = {self.chosen(high, place, high, place)}"])
 
 
 def minimum_lines(name: str, least: Argmin, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
-    """Statements that give a name the place at which a polynomial is least.
+    """Return statements that assign the minimiser of a polynomial to a name.
 
     Parameters
     ----------
@@ -98,7 +95,7 @@ def _derivatives(coefficients: list[sp.Symbol]) -> list[sp.Poly]:
 
 
 def _within_reach(low: str, high: str, ends: Ends, coefficients: list[sp.Symbol], by: _Form) -> list[str]:
-    """Between which places all zeros of the slope lie that are between the ends: Cauchy's bound."""
+    """Return Cauchy's bound on the zeros of the slope, intersected with the interval."""
     absolute = "np.abs" if by.name == "np" else "math.fabs"
     *others, last = coefficients
     sizes = " + ".join(f"{float(k)!r}*{absolute}({c})" for k, c in enumerate(others, 1))
@@ -107,7 +104,7 @@ def _within_reach(low: str, high: str, ends: Ends, coefficients: list[sp.Symbol]
 
 
 def _zeros(name: str, places: list[str], quadratic: sp.Poly, by: _Form) -> list[str]:
-    """Both zeros of a quadratic polynomial, without cancellation; where there are none, some places."""
+    """Return both zeros of a quadratic polynomial without cancellation; where it has none, some points."""
     square, linear, constant = (by.code(c) for c in quadratic.all_coeffs())
     a, b, c, root, sum_, below = (f"{name}_{part}" for part in ("a", "b", "c", "root", "sum", "below"))
     return [
@@ -126,7 +123,7 @@ def _zeros(name: str, places: list[str], quadratic: sp.Poly, by: _Form) -> list[
 
 
 def _divided(place: str, above: str, below: str, spare: str, by: _Form) -> list[str]:
-    """A quotient; something finite where nothing is divided by."""
+    """Return a quotient, and a finite value where the divisor is zero."""
     square = f"{below}*{below}"
     return [
         f"{spare} = {by.chosen(square, repr(SMALLEST_SQUARE), '1.0', below)}",
@@ -135,7 +132,7 @@ def _divided(place: str, above: str, below: str, spare: str, by: _Form) -> list[
 
 
 def _in_order(places: list[str], by: _Form) -> list[str]:
-    """The lower place first."""
+    """Return two points with the lower one first."""
     one, other = places
     return [
         f"{one}_first = {by.chosen(other, one, other, one)}",
@@ -145,7 +142,7 @@ def _in_order(places: list[str], by: _Form) -> list[str]:
 
 
 def _enclosed(name: str, place: str, ends: tuple[str, str], derivative: sp.Poly, by: _Form) -> list[str]:
-    """The zero of what is monotone between two places, by halving."""
+    """Return the zero of a monotone function between two points, by bisection."""
     low, high, rising, value = (f"{name}_{part}" for part in ("left", "right", "rising", "value"))
     return [
         f"{low} = {ends[0]}",
@@ -161,7 +158,7 @@ def _enclosed(name: str, place: str, ends: tuple[str, str], derivative: sp.Poly,
 
 
 def _best(name: str, places: list[str], polynomial: sp.Poly, by: _Form) -> list[str]:
-    """The place of several at which a polynomial is least."""
+    """Return the one of several points at which a polynomial is least."""
     value, least = f"{name}_value", f"{name}_least"
     found = [f"{name} = {places[0]}", f"{least} = {_value(polynomial, name, by)}"]
     for place in places[1:]:
@@ -174,7 +171,7 @@ def _best(name: str, places: list[str], polynomial: sp.Poly, by: _Form) -> list[
 
 
 def _polished(name: str, derivatives: list[sp.Poly], ends: Ends, by: _Form) -> list[str]:
-    """To the last digits between the ends, where the slope grows; to the nearer end where it falls."""
+    """Refine a minimiser to the last digits where the slope increases; else return the better end."""
     (low, high), step, curved, nearer = ends, f"{name}_step", f"{name}_curved", f"{name}_nearer"
     statements = [f"{curved} = {_value(derivatives[2], name, by)}", f"{step} = {_value(derivatives[1], name, by)}"]
     if low is not None:
@@ -194,22 +191,22 @@ def _polished(name: str, derivatives: list[sp.Poly], ends: Ends, by: _Form) -> l
 
 
 def _value(polynomial: sp.Poly, place: str, by: _Form) -> str:
-    """A polynomial at a place, by Horner's rule."""
+    """Evaluate a polynomial at a point by Horner's rule."""
     return by.code(sp.horner(polynomial).xreplace({_AT: sp.Symbol(place, real=True)}))
 
 
 ROOT_STEPS, POLISHED_ROOT = 60, 3
-"""Steps between ends, and steps of Newton's method after that."""
+"""Number of steps between ends, and of Newton steps after them."""
 
 FARTHEST_ROOT, SMALLEST_CURVATURE = 1e150, 1e-100
-"""Beyond this nothing is looked for; a curvature below the other counts as that."""
+"""Largest root that is sought, and smallest curvature, which replaces smaller ones."""
 
 LAST_STEP = 1e-9
-"""The last step, relative to one plus the size of the root, at most."""
+"""Largest final step, relative to one plus the size of the root."""
 
 
 def root_lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
-    """Statements that give a name the value of a root.
+    """Return statements that assign the value of a root to a name.
 
     Parameters
     ----------
@@ -222,7 +219,7 @@ def root_lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str])
     """
 
     def chosen(left: str, right: str, one: str, other: str) -> str:
-        """One where the left is less than the right, else the other."""
+        """Print the choice of ``one`` where the left is less than the right, else of the other."""
         return (
             f"np.where({left} < {right}, {one}, {other})" if form == "np" else f"{one} if {left} < {right} else {other}"
         )

@@ -1,9 +1,9 @@
-"""Functions of problems whose Hamiltonian is linear in the controls: what switches them, and their companion.
+"""Functions of problems whose Hamiltonian is linear in the controls, and of their regularised problem.
 
-The exact law jumps, so the canonical system is generated for the smoothed companion, whose law is continuous. The
-companion has ``smoothing / 2`` times the squared controls more in its cost, and of the weights of magnitudes only a
-share. Both numbers follow the bounds of the box in ``bounds``; with a vanishing smoothing (1e-200, say) and a share of
-one it is the problem itself.
+The exact law jumps, so the canonical system is generated for the regularised problem, whose law is continuous. Its cost
+has ``smoothing / 2`` times the squared controls in addition, and only a fraction of the weights of magnitudes. Both
+numbers follow the bounds of the box in ``bounds``; with a vanishing smoothing (1e-200, say) and a fraction of one it is
+the problem itself.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from satsym.symbolic.switching.functions import parts, written_out
 from satsym.symbolic.switching.notation import BEYOND_CURVE, ON_CURVE, SIDE, TRANSITION
 
 STEP = "switching_function"
-"""The step that only derivations of such problems have."""
+"""The name of the step that only derivations with a Hamiltonian linear in the controls have."""
 
 
 def switches(derivation: Derivation) -> bool:
-    """Whether the Hamiltonian is linear in the controls and their magnitudes."""
+    """Tell whether the Hamiltonian is linear in the controls and their magnitudes."""
     return STEP in derivation
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A function of one point in time: name, first line of its docstring, arguments, value, names of the outputs."""
+    """A function of one point in time: name, summary, arguments, value, names of the outputs."""
 
     name: str
     summary: str
@@ -42,7 +42,7 @@ class Entry:
 
 
 def vectors(derivation: Derivation) -> list[Entry]:
-    """Switching functions, their rates, weights of magnitudes and the exact law, a component for each control."""
+    """Return switching functions, their rates, weights of magnitudes and the exact law, by control."""
     found = parts(derivation)
     controls = names(derivation.model.controls)
     rates = [derivation.equation(f"switching_rate.{u}").rhs for u in controls]
@@ -61,7 +61,7 @@ def vectors(derivation: Derivation) -> list[Entry]:
 
 
 def curve(derivation: Derivation) -> list[Entry]:
-    """Functions of the switching curve, where there is one: the law of the state, and changes of position from rest."""
+    """Return the functions of a switching curve: the law of the state, and changes of position from rest."""
     steps = (switching_curve.CURVE, switching_curve.FEEDBACK, switching_curve.RESTS)
     if switching_curve.CURVE not in derivation:
         return []
@@ -95,21 +95,21 @@ def curve(derivation: Derivation) -> list[Entry]:
 
 
 def extremal_jacobian(derivation: Derivation) -> sp.Matrix:
-    """Derivatives of the rates of states and costates by states and costates, the controls being held."""
+    """Return derivatives of the rates of states and costates by these, under constant controls."""
     z = [*symbols_of(derivation.model.states), *costates(derivation)]
     return sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")]).jacobian(z)
 
 
 @dataclass(frozen=True)
 class Regularised:
-    """The smoothed companion with its law put in: rates of states and costates, and its Hamiltonian."""
+    """The regularised problem under its law: rates of states and costates, and its Hamiltonian."""
 
     rates: sp.Matrix
     hamiltonian: sp.Expr
 
 
 def regularised(derivation: Derivation) -> Regularised:
-    """The companion of a switching problem."""
+    """Return the regularised problem of a switching problem."""
     controls = symbols_of(derivation.model.controls)
     stated = {e.name: e.rhs for e in derivation.step("smoothed_law").equations}
     h, *laws = written_out(derivation, [stated["H"], *(stated[u.name] for u in controls)])

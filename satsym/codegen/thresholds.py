@@ -1,7 +1,7 @@
-"""Places just before and just behind the thresholds of a generated function, where its value or its derivative jumps.
+"""Arguments on both sides of the thresholds of a generated function, where its value or derivative jumps.
 
-A condition that is wrong by little is met, or not met, as it should be almost everywhere: at random places a wrong
-threshold shows only by chance. It always shows right beside the threshold itself.
+A slightly wrong threshold changes the outcome of a condition only in a thin layer: at random arguments it shows only by
+chance, but it always shows right beside the threshold itself.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from satsym.kernels.core import Function as GeneratedFunction
 from satsym.kernels.many_digits import NO_NUMBERS, exactly
 
 MOVED_ARGUMENTS = ("lam", "bounds", "x")
-"""Arguments of which one number is moved to a threshold: first costates, which decide about controls."""
+"""Arguments of which one number is changed to reach a threshold: first costates, which decide on controls."""
 MOST_STEPS, TRUSTED_STEPS = 12, 4
-"""Most steps of the secant method, as the conditions of laws are polynomials of low degree in one number; and steps
-after which a difference must be less than at first, as it is near a threshold."""
+"""Most steps of the secant method, since conditions of laws are polynomials of low degree in one number; and the steps
+after which a difference must have decreased."""
 FIRST_STEP = 1e-3
 """First step of the secant method, relative to the number that is moved."""
 TOLERANCE = 1e-40
-"""Distance from a threshold, relative to the number that is moved, from which on it counts as found."""
+"""Relative distance from a threshold at which it counts as found."""
 DISTANCE = 1e-20
-"""Distance from the threshold of the places, relative to the number that is moved."""
+"""Distance of the arguments on both sides from the threshold, relative to the changed number."""
 
 Place = dict[str, Any]
 
@@ -70,7 +70,7 @@ def beside_thresholds(
 
 @dataclass(frozen=True)
 class _Search:
-    """A function and its conditions."""
+    """The search for thresholds of a function's conditions."""
 
     function: GeneratedFunction
     seen: dict[int, Any]
@@ -78,7 +78,7 @@ class _Search:
     out: tuple[int, ...] | None
 
     def conditions(self, place: Place) -> dict[int, Any]:
-        """The differences of both sides of all conditions that are met at a place, as far as these are real there."""
+        """Return the differences of both sides of all conditions evaluated at some arguments, where these are real."""
         self.seen.clear()
         given = [exactly(place[a]) for a in self.arguments]
         with suppress(*NO_NUMBERS):
@@ -88,7 +88,7 @@ class _Search:
     def pairs(
         self, begin: Place, first: Mapping[int, Any], moved: tuple[str, int], wanted: Iterable[int]
     ) -> Iterator[tuple[int, list[Place]]]:
-        """Conditions, and places on both sides of their thresholds, where one number is another than it is."""
+        """Return conditions with arguments on both sides of their thresholds, reached by changing one number."""
         number = mp.mpf(begin[moved[0]][moved[1]])
         other = number * (1 + mp.mpf(FIRST_STEP))
         second = self.conditions(_moved(begin, *moved, other))
@@ -108,7 +108,7 @@ class _Search:
 
 
 def _root(value: Callable[[Any], Any], one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
-    """Where a function of one number vanishes, by the secant method; ``None`` where that finds nothing."""
+    """Find a root of a function of one number by the secant method; ``None`` where that fails."""
     (a, f), (b, g) = one, other
     scale, begin = abs(a), abs(f)
     for step in range(MOST_STEPS):
@@ -124,6 +124,6 @@ def _root(value: Callable[[Any], Any], one: tuple[Any, Any], other: tuple[Any, A
 
 
 def _moved(place: Place, argument: str, component: int, to: Any) -> Place:
-    """A place with another number as one component of an argument."""
+    """Return arguments with one component of one argument changed."""
     values = place[argument]
     return {**place, argument: tuple(to if i == component else v for i, v in enumerate(values))}

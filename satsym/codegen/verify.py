@@ -1,9 +1,9 @@
-"""Generated text against the derivation, before it is written: values, derivatives, and whole loops.
+"""Verification of generated text against the derivation, before it is written: values, derivatives, whole loops.
 
-The text of every function, in both forms, is evaluated with as many digits as it takes to hold it against its
-expression, and the text of loops against a plain RK4 that calls the generated right-hand sides: a slip in the least of
-their terms is seen, and nothing is refused for rounding. On floats, where a number may differ by what rounding does to
-it, values are compared once more, and derivatives with complex steps through other generated functions.
+The text of every function, in both forms, is evaluated with as many digits as are needed to compare it with its
+expression, and the text of loops with a plain RK4 that calls the generated right-hand sides: an error in the smallest
+of their terms is detected, and nothing is refused for rounding. On floats, where a number may differ by rounding,
+values are compared once more, and derivatives with complex steps through other generated functions.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
 
 POINTS, MANY_DIGIT_POINTS = 12, 2
-"""Places at which floats are compared, and those of them with more digits."""
+"""Numbers of points at which floats are compared, and at which many digits are."""
 LARGEST_NUMBER = 1e150
-"""Largest numbers that are compared: floats have their squares."""
+"""Largest magnitude of numbers that are compared, so that their squares are floats."""
 LIMIT = 1e-12
-"""Deviation of floats, relative to one plus the size of the number, from which on more digits decide."""
+"""Deviation of floats, relative to one plus the size of the number, above which more digits decide."""
 
 DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
@@ -62,20 +62,20 @@ DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "interior_drift": ("interior", ("t",), 1.0),
     "boundary_jacobian": ("boundary", ("x", "lam", "nu", "t"), 1.0),
 }
-"""Function -> (function it is a derivative of, or several below each other; by which arguments; factor)."""
+"""For each derivative: the differentiated function, or several in turn, the arguments, and a factor."""
 
 TRIES = 400
-"""Random places at most, of which those serve where functions have moderate numbers."""
+"""Largest number of random points drawn to find those at which functions have moderate values."""
 EARLIER = 40
-"""After so many places every other one is at a time of a tenth as before."""
+"""Number of random points after which every second one has a tenth of the usual time."""
 SHORTEST, FARTHEST = 15, 10.0
-"""Powers of ten by which steps are made shorter at most; how far states may go in them, in units of their size."""
+"""Largest power of ten by which steps are shortened, and the largest motion in them, in units of the states' size."""
 STEPS = (0.3, 0.02, 0.03, 0.01)
-"""Steps of the loops that are compared, in units that are made shorter; the first leads to where they begin."""
+"""Steps of compared loops, before they are shortened; the first leads to their start."""
 LIE = "give the ranges of the variables: Variable(..., typical=(low, high)); nothing was written"
 
 FAR_FACTOR = 1e9
-"""How many times as large, or as small, as at random what regularises is; bounds are so by the square of it."""
+"""Largest factor, up or down, on the random values of regularising numbers; on bounds, its square."""
 
 Arguments: TypeAlias = dict[str, Any]
 """Arguments of generated functions at a place, by name."""
@@ -84,7 +84,7 @@ Exact: TypeAlias = Callable[[Mapping[sp.Symbol, Any]], list[Any]]
 
 
 def verify(derivation: Derivation, kernels: Kernels) -> None:
-    """Compare generated functions with what they were generated from.
+    """Compare generated functions with the expressions they were generated from.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
 
 @dataclass(frozen=True)
 class _Of:
-    """A function that is looked at, and what it was generated from."""
+    """A function under verification, with the expressions it was generated from."""
 
     model: str
     function: Function
@@ -139,7 +139,7 @@ class _Of:
 def _places(
     derivation: Derivation, kernels: Kernels, found: Sequence[Function], exact: Sequence[Exact], rng: random.Random
 ) -> tuple[list[Arguments], list[list[list[Any]]]]:
-    """Random arguments at which all functions have numbers, also on floats, and these, function by function."""
+    """Draw arguments at which all functions have values, also on floats, and return the values by function."""
     known = code_of(derivation).symbols
     places, expected = [], []
     for attempt in range(TRIES):
@@ -161,13 +161,13 @@ def _places(
 
 
 def symbols_at(function: Function, known: Symbols, place: Arguments) -> dict[sp.Symbol, Any]:
-    """What the symbols of a function's arguments stand for."""
+    """Map the symbols of a function's arguments to their values."""
     pairs = ((s, v) for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True))
     return {s: mp.mpf(v) for s, v in pairs}
 
 
 def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
-    """Random arguments; bounds that are met by some controls and not by others."""
+    """Draw random arguments, with bounds that are active for some controls and inactive for others."""
 
     def draw(symbol: Any) -> float:
         return random_number(symbol, rng)
@@ -181,7 +181,7 @@ def drawn(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
 
 
 def _allowed(spec: ProblemSpec, place: Arguments) -> bool:
-    """Whether lower bounds are negative, others and what is declared so positive, and the ends of rings in order."""
+    """Tell whether lower bounds are negative, positive quantities positive, and the radii of annuli in order."""
     bounds = place["bounds"]
     signs = all((b < 0) == (i in spec.lower_bounds) for i, b in enumerate(bounds))
     given = [*zip(spec.states, place["x"], strict=True), *zip(spec.parameters, place["p"], strict=True)]
@@ -207,7 +207,7 @@ def limiting(spec: ProblemSpec, function: Function, place: Arguments) -> Iterato
 
 
 def _moderate_values(of: _Of, place: Arguments) -> list[Any] | None:
-    """The numbers of a function's expression at a place, if there are such: real, and without roots of what is not."""
+    """Return the values of a function's expression, if they are real, without roots of negative numbers."""
     with mp.workdps(DIGITS), suppress(*NO_NUMBERS):
         values = of.exact(symbols_at(of.function, of.known, place))
         if moderate(values) and not any(isinstance(value, mp.mpc) for value in values):
@@ -222,7 +222,7 @@ def _same_text(
     values: Sequence[Any],
     forms: Sequence[str] = ("", BATCH),
 ) -> None:
-    """Compare forms of a function at a place with its expression, with as many digits as that takes."""
+    """Compare forms of a function with its expression, with as many digits as that needs."""
     for form in forms:
         try:
             error = _text_error(of, text, place, values, form)
@@ -234,7 +234,7 @@ def _same_text(
 def _text_error(
     of: _Of, text: Mapping[str, GeneratedFunction], place: Arguments, values: Sequence[Any], form: str
 ) -> float:
-    """How far the text of one form of a function is from its expression at a place."""
+    """Return how far the text of one form of a function is from its expression."""
 
     def sides(count: int) -> Sides:
         with mp.workdps(count):
@@ -247,7 +247,7 @@ def _text_error(
 def _values(
     text: Mapping[str, GeneratedFunction], functions: Sequence[Function], place: Arguments, form: str = BATCH
 ) -> list[Any]:
-    """The numbers of functions at a place, one after another, in the working precision of mpmath."""
+    """Return the values of functions, one after another, in the working precision of mpmath."""
     found: list[Any] = []
     for function in functions:
         given = [exactly(place[a]) for a in function.arguments]
@@ -262,7 +262,7 @@ def _values(
 
 
 def _shape(function: Function) -> tuple[int, ...]:
-    """The shape of the array that the batch form of a function fills at one place."""
+    """Return the shape of the array that the batch form of a function fills at one point."""
     shapes: dict[str, tuple[int, ...]] = {"scalar": (), "vector": (len(function.outputs),)}
     return shapes.get(function.kind, function.value.shape)
 
@@ -297,7 +297,7 @@ def _same_derivatives(
     found: Sequence[Function],
     places: Sequence[Arguments],
 ) -> None:
-    """Compare a derivative with complex steps through what it is derived from; where they differ, texts and slopes."""
+    """Compare a derivative with complex steps through its function; where they differ, compare texts."""
     name, of, by, factor = relation
     functions = {f.name: f for f in found}
     arguments = {a: _stacked(a, places) for f in (name, *of) for a in functions[f].arguments}
@@ -329,7 +329,7 @@ def _same_derivatives(
 
 
 def _stepped(values: Any) -> Iterator[Any]:
-    """An argument with a complex step in each of its components in turn."""
+    """Return copies of an argument with a complex step in each of its components in turn."""
     if np.ndim(values) == 1 and not isinstance(values, tuple):
         yield values + 1j * COMPLEX_STEP
         return
@@ -340,7 +340,7 @@ def _stepped(values: Any) -> Iterator[Any]:
 
 
 def _moved(place: Arguments, argument: str, component: int, by: Any) -> Arguments:
-    """A place with one component of an argument moved."""
+    """Return arguments with one component of one argument changed."""
     values = place[argument]
     if not isinstance(values, tuple):
         return {**place, argument: values + by}
@@ -349,7 +349,7 @@ def _moved(place: Arguments, argument: str, component: int, by: Any) -> Argument
 
 
 def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
-    """An argument at all places, as the batch form takes it."""
+    """Stack an argument over all points, as the batch form takes it."""
     values = np.array([place[argument] for place in places]).T
     return tuple(values) if argument in TUPLES else values
 
@@ -362,7 +362,7 @@ def _same_loops(
     rng: random.Random,
     place: Arguments,
 ) -> None:
-    """Compare the loops with those of textbooks, with as many digits as that takes."""
+    """Compare the generated loops with plain ones, with as many digits as that needs."""
     steps, m = len(STEPS) - 1, len(known.u)
     u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))
     begin = np.abs(place["x"])
@@ -383,12 +383,12 @@ def _same_loops(
 
 
 def moderate(values: Iterable[Any]) -> bool:
-    """Whether floats have these, and what they are made of."""
+    """Tell whether values, and the terms they are made of, can be represented as floats."""
     return all(abs(value) <= LARGEST_NUMBER for value in values)
 
 
 def _refuse(model: str, what: str, error: float) -> None:
-    """Raise if numbers of many digits disagree."""
+    """Raise if numbers with many digits disagree."""
     if not error <= EQUAL:
         raise DerivationError(
             f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing was written"
