@@ -1,4 +1,4 @@
-"""Proving that what a solver found is near a strict local minimum: the story on one page."""
+"""The proof, on one page, that an extremal near a solver's answer is a strict local minimum."""
 
 from __future__ import annotations
 
@@ -13,17 +13,16 @@ from typing import Any
 from flint import arb, ctx
 
 from satsym.instance import Instance
-from satsym.proof import claims, enclosures, mixed, structure, walls
+from satsym.proof import claims, inclusion, mixed, structure, walls
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved
 from satsym.proof.balls.taylor import Order, column, rates, unit
-from satsym.proof.convexity import convex, waiting
 from satsym.proof.field import regular_field
+from satsym.proof.global_minimum import convex, costs_nothing, final_state, waiting
 from satsym.proof.identities import verify
 from satsym.proof.inclusion import Inclusion, inverse, krawczyk
 from satsym.proof.laws import Law
 from satsym.proof.lifting import Lifted, with_more_states
 from satsym.proof.record import Hypothesis, Outcome, Proof
-from satsym.proof.rest import costs_nothing, final_state
 from satsym.proof.shooting import Box, Junction, Rows, Segment, Shooting
 from satsym.proof.signs import hold, unique
 from satsym.proof.statement import Statement, refuse, stated, walled
@@ -31,19 +30,19 @@ from satsym.proof.structure import REMAINDER, TERMS, leap
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
-"""How far the extremal may be from the midpoint, relative to the sizes: what is tried in turn."""
+"""Radii of boxes about the midpoint that are tried in turn, relative to the sizes."""
 NEAR_ANSWER = 1e-3
-"""How far the extremal may be from what was found, in its costates at t0 and its duration, relative to the sizes."""
+"""Largest distance of the extremal from the answer, in initial costates and duration, relative to the sizes."""
 
 COARSE = Order(18, 1e-16)
 SPARE = 8
-"""Digits more than asked for, with which steps and boxes are computed."""
+"""Number of digits beyond the requested ones with which steps and boxes are computed."""
 
 TRIES = 12
-"""Corrections of the midpoint that are tried."""
+"""Largest number of corrections of the midpoint."""
 
 SETTLED_CORRECTION = 1e-8
-"""A correction smaller than this, relative to the sizes, is followed by one to all digits; a second such ends."""
+"""Size of a correction, relative to the sizes, below which only one more follows, to all digits."""
 
 
 def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Proof:
@@ -74,7 +73,7 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
 
 
 def _tried(record: Proof, attempt: Callable[[Proof], Proof]) -> Proof:
-    """The record after an attempt, with the reason where that ends without a proof."""
+    """Return the record after an attempt, with the reason if the attempt ends without a proof."""
     try:
         with _precision(record.digits):
             return attempt(record)
@@ -89,7 +88,7 @@ def _tried(record: Proof, attempt: Callable[[Proof], Proof]) -> Proof:
 
 
 def _first(case: Instance, record: Proof) -> Proof:
-    """What is known before anything is solved: that a theorem covers the problem, or that doing nothing is best."""
+    """Return what is known before solving: that a theorem covers the problem, or that zero control is optimal."""
     refuse(case)
     statement = stated(case)
     record = replace(record, numbers=dict(statement.source.stated))
@@ -99,15 +98,15 @@ def _first(case: Instance, record: Proof) -> Proof:
 
 
 def _at_rest(statement: Statement, record: Proof) -> Proof:
-    """The proof of a problem that is solved by doing nothing."""
+    """Prove a problem for which zero control is optimal."""
     sizes = [max(abs(float(v.mid())), 1e-3) for v in statement.initial]
     order = Order(max(18, int(1.1 * (record.digits + SPARE))), 10.0 ** -(record.digits + SPARE))
     end, steps = final_state(statement, order, [*sizes, 1.0])
-    return enclosures.at_rest(record, statement, end, steps)
+    return inclusion.at_rest(record, statement, end, steps)
 
 
 class _Stopped(Exception):
-    """A proof that ended after something was shown."""
+    """The proof ended after some hypotheses were shown."""
 
     def __init__(self, record: Proof, reason: str) -> None:
         super().__init__(reason)
@@ -116,7 +115,7 @@ class _Stopped(Exception):
 
 @contextmanager
 def _precision(digits: int) -> Iterator[None]:
-    """Arithmetic with enough bits; it is flint's own setting, for the whole process."""
+    """Set arithmetic to enough bits; the setting is flint's own, for the whole process."""
     before = ctx.prec, ctx.cap
     ctx.prec = 90 + int(3.6 * digits)
     try:
@@ -127,7 +126,7 @@ def _precision(digits: int) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Located:
-    """The one extremal in a box, and balls in which it is."""
+    """The one extremal in a box, with balls that contain it."""
 
     shooting: Shooting
     box: Box
@@ -146,7 +145,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     for arc in shooting.arcs:
         verify(statement, arc.law, place.nodes, shooting.sizes)
     there = _enclosed(shooting, place, record.digits)
-    record = enclosures.entered(record, there.shooting, there.box, there.last, there.radius)
+    record = inclusion.entered(record, there.shooting, there.box, there.last, there.radius)
     passed, convexity = there.last.passed, convex(statement)
     steps: list[Callable[[], Hypothesis]] = [
         lambda: claims.of_signs(hold(shooting, passed)),
@@ -154,7 +153,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
         lambda: claims.of_ends(statement, passed.end),
     ]
     if walled(statement):
-        steps.append(lambda: claims.of_jumps(enclosures.jumps(shooting, there.box, there.last)))
+        steps.append(lambda: claims.of_jumps(inclusion.jumps(shooting, there.box, there.last)))
     else:
         steps.append(lambda: claims.of_field(regular_field(shooting, passed)))
     for one in steps:
@@ -168,7 +167,7 @@ def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
 
 
 def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, _Place]:
-    """The equations of the arcs that were found, and a point at which they nearly hold."""
+    """Return the equations of the arcs that were found, and a point at which they nearly hold."""
     path = structure.Path(found, not statement.spec.autonomous)
     jumps: list[float] = []
     if walled(statement):
@@ -198,7 +197,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
 
 
 def _enclosed(shooting: Shooting, place: _Place, digits: int) -> Located:
-    """Show that an extremal exists and is the only one nearby; then find out where it is to the last digit."""
+    """Show that an extremal exists and is the only one nearby, and enclose it to the wanted digits."""
     inclusion: Inclusion | None = None
     for radius in RADII:
         box = _box(shooting, place, radius)
@@ -234,14 +233,14 @@ def _box(shooting: Shooting, place: _Place, radius: float) -> Box:
 
 
 def _exact(shooting: Shooting, nodes: list[list[Any]]) -> list[list[Any]]:
-    """Nodes of which the given components of the first are those of the problem."""
+    """Return nodes whose given initial components have the problem's exact values."""
     n, law = shooting.arcs[0].law.n, shooting.arcs[0].law
     first = _started(shooting.statement, nodes[0], n)
     return [[*first[: 2 * n], *([shooting.statement.t0] if law.timed else [])], *nodes[1:]]
 
 
 def _started(statement: Statement, node: list[Any], n: int) -> list[Any]:
-    """A first node with the initial states that are given."""
+    """Return a first node with the given initial states."""
     return [statement.initial[i] if i < n and i not in statement.free else v for i, v in enumerate(node)]
 
 
@@ -253,14 +252,14 @@ def _around(shooting: Shooting, box: Box, values: list[Any]) -> Box:
 
 @dataclass(frozen=True)
 class _Place:
-    """Nodes near an extremal, and lengths with what is listed with them."""
+    """Nodes near an extremal, with lengths of arcs, multiples and multipliers."""
 
     nodes: list[list[Ball]]
     lengths: list[Ball]
 
 
 def _located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], digits: int) -> _Place:
-    """The midpoint about which a proof is tried: a zero of the equations of shooting, to more digits than asked for.
+    """Return the midpoint of a proof: a zero of the equations of shooting, to more digits than requested.
 
     Newton's method finds it without enclosures.
 
