@@ -1,4 +1,4 @@
-"""Hypotheses and theorems in words."""
+"""Hypotheses and theorems of proofs, in words."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ REST = Theorem(
 
 
 def of_rest(steps: int) -> tuple[Hypothesis, ...]:
-    """Say what makes no control the best one."""
+    """State why zero control is optimal."""
     return (
         Hypothesis(
             "the cost is a positive definite quadratic form in the controls alone, and the final state is free",
@@ -63,7 +63,7 @@ def of_rest(steps: int) -> tuple[Hypothesis, ...]:
 
 
 def of_signs(shown: Shown) -> Hypothesis:
-    """Say that laws are the best ones along their arcs."""
+    """State that the laws minimise H along their arcs."""
     if not shown.conditions:
         return Hypothesis("no control reaches a bound", "there are no bounds", "no proof is needed")
     changes = f"{shown.conditions} signs and {shown.crossings} changes of the control law"
@@ -78,12 +78,12 @@ def of_signs(shown: Shown) -> Hypothesis:
 
 
 def of_minimiser(reason: str) -> Hypothesis:
-    """Say that H has one minimiser."""
+    """State that H has a single minimiser."""
     return Hypothesis("the minimiser of H is unique", reason, "on every step")
 
 
 def of_ends(statement: Statement, end: End) -> Hypothesis:
-    """Show that the ends of ranges that are met push outwards, and that others are not met.
+    """Show that multipliers of active range ends point outwards, and that other ends are not active.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
 
 
 def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
-    """Show that multipliers of path constraints push outwards only.
+    """Show that multipliers of path constraints at junctions are not negative.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def of_jumps(jumps: Sequence[Ball]) -> Hypothesis:
 
 
 def of_field(found: Regularity) -> Hypothesis:
-    """Say that there is no focal point."""
+    """State that there is no focal point."""
     parts = [f"{found.pieces} pieces"]
     if found.ratios:
         parts.append(f"smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}")
@@ -155,7 +155,7 @@ def of_field(found: Regularity) -> Hypothesis:
 
 
 def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity: str, waits: str) -> Theorem:
-    """What follows where all hypotheses were shown.
+    """State the theorem that follows when all hypotheses are shown.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
 
 
 def _best(statement: Statement) -> str:
-    """Say beside which motions an extremal is the best."""
+    """State the set of motions among which an extremal is the best."""
     more = [i for i in statement.free if i >= statement.own]
     free = [
         ("whose initial time is near", statement.clock in more),
@@ -205,7 +205,7 @@ def _best(statement: Statement) -> str:
 
 
 def scope(statement: Statement) -> str:
-    """Say which problem is proved, and what is not claimed."""
+    """State which problem is proved, and what is not claimed."""
     path = statement.source.path
     numbers = (
         f"decimals in {path} and in the generated module are taken as exact rational numbers, and degrees as "

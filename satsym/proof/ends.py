@@ -1,4 +1,4 @@
-"""The conditions at the final time and the second derivatives there, from the terminal cost and the reference."""
+"""The conditions at the final time, with second derivatives, from the terminal cost and the reference."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class End:
 
     @classmethod
     def at(cls, statement: Statement, law: Law, z: Sequence[Ball], time: Ball, nu: Sequence[Ball]) -> End:
-        """The end of a chain of arcs whose last law, final components and multipliers are these."""
+        """Return the end of a chain of arcs from its last law, final components and multipliers."""
         n, kernel, p = law.n, statement.kernel, statement.p
         given = variables([*z[:n], time])
         psi = kernel.terminal_constraints(given[n], given[:n], p) if statement.spec.multipliers else ()
@@ -61,13 +61,13 @@ class End:
 
     @property
     def ties(self) -> list[tuple[Ball, list[Ball]]]:
-        """Values and gradients of the constraints that hold with equality."""
+        """Return values and gradients of the constraints that hold with equality."""
         return [self.constraints[k] for k in self.statement.active]
 
     def residuals(self) -> tuple[list[Ball], Matrix]:
-        """What vanishes at the end, and its derivatives by the components, by the final time and by the multipliers.
+        """Return the residuals at the end, with derivatives by components, final time and multipliers.
 
-        There is a row for each state, for each constraint, and where the final time is free one for it.
+        There is a row for each state, for each constraint, and one for a free final time.
         """
         n, m, free, ties = self.law.n, self.law.m, self.statement.tf is None, self.ties
         found: list[Ball] = []
@@ -97,7 +97,7 @@ class End:
         return found, jac
 
     def goal(self, i: int) -> tuple[Ball, Ball, Ball]:
-        """Where a state that is not free must be, with its rate and its second rate by the final time."""
+        """Return the target of a state that is not free, with its first and second rate by the final time."""
         target = self.statement.targets[i]
         if target.value is not None:
             return target.value + 2 * (target.turns or 0) * arb.pi(), arb(0), arb(0)
@@ -106,9 +106,9 @@ class End:
         return place, speed, bend
 
     def _of_time(self, jac: Matrix) -> Ball:
-        """H + S_t + (S_x - lambda)' c' over the states on the reference; its derivatives into the last row.
+        """Return H + S_t + (S_x - lambda)' c' over the states on the reference; store its derivatives in the last row.
 
-        S has the constraints with it, times their multipliers.
+        S includes the constraints, times their multipliers.
         """
         n, m, ties = self.law.n, self.law.m, self.ties
         (_, s, ss), lam = self.terminal, self.z[n : 2 * n]
@@ -133,7 +133,7 @@ class End:
         return total
 
     def hamiltonian_by_time(self) -> Ball:
-        """The derivative of H by time, with the controls of the law."""
+        """Return the derivative of H by time, under the controls of the law."""
         law = self.law
         if not law.timed:
             return arb(0)
@@ -148,7 +148,7 @@ class End:
         return total[1]
 
     def second_variation(self, w: Matrix) -> Matrix:
-        """The form that must be positive on what the end leaves free: final states, then the final time.
+        """Return the form on free final states and final time that must be positive.
 
         It is the Hessian of the terminal cost, with constraints times their multipliers, less the value function of the
         field, whose second derivatives by the states are W, over the tangents of the ends that the problem admits.
@@ -190,7 +190,7 @@ class End:
 
 
 def kernel_of(slopes: Matrix) -> Matrix:
-    """Rows that span what a ball matrix maps to zero, if its own rows are independent.
+    """Return rows that span the null space of a ball matrix, if its own rows are independent.
 
     Raises
     ------

@@ -21,12 +21,12 @@ from satsym.proof.laws import AtLevels, Law, Throttled, gradient
 from satsym.proof.shooting import Carried, Pass, Segment, Shooting
 
 DEEPEST = 10
-"""How often a step is halved to show that X is regular on it."""
+"""Largest number of times a step is halved to show that X is regular on it."""
 
 
 @dataclass(frozen=True)
 class Regularity:
-    """A field that was shown to be regular.
+    """A field of extremals that was shown to be regular.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Regularity:
 
 
 def regular_field(shooting: Shooting, passed: Pass) -> Regularity:
-    """Find a field that is regular, with a form at the end that is positive.
+    """Find a regular field of extremals with a positive form at the end.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regul
 
 
 def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ball) -> tuple[Matrix, int]:
-    """W at the end of a segment, or an exact matrix above it, and the pieces that it took."""
+    """Return W, or an exact matrix above it, at the end of a segment, and the number of pieces used."""
     m = segment.derivative.nrows()
     first = arb_mat(m, n, [*unit(n).entries(), *w.entries(), *[arb(0)] * (n * (m - 2 * n))])
     x, lam, pieces, carried = unit(n), w, 0, Carried.of([arb(0)] * m)
@@ -100,14 +100,14 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
 
 
 def _widths(w: Matrix, sizes: Sequence[float]) -> list[float]:
-    """How wide a field is in each state: where its value changes by one, at most so many sizes."""
+    """Return the width of a field in each state, where its value changes by one, up to a multiple of the sizes."""
     entries = [abs(float(w[i, i].mid())) for i in range(w.nrows())]
     largest = max((e * s * s for e, s in zip(entries, sizes, strict=True)), default=0.0)
     return [max(e, 1e-9 * largest / (s * s), 1e-300) ** -0.5 for e, s in zip(entries, sizes, strict=True)]
 
 
 def _ratio(x: Matrix, lam: Matrix) -> Matrix:
-    """W = Lambda X^-1, which is symmetric."""
+    """Return W = Lambda X^-1, which is symmetric."""
     try:
         w = lam * x.inv()
     except ZeroDivisionError:
@@ -116,7 +116,7 @@ def _ratio(x: Matrix, lam: Matrix) -> Matrix:
 
 
 def _above(w: Matrix, sizes: Sequence[float]) -> Matrix:
-    """An exact symmetric matrix that exceeds all of a ball matrix, by a diagonal that dominates its radii."""
+    """Return an exact symmetric matrix that exceeds all of a ball matrix, by a diagonal that dominates its radii."""
     n = w.nrows()
     found = w.mid()
     for i in range(n):
@@ -125,7 +125,7 @@ def _above(w: Matrix, sizes: Sequence[float]) -> Matrix:
 
 
 def _regular(step: Step, w: Matrix, sizes: Sequence[float], low: float, high: float, depth: int) -> int:
-    """Pieces into which a part of a step falls, on each of which V_xx + V_xl W is regular; 0 where it is not shown."""
+    """Count the pieces of a step on each of which V_xx + V_xl W is regular; 0 where that is not shown."""
     n = w.nrows()
     v = step.derivative(arb(low).union(arb(high)) * step.h)
     x = _block(v, 0, 0, n) + _block(v, 0, n, n) * w
@@ -147,7 +147,7 @@ def _regular(step: Step, w: Matrix, sizes: Sequence[float], low: float, high: fl
 
 
 def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -> tuple[Matrix, Ball | None]:
-    """W behind the end of an arc. Where the motion jumps there, X does, and keeps the sign of its determinant."""
+    """Return W after the end of an arc; where the motion jumps, X jumps, and keeps the sign of its determinant."""
     if not isinstance(law, AtLevels | Throttled):
         return w, None
     n = law.n
@@ -178,7 +178,7 @@ def _block(a: Matrix, i: int, j: int, n: int) -> Matrix:
 
 
 def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
-    """Matrices W(t0) to try: any symmetric one will do. Negative ones are safe, small ones lose no digits."""
+    """Return matrices W(t0) to try: any symmetric one is valid. Negative ones are safe, small ones keep digits."""
     n, sizes = shooting.arcs[0].law.n, shooting.sizes
     scale = [b / a for a, b in zip(sizes[:n], sizes[n : 2 * n], strict=True)]
     least = max(scale) * 1e-6
@@ -188,7 +188,7 @@ def _starts(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
 
 
 def _later(shooting: Shooting, passed: Pass) -> Iterator[tuple[str, Matrix]]:
-    """Diagonals of W, at later times, of the field of all extremals from the initial states that are admitted."""
+    """Return diagonals of W, at later times, of the field of all extremals from admitted initial states."""
     free = shooting.statement.free
     n, flow = shooting.arcs[0].law.n, unit(shooting.arcs[0].law.m)
     jumping = isinstance(shooting.arcs[0].law, AtLevels | Throttled)

@@ -1,9 +1,9 @@
-"""Whether a generated kernel is what it says: its laws and derivatives, against its own motion and costs.
+"""Check of a generated kernel: its laws and derivatives against its own motion and costs.
 
-The problem is what ``dynamics``, ``running_cost`` and ``terminal_cost`` say. From these alone first and second
+The problem is what ``dynamics``, ``running_cost`` and ``terminal_cost`` state. From these alone first and second
 derivatives of H are computed (:mod:`satsym.proof.balls.jets`), at random points near the extremal, and compared with
-what the proof uses of the kernel besides. Both sides are analytic functions, with the comparisons of the arc answered
-as they are along it: two that differ anywhere differ at almost every point.
+the other functions of the kernel that the proof uses. Both sides are analytic functions, with the comparisons of the
+arc answered as they are along it: two that differ anywhere differ at almost every point.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from satsym.proof.walls import OnBoundary, Pushed
 POINTS = 3
 SEED = 20260
 SPREAD = 0.03
-"""How far from the extremal the points are, relative to the sizes."""
+"""Distance of the random points from the extremal, relative to the sizes."""
 KEPT = 0.6
-"""Share of the bits of the arithmetic to which equal numbers agree, relative to the sizes of both."""
+"""Fraction of the arithmetic's bits to which equal numbers must agree, relative to the sizes of both."""
 
 
 def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], sizes: Sequence[float]) -> None:
-    """Compare all that is used of a kernel along an arc with what its motion and costs say.
+    """Check all functions of a kernel that are used along an arc against its motion and costs.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], size
 
 
 class _Point:
-    """A point at which a kernel is examined."""
+    """A random point at which a kernel is checked."""
 
     def __init__(self, statement: Statement, law: Law, z: list[Ball], drawn: random.Random) -> None:
         self.statement, self.law, self.z, self.drawn = statement, law, z, drawn
@@ -72,21 +72,21 @@ class _Point:
         self.u = [constant(value(v)) for v in law.control(self.series)]
 
     def hamiltonian(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any]) -> Any:
-        """H, from the motion and the running cost alone."""
+        """Return H, from the motion and the running cost alone."""
         total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
         for a, b in zip(lam, self.kernel.dynamics(t, x, u, self.p), strict=True):
             total = a * b + total
         return total
 
     def by_controls(self, u: Sequence[Any]) -> tuple[Ball, list[Ball], list[list[Ball]]]:
-        """H, H_u and H_uu at other controls."""
+        """Return H, H_u and H_uu at other controls."""
         given = variables([value(v) for v in u])
         return self.elsewhere(
             lambda: derivatives(lambda: self.hamiltonian(self.t, self.x, given, self.lam), len(given))
         )
 
     def elsewhere(self, evaluate: Callable[[], Any]) -> Any:
-        """Evaluate with comparisons that come out as they do."""
+        """Evaluate at another point, with comparisons answered as they come out there."""
         before, self.kernel.answers = self.kernel.answers, Answers()
         try:
             return evaluate()
@@ -94,7 +94,7 @@ class _Point:
             self.kernel.answers = before
 
     def at(self, *u: Ball) -> Ball:
-        """H at other controls."""
+        """Return H at other controls."""
         return self.by_controls([constant(v) for v in u])[0]
 
     def random_controls(self) -> list[Any]:
@@ -107,7 +107,7 @@ class _Point:
             raise NotProved(f"the generated module contradicts its own motion and costs: {what}")
 
     def motion(self) -> None:
-        """Rates are (f, -H_x) under the law's controls."""
+        """Check that rates are (f, -H_x) under the law's controls."""
         states = variables([value(v) for v in self.x])
         answers = self.kernel.answers
 
@@ -125,7 +125,7 @@ class _Point:
         self.equal(found[self.n : 2 * self.n], wanted, "rates of the costates")
 
     def jacobian(self) -> None:
-        """Derivatives of the rates are these."""
+        """Check the derivatives of the rates."""
         m = self.law.m
         found = self.law.jacobian(self.series)
         rates = partials(self.law.rates, self.z)
@@ -134,7 +134,7 @@ class _Point:
             self.equal(found[i * m : i * m + m], row, "derivatives of the rates")
 
     def boundary(self) -> None:
-        """Motions that begin on the boundary, with H_u = 0 along it, keep to both; this point is moved there."""
+        """Check that motions on the boundary, with H_u = 0 along it, stay there; the point is moved there."""
         law = self.law
         assert isinstance(law, OnBoundary)
         n, none = self.n, [constant(0) for _ in self.u]
@@ -162,7 +162,7 @@ class _Point:
         there.vanishing(slopes)
 
     def mixed(self) -> None:
-        """The control is on the boundary, which limits it by the states alone, and H falls across it."""
+        """Check that the control is on the boundary, which limits it by the states, and that H falls across it."""
         law = self.law
         assert isinstance(law, OnMixed)
         k, n = law.which, self.n
@@ -184,7 +184,7 @@ class _Point:
         self.equal([push + value(law.multiplier(self.series)) * effect + 1], [arb(1)], "the multiplier of a boundary")
 
     def switching(self) -> None:
-        """H is linear in the controls and their magnitudes, by the switching functions and the weights."""
+        """Check that H is linear in controls and magnitudes, by switching functions and weights."""
         slopes = self.kernel.switching_function(self.t, self.x, self.lam, self.p)
         weights = self.kernel.magnitude_weight(self.t, self.x, self.lam, self.p)
         zero = self.by_controls([constant(arb("1e-60")) for _ in self.u])[0]
@@ -196,7 +196,7 @@ class _Point:
             self.equal([self.by_controls(u)[0]], [total], "H by the controls")
 
     def throttle(self) -> None:
-        """H is linear in a vector and its norm; the law is its best direction at the largest or the least norm."""
+        """Check that H is linear in a vector and its norm, and that the law is its best direction at a norm limit."""
         m, none = len(self.u), arb("1e-60")
         zero = self.at(*[none] * m)
         ways = [[arb(int(i == j)) if i == j else none for j in range(m)] for i in range(m)]
@@ -219,7 +219,7 @@ class _Point:
         self.equal([value(v) + 1 for v in self.u], [v + 1 for v in best], "the controls")
 
     def quadratic(self) -> tuple[list[Ball], list[list[Ball]]]:
-        """H_u under the law, and H_uu, which does not depend on the controls."""
+        """Return H_u under the law, and H_uu, which must not depend on the controls."""
         m, hessian = len(self.u), self.kernel.control_hessian
         try:
             stated = [value(v) for v in hessian(self.t, self.x, [OPAQUE] * m, self.lam, self.p)]
@@ -232,27 +232,27 @@ class _Point:
         return slopes, found
 
     def conditions(self) -> list[Ball]:
-        """What is positive along the arc, here."""
+        """Return the quantities that are positive along the arc, at this point."""
         return [value(v) for _, v in self.law.conditions(self.series)]
 
     def among(self, wanted: Ball, found: Sequence[Ball], what: str) -> None:
-        """A number that must be positive is among those that are shown to be."""
+        """Check that a number that must be positive is among those that are shown to be."""
         size = max(abs(float(wanted.mid())), 1e-30)
         if not any(abs(wanted - v) <= _agreed() * size * 1e3 for v in found):
             raise NotProved(f"the kernel's law does not keep to {what}")
 
     def free(self) -> None:
-        """Free controls are where H_u vanishes."""
+        """Check that H_u vanishes at free controls."""
         slopes, _ = self.quadratic()
         self.vanishing(slopes)
 
     def vanishing(self, slopes: Sequence[Ball]) -> None:
-        """H_u vanishes, beside what it is elsewhere."""
+        """Check that H_u vanishes, relative to its size elsewhere."""
         scale = [abs(v) + 1e-30 for v in self.by_controls(self.random_controls())[1]]
         self.equal([s / v + 1 for s, v in zip(slopes, scale, strict=True)], [arb(1)] * len(slopes), "H_u under the law")
 
     def box(self) -> None:
-        """Each control is where H_u vanishes, within its bounds, or at a bound to which H falls."""
+        """Check that H_u vanishes within bounds, or that H falls towards the active bound."""
         slopes, hessian = self.quadratic()
         m, shown = len(slopes), self.conditions()
         if any(hessian[i][j] != 0 for i in range(m) for j in range(m) if i != j):
@@ -271,7 +271,7 @@ class _Point:
                     self.among(upper[i] - value(u), shown, "the upper bound of a control")
 
     def ball(self) -> None:
-        """The controls are where H_u vanishes, within the ball, or on its sphere where H falls outwards."""
+        """Check that H_u vanishes within the ball, or that H falls outwards on its sphere."""
         slopes, hessian = self.quadratic()
         m, c = len(slopes), hessian[0][0]
         for i in range(m):
@@ -295,7 +295,7 @@ class _Point:
         return self.among(r * r - norm, shown, "the ball of the controls")
 
     def directed(self) -> None:
-        """The controls are a direction, by its angle or as a vector."""
+        """Check that the controls are a direction, by its angle or as a vector."""
         (part,) = self.kernel.spec.control_parts
         if part.kind == "angle":
             self.angle()
@@ -303,7 +303,7 @@ class _Point:
             self.steered()
 
     def steered(self) -> None:
-        """H is linear in a vector of bounded norm; the law is the largest one against the coefficients."""
+        """Check that H is linear in a vector of bounded norm, and that the law is the largest against its slope."""
         m = len(self.u)
         middle, slopes, bends = self.by_controls([constant(0)] * m)
         for row in bends:
@@ -320,7 +320,7 @@ class _Point:
         self.among(size, self.conditions(), "a direction that is determined")
 
     def angle(self) -> None:
-        """H is a multiple of the cosine of a direction, which is the law's where that is least."""
+        """Check that H is a multiple of the cosine of a direction, and that the law minimises it."""
         pi = arb.pi()
         ahead, behind = self.at(arb(0)), self.at(pi)
         mean, a = (ahead + behind) / 2, (ahead - behind) / 2

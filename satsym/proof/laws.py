@@ -1,4 +1,4 @@
-"""The laws of arcs: how the controls follow from states and costates, and what must be positive for that.
+"""The control laws of arcs: how controls follow from states and costates, and what must be positive for that.
 
 A law is an analytic field of states, costates and, where the motion depends on it, time; it is defined beyond the arc
 on which its controls minimise H. The components are (x, lambda) or (x, lambda, t).
@@ -36,17 +36,17 @@ class Law(ABC):
         self.answers = Answers()
 
     def parts(self, z: Sequence[Series]) -> tuple[Series, Sequence[Series], Sequence[Series]]:
-        """Time, states and costates."""
+        """Return time, states and costates."""
         self.kernel.answers = self.answers
         return (z[-1] if self.timed else _NEVER), z[: self.n], z[self.n : 2 * self.n]
 
     def rates(self, z: Sequence[Series]) -> list[Series]:
-        """Rates of change of all components."""
+        """Return the rates of change of all components."""
         found = list(self._rates(z))
         return [*found, constant(1)] if self.timed else found
 
     def jacobian(self, z: Sequence[Series]) -> list[Series]:
-        """Derivatives of the rates by the components, row by row."""
+        """Return the derivatives of the rates by the components, row by row."""
         found, n = list(self._jacobian(z)), 2 * self.n
         if not self.timed:
             return found
@@ -55,12 +55,12 @@ class Law(ABC):
         return [v for row in rows for v in row] + [constant(0)] * (n + 1)
 
     def cost(self, z: Sequence[Series]) -> Series:
-        """The running cost."""
+        """Return the running cost under the law."""
         t, x, _ = self.parts(z)
         return self.kernel.running_cost(t, x, self.control(z), self.p) + constant(0)
 
     def hamiltonian(self, z: Sequence[Series]) -> Series:
-        """H under the law."""
+        """Return H under the law."""
         t, x, lam = self.parts(z)
         u = self.control(z)
         total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
@@ -70,15 +70,15 @@ class Law(ABC):
 
     @abstractmethod
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
-        """The controls."""
+        """Return the controls of the law."""
 
     @abstractmethod
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
-        """What must be positive along the arc, each by a key."""
+        """Return the quantities that must be positive along the arc, by key."""
 
     @abstractmethod
     def leaving(self, other: Law) -> Key:
-        """The key of the condition that vanishes where another law begins, or has ended."""
+        """Return the key of the condition that vanishes at the junction with another law."""
 
     @abstractmethod
     def _rates(self, z: Sequence[Series]) -> Sequence[Series]: ...
@@ -91,14 +91,14 @@ class Law(ABC):
 
 
 class _Never:
-    """Stands for time where no function depends on it."""
+    """A placeholder for time where no function depends on it."""
 
 
 _NEVER: Any = _Never()
 
 
 class Regular(Law):
-    """Controls that the generated law gives, with its comparisons answered one way.
+    """A law in which the generated function gives the controls, with fixed answers to its comparisons.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class Regular(Law):
         return found[0]
 
     def state(self) -> frozenset[tuple[Key, bool]]:
-        """How the comparisons of the motion come out: two arcs of one law have the same."""
+        """Return the answers to the comparisons of the motion; two arcs of one law have equal ones."""
         return frozenset(item for item in self.answers.given.items() if item[0][0] == "canonical")
 
     def _rates(self, z: Sequence[Series]) -> Sequence[Series]:
@@ -145,7 +145,7 @@ class Regular(Law):
 
 
 class Throttled(Regular):
-    """A vector that is as long or as short as it may be, by the sign of the throttle's slope."""
+    """A law with a vector at its largest or smallest norm, by the sign of the throttle's slope."""
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
         none = self.off and value(norms(self)[0]).is_zero()
@@ -161,7 +161,7 @@ class Throttled(Regular):
 
     @property
     def off(self) -> bool:
-        """Whether the norm is the least one here: the first comparison of the motion is with it."""
+        """Tell whether the norm is the smallest one: the first comparison of the motion is with it."""
         return next((answer for key, answer in self.answers.given.items() if key[0] == "canonical"), False)
 
 
@@ -169,7 +169,7 @@ THROTTLE: Key = ("throttle_slope", 0)
 
 
 def norms(law: Regular) -> tuple[Series, Series]:
-    """The least and the largest norm of a vector of controls, which are among the bounds."""
+    """Return the smallest and the largest norm of a vector of controls, which are among the bounds."""
     (part,) = law.kernel.spec.control_parts
     if part.kind == "annulus":
         return law.bounds[0], law.bounds[1]
@@ -177,7 +177,7 @@ def norms(law: Regular) -> tuple[Series, Series]:
 
 
 class AtLevels(Law):
-    """Controls at an end of their bounds, or at zero where their magnitudes cost something.
+    """A law with controls at an end of their bounds, or at zero where their magnitudes cost something.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ class AtLevels(Law):
 
 
 def derivatives(function: Callable[[Sequence[Series]], list[Series]], z: Sequence[Ball]) -> list[list[Ball]]:
-    """Derivatives by all components, over a ball, of each of the series that a function returns."""
+    """Return derivatives of a function's series by all components, over a ball."""
     ctx.cap = 2
     columns = []
     for k in range(len(z)):
@@ -239,5 +239,5 @@ def derivatives(function: Callable[[Sequence[Series]], list[Series]], z: Sequenc
 
 
 def gradient(law: Law, key: Key, z: Sequence[Ball]) -> list[Ball]:
-    """Derivatives of a condition by all components, over a ball."""
+    """Return derivatives of a condition by all components, over a ball."""
     return derivatives(lambda series: [dict(law.conditions(series))[key]], z)[0]

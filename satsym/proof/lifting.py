@@ -1,7 +1,7 @@
-"""Free parameters and a free initial time as states: of rate zero and one, with initial values that are free.
+"""Free parameters and a free initial time as additional states, of rate zero and one, with free initial values.
 
-A proof about the motion with these states is one about the problem as it was stated. What a generated module says of a
-motion is kept; derivatives of H by the new states are taken from its motion and costs.
+A proof for the motion with these states is a proof for the stated problem. The functions of the generated module are
+kept; derivatives of H by the new states are computed from its motion and costs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CLOCK = Variable("t", "t", meaning="time")
 
 
 class Lifted(BallKernel):
-    """A module whose states are its own, then parameters, then time where it is one of them.
+    """A module whose states are its own, then free parameters, then time where that is a state.
 
     Parameters
     ----------
@@ -59,18 +59,18 @@ class Lifted(BallKernel):
         raise BeyondProof(f"the function {name} of a motion with free parameters or a free initial time")
 
     def _of(self, name: str) -> Callable[..., Any]:
-        """A function of the module itself."""
+        """Return a function of the original module."""
         return super().__getattr__(name)
 
     def _parts(self, t: Any, x: Sequence[Any], p: Sequence[Any]) -> tuple[Any, Sequence[Any], list[Any]]:
-        """Time, the module's own states, and all parameters."""
+        """Return time, the module's own states, and all parameters."""
         q = list(p)
         for place, v in zip(self.places, x[self.own :], strict=False):
             q[place] = v
         return (x[-1] if self.clocked else t), x[: self.own], q
 
     def _more(self) -> list[Series]:
-        """Rates of the states that are not the module's own."""
+        """Return the rates of the additional states."""
         return [constant(0)] * len(self.places) + [constant(1)] * self.clocked
 
     def dynamics(self, t: Any, x: Sequence[Any], u: Sequence[Any], p: Sequence[Any]) -> list[Any]:
@@ -137,7 +137,7 @@ class Lifted(BallKernel):
 
     @contextmanager
     def _unnoted(self) -> Iterator[None]:
-        """Evaluate what is compared elsewhere as well, and noted there."""
+        """Evaluate without noting comparisons that another evaluation notes."""
         noted, self.answers.noted = self.answers.noted, None
         try:
             yield
@@ -151,7 +151,7 @@ class Lifted(BallKernel):
         return total
 
     def _falls(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> list[Series]:
-        """Rates of the costates that belong to states which are not the module's own."""
+        """Return the rates of the costates of the additional states."""
         own, more = list(x[: self.own]), list(x[self.own :])
         slopes = gradients(lambda v: [self._hamiltonian(t, [*own, *v], u, lam, p)], more)
         return [-v for v in slopes]
@@ -159,14 +159,14 @@ class Lifted(BallKernel):
     def _jacobian(
         self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any], by: Sequence[Any]
     ) -> list[Any]:
-        """Derivatives of all rates by states and costates, row by row, where those of the controls are these."""
+        """Return the derivatives of all rates by states and costates, given those of the controls."""
         n, m = len(x), len(u)
         given = [Jet(v, {i: constant(1)}) for i, v in enumerate((*x, *u))]
         rates = [_jet(v) for v in self.dynamics(t, given[:n], given[n:], p)]
         total = _jet(self._hamiltonian(t, given[:n], given[n:], lam, p))
 
         def through(slopes: Sequence[Any], j: int) -> Any:
-            """What controls do, whose effects these are, when component j changes."""
+            """Return the effect of the controls when component j changes."""
             parts = [s * by[a * 2 * n + j] for a, s in enumerate(slopes) if s is not None]
             return sum(parts, constant(0))
 
@@ -192,10 +192,10 @@ def _jet(v: Any) -> Jet:
 
 
 def with_more_states(kernel: Lifted, found: Solution, parameters: Sequence[Any]) -> Solution:
-    """What a solver found, with all states of a kernel and their costates.
+    """Return a solver's solution with all states of a kernel and their costates.
 
-    New costates vanish at the beginning, that of a time which does not begin freely at the end, but for what the end
-    costs.
+    Costates of additional states vanish at the beginning; that of time, if the initial time is given, vanishes at the
+    end, except for the terminal cost.
     """
     count, states = len(found.times), [found.x]
     states += [np.full((1, count), found.instance.parameters[i]) for i in kernel.places]

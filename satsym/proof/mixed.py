@@ -1,8 +1,8 @@
 """Arcs on the boundary of a constraint on states and one control together, which limits the control by the states.
 
-There the control is what the boundary leaves, and the costates change by a multiple of the constraint's gradient
-besides. As the multiplier vanishes where such an arc begins or ends, H as minimised over the admissible controls is
-differentiable once, and the field of extremals is what it is for bounds of the controls.
+On such an arc the control follows from the boundary, and the rates of the costates have a multiple of the constraint's
+gradient in addition. As the multiplier vanishes where the arc begins or ends, H as minimised over the admissible
+controls is differentiable once, and the field of extremals is as for bounds of the controls.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from satsym.solution import Solution
 
 
 class BesideMixed(BesideWalls):
-    """An arc on which no constraint is active, beside arcs on which one is."""
+    """An arc on which no constraint is active, next to arcs on which one is."""
 
     def leaving(self, other: Law) -> Key:
         return wall(other.which) if isinstance(other, OnMixed) else super().leaving(other)
 
 
 class OnMixed(Pushed):
-    """An arc on the boundary of a constraint that holds the control."""
+    """An arc on the boundary of a constraint that contains the control."""
 
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
         t, x, lam = self.parts(z)
         return [self.kernel.boundary_control(t, x, lam, self.p, ())[self.which] + constant(0)]
 
     def gradient(self, z: Sequence[Series]) -> list[Series]:
-        """The gradient of the constraint by the states."""
+        """Return the gradient of the constraint by the states."""
         t, x, _ = self.parts(z)
         found = self.kernel.path_gradient(t, x, self.control(z), self.p)
         return [v + constant(0) for v in found[self.n * self.which : self.n * (self.which + 1)]]
@@ -47,7 +47,7 @@ class OnMixed(Pushed):
 
 
 def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float]]:
-    """Laws, junctions and times of an answer whose events are known.
+    """Return laws, junctions and times of an answer whose events are known.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a proof comes to, as plain data."""
+"""The record of a proof, as plain data."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from satsym.status import BadInput
 
 
 class Outcome(str, Enum):
-    """How an attempt to prove ended."""
+    """The outcome of an attempt to prove."""
 
     PROVED = "proved"
     NOT_PROVED = "not proved"
@@ -19,14 +19,14 @@ class Outcome(str, Enum):
 
 @dataclass(frozen=True)
 class Enclosure:
-    """A number and how far the exact one is from it at most, both as decimals."""
+    """A number and the largest distance of the exact one from it, both as decimals."""
 
     centre: str
     radius: str
 
     @classmethod
     def of(cls, ball: Any, digits: int) -> Enclosure:
-        """A ball, with as many digits as asked for; what they leave out counts for the radius.
+        """Return a ball with the wanted number of digits; the rounding error is part of the radius.
 
         Parameters
         ----------
@@ -41,12 +41,12 @@ class Enclosure:
 
     @property
     def text(self) -> str:
-        """The number and its radius, as people read them."""
+        """Write the number and its radius for people."""
         return f"{self.centre} +/- {self.radius}"
 
 
 def _rounded_up(distance: Any) -> str:
-    """A decimal of two digits that is no less."""
+    """Return a decimal of two digits that is not smaller than a distance."""
     from flint import arb
 
     if distance == 0:
@@ -60,7 +60,7 @@ def _rounded_up(distance: Any) -> str:
 
 @dataclass(frozen=True)
 class Theorem:
-    """What follows from the hypotheses.
+    """The theorem that follows from the hypotheses.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Proof:
     wall_s: float = 0.0
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym prove --json`` prints."""
+        """Return the object that ``satsym prove --json`` prints."""
 
         def one(v: Enclosure | None) -> dict[str, str] | None:
             return None if v is None else {"centre": v.centre, "radius": v.radius}
@@ -182,7 +182,7 @@ FEWEST_DIGITS, MOST_DIGITS = 6, 60
 
 
 def check_digits(digits: int) -> None:
-    """Refuse a number of digits that is not offered.
+    """Refuse a number of digits that is not supported.
 
     Raises
     ------

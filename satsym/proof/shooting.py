@@ -1,10 +1,9 @@
-"""Multiple shooting on balls: the conditions that make arcs an extremal, and Krawczyk's operator of them.
+"""Multiple shooting on balls: the conditions for arcs to be an extremal, and Krawczyk's operator of them.
 
-Unknown are the costates at the start and the states that are free there, all components at the later nodes, the
-lengths of arcs where these are not given, and the multipliers of constraints at the end. The equations: costates of
-states that are free at the start vanish there; each segment leads from a node to the next; where one arc ends and
-another begins a condition of the former vanishes; the conditions at the end; and, with unknown lengths and a given
-final time, their sum.
+The unknowns are the costates and free states at the start, all components at the later nodes, the lengths of arcs where
+these are not given, and the multipliers of constraints at the end. The equations are: costates of free initial states
+vanish; each segment leads from a node to the next; where one arc ends and another begins a condition of the former
+vanishes; the conditions at the end; and, with unknown lengths and a given final time, their sum.
 """
 
 from __future__ import annotations
@@ -22,25 +21,25 @@ from satsym.proof.laws import Law, derivatives
 from satsym.proof.statement import Statement
 
 MOST_STEPS = 3000
-"""How many steps of integration one pass over the extremal may take."""
+"""Largest number of integration steps in one pass over the extremal."""
 
 
 @dataclass(frozen=True)
 class Arc:
-    """A law, and the fractions of the arc at which nodes are, from 0 to 1; all are binary fractions."""
+    """An arc: its law, and the fractions of the arc, from 0 to 1, at which nodes are; all are binary fractions."""
 
     law: Law
     fractions: tuple[float, ...]
 
     @property
     def segments(self) -> int:
-        """How many segments the arc has."""
+        """Return the number of segments of the arc."""
         return len(self.fractions) - 1
 
 
 @dataclass(frozen=True)
 class Junction:
-    """Where an arc ends and the next one begins.
+    """The junction of two arcs.
 
     Attributes
     ----------
@@ -63,14 +62,14 @@ class Junction:
 
     @classmethod
     def between(cls, law: Law, following: Law) -> Junction:
-        """Where a condition of one law vanishes with a slope."""
+        """Return a junction at which a condition of one law vanishes with a slope."""
         key = law.leaving(following)
         return cls(key, following.leaving(law), 1, lambda z: [dict(law.conditions(z))[key]])
 
 
 @dataclass(frozen=True)
 class Box:
-    """The unknowns: midpoints, and balls about zero that say how far from these they may be.
+    """A box of unknowns: midpoints, and balls about zero for the distances from them.
 
     Attributes
     ----------
@@ -89,7 +88,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Segment:
-    """What integration over a segment gives.
+    """The result of integration over a segment.
 
     Attributes
     ----------
@@ -126,7 +125,7 @@ class Pass:
 
 @dataclass(frozen=True)
 class Shooting:
-    """The equations of a chain of arcs."""
+    """The equations of multiple shooting for a chain of arcs."""
 
     statement: Statement
     arcs: tuple[Arc, ...]
@@ -138,43 +137,43 @@ class Shooting:
 
     @property
     def lengths_given(self) -> int:
-        """How many of the lengths are given."""
+        """Return how many of the lengths are given."""
         return 0 if self.lengths_unknown else len(self.arcs)
 
     def multipliers(self, lengths: Sequence[Any]) -> list[Any]:
-        """The multipliers of constraints at the end, which are the last of what is listed with the lengths."""
+        """Return the multipliers of constraints at the end, which follow the lengths in the list."""
         return list(lengths[len(lengths) - len(self.statement.active) :])
 
     def scales_of_lengths(self, lengths: Sequence[Ball]) -> list[float]:
-        """Sizes of the unknown ones of lengths, multiples and multipliers."""
+        """Return the sizes of unknown lengths, multiples and multipliers."""
         found = [abs(float(v.mid())) for v in lengths]
         least = [0.0] * (len(found) - len(self.multiplier_sizes)) + list(self.multiplier_sizes)
         return [max(v, w) for v, w in zip(found, least, strict=True)][self.lengths_given :]
 
     @property
     def lengths_unknown(self) -> bool:
-        """Whether the lengths of arcs are to be found."""
+        """Tell whether the lengths of arcs are unknown."""
         return self.statement.tf is None or len(self.arcs) > 1
 
     @property
     def first(self) -> list[int]:
-        """The unknown components at the start: states that are free there, and the costates."""
+        """Return the places of the unknown components at the start: free states and costates."""
         n = self.arcs[0].law.n
         return [*self.statement.free, *range(n, 2 * n)]
 
     @property
     def scales(self) -> list[float]:
-        """Sizes of all unknowns, in order."""
+        """Return the sizes of all unknowns, in order."""
         count = sum(arc.segments for arc in self.arcs)
         return [*(self.sizes[i] for i in self.first), *(list(self.sizes[:-1]) * count)]
 
     def unknowns(self, nodes: Sequence[Sequence[Any]], lengths: Sequence[Any]) -> list[Any]:
-        """The unknown ones of all numbers, in order."""
+        """Return the unknown numbers among nodes and lengths, in order."""
         found = [*(nodes[0][i] for i in self.first), *(v for node in nodes[1:] for v in node)]
         return [*found, *lengths[self.lengths_given :]]
 
     def placed(self, values: Sequence[Any], nodes: list[list[Any]], lengths: list[Any]) -> tuple[Any, Any]:
-        """Nodes and lengths with other unknowns."""
+        """Return nodes and lengths with new values of the unknowns."""
         m, left, first = self.arcs[0].law.m, list(values), list(nodes[0])
         for i in self.first:
             first[i] = left.pop(0)
@@ -185,7 +184,7 @@ class Shooting:
         return moved, [*lengths[: self.lengths_given], *left]
 
     def final_time(self, lengths: Sequence[Ball]) -> Ball:
-        """The time at which the last arc ends."""
+        """Return the time at which the last arc ends."""
         lengths = lengths[: len(self.arcs)]
         return self.statement.t0 + sum(lengths, arb(0)) if self.lengths_unknown else self.statement.tf
 
@@ -226,7 +225,7 @@ def integrated(
     order: Order,
     sizes: Sequence[float],
 ) -> Segment:
-    """Integrate over a segment, whose length is a span and a slack about zero.
+    """Integrate over a segment, whose length is a span plus a slack about zero.
 
     Raises
     ------
@@ -258,9 +257,9 @@ def integrated(
 
 @dataclass(frozen=True)
 class Carried:
-    """What a motion carries along from the start of a segment, in a frame that moves with it.
+    """The enclosure that a motion carries along from the start of a segment, in a frame that moves with it.
 
-    Balls about components would grow at each turn of the motion if they stood in fixed axes.
+    Balls about components would grow at each turn of the motion if they were in fixed axes.
 
     Attributes
     ----------
@@ -278,17 +277,17 @@ class Carried:
 
     @classmethod
     def of(cls, values: Sequence[Ball]) -> Carried:
-        """What is carried at the start of a segment, where components have these radii."""
+        """Return the enclosure at the start of a segment, where components have these radii."""
         one = unit(len(values))
         return cls(one, column([v - v.mid() for v in values]), one)
 
     def error(self) -> list[Ball]:
-        """How far the motion is from the midpoints that are followed, component by component."""
+        """Return the distance of the motion from the followed midpoints, component by component."""
         found: list[Ball] = (self.frame * self.offset).entries()
         return found
 
     def after(self, derivative: Matrix, there: Sequence[Ball]) -> Carried:
-        """What is carried after a step with these derivatives, which leads the midpoint to these balls."""
+        """Return the enclosure after a step with these derivatives, which leads the midpoint to these balls."""
         moved, fresh = derivative * self.frame, column([v - v.mid() for v in there])
         frame = moved.mid()
         try:
@@ -300,7 +299,7 @@ class Carried:
 
 
 class Rows:
-    """The equations, put together segment by segment."""
+    """The equations of multiple shooting, assembled segment by segment."""
 
     def __init__(self, shooting: Shooting, box: Box) -> None:
         self.shooting, self.box = shooting, box
@@ -315,7 +314,7 @@ class Rows:
             self._add(box.nodes[0][self.n + i], {self._place(0, self.n + i): arb(1)})
 
     def matched(self, one: Segment, k: int, j: int, share: Ball, last: bool) -> None:
-        """A segment leads from node k to the next; where the last one of an arc ends, costates may jump."""
+        """Add the equations that a segment leads from node k to the next; costates may jump after an arc."""
         place, jump = self._jump(j) if last else (0, ())
         for i in range(self.m):
             row = self._of_node(k, [one.derivative[i, c] for c in range(self.m)])
@@ -329,14 +328,14 @@ class Rows:
             self._add(one.point[i] - jumped - self.box.nodes[k + 1][i], row)
 
     def _jump(self, j: int) -> tuple[int, tuple[Ball, ...]]:
-        """The place of the multiple at the end of an arc, among the lengths, and what it multiplies."""
+        """Return the place of the multiple at the end of an arc, and what it multiplies."""
         junctions = self.shooting.junctions
         if j >= len(junctions) or not junctions[j].slope:
             return 0, ()
         return len(self.shooting.arcs) + sum(bool(one.slope) for one in junctions[:j]), junctions[j].slope
 
     def met(self, j: int, k: int) -> None:
-        """What the junction behind an arc asks for vanishes at its node."""
+        """Add the conditions of the junction after an arc, which vanish at its node."""
         vanishing = self.shooting.junctions[j].vanishing
         ctx.cap = 1
         there = vanishing([arb_series([v]) for v in self.box.nodes[k]])
@@ -344,7 +343,7 @@ class Rows:
             self._add(v[0], self._of_node(k, row))
 
     def ended(self, k: int) -> End:
-        """The conditions at the end; how it is over the box."""
+        """Add the conditions at the end; return the end over the box."""
         shooting, box, m = self.shooting, self.box, self.m
         law = shooting.arcs[-1].law
         around = [v + d for v, d in zip(box.lengths, box.lengths_around, strict=True)]
@@ -372,7 +371,7 @@ class Rows:
         return end
 
     def jacobian(self) -> Matrix:
-        """Derivatives of all residuals by all unknowns."""
+        """Return the derivatives of all residuals by all unknowns."""
         count = self.lengths + len(self.box.lengths)
         found = arb_mat(len(self.rows), count)
         for i, row in enumerate(self.rows):
@@ -384,11 +383,11 @@ class Rows:
         return [v + d for v, d in zip(self.box.nodes[k], self.box.around[k], strict=True)]
 
     def _place(self, k: int, i: int) -> int:
-        """The place of component i of node k among the unknowns."""
+        """Return the place of component i of node k among the unknowns."""
         return self.first.index(i) if k == 0 else len(self.first) + self.m * (k - 1) + i
 
     def _of_node(self, k: int, entries: Sequence[Ball]) -> dict[int, Ball]:
-        """Entries by components of a node, without those that are given."""
+        """Return entries by components of a node, without those that are given."""
         unknown = self.first if k == 0 else range(self.m)
         return {self._place(k, i): entries[i] for i in unknown}
 

@@ -1,4 +1,4 @@
-"""Whether the law of each arc is the best one all along it: the signs that it needs, shown between nodes as well."""
+"""The signs for which the law of each arc minimises H all along it, shown between nodes as well."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from satsym.proof.shooting import Junction, Pass, Shooting
 from satsym.proof.walls import OnBoundary, require_push
 
 DEEPEST = 16
-"""How often a step is halved to show a sign on it."""
+"""Largest number of times a step is halved to show a sign on it."""
 PARTS = 14
-"""How often a step is halved to find the part of it on which a condition falls to zero."""
+"""Largest number of times a step is halved to find the part on which a condition falls to zero."""
 
 _LINEAR = "H is linear in the controls, and its coefficients do not all vanish"
 _DIRECTED = {
     "angle": "H is a cosine of the direction, and its amplitude does not vanish",
     **dict.fromkeys(("ball", "annulus"), _LINEAR),
 }
-"""Why a direction is the only best one, by the kind of its set."""
+"""Reasons why a direction is the only minimiser, by the kind of its set."""
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What was shown along all arcs: how many signs, and at how many places one of them passes through zero."""
+    """The signs shown along all arcs: how many, and at how many places one of them passes through zero."""
 
     conditions: int
     crossings: int
 
 
 def hold(shooting: Shooting, passed: Pass) -> Shown:
-    """Show that conditions of the laws are positive, and that those which end an arc pass through zero with a slope.
+    """Show that conditions of laws are positive, and that one which ends an arc passes through zero with a slope.
 
     Raises
     ------
@@ -84,16 +84,16 @@ def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | No
 
 
 def _derived(series: Sequence[Ball], order: int) -> list[Ball]:
-    """The coefficients of a derivative of a series."""
+    """Return the coefficients of a derivative of a series."""
     for _ in range(order):
         series = [k * v for k, v in enumerate(series)][1:]
     return list(series)
 
 
 def _part(condition: _Condition, order: int, end: int, sign: int, where: str) -> float:
-    """The share of a step, from its beginning (1) or up to its end (-1), on which a derivative has a sign.
+    """Return the fraction of a step, from its beginning (1) or to its end (-1), on which a derivative has a sign.
 
-    A condition that vanishes there, with all derivatives of lower order, is positive on that part but for its end.
+    A condition that vanishes at that point, with all derivatives of lower order, is positive on that part except there.
     """
     h, derivative = condition.step.h, _derived(condition.series, order)
     for k in range(PARTS):
@@ -106,7 +106,7 @@ def _part(condition: _Condition, order: int, end: int, sign: int, where: str) ->
 
 @dataclass(frozen=True)
 class _Condition:
-    """A condition on a step, as a function of time."""
+    """A condition of a law on a step, as a function of time."""
 
     law: Law
     key: Key
@@ -114,11 +114,11 @@ class _Condition:
     series: list[Ball]
 
     def positive(self, time: Ball) -> bool:
-        """Whether the condition is positive, by its series, which may reach less far than the motion, or values."""
+        """Tell whether the condition is positive, by its series or by values over the motion."""
         return bool(polynomial(self.series, time) > 0 or self.at(time) > 0)
 
     def at(self, time: Ball) -> Ball:
-        """The value of the condition over a ball of times."""
+        """Return the value of the condition over a ball of times."""
         ctx.cap = 1
         z = [arb_series([v]) for v in self.step.reached(time)]
         try:
@@ -127,7 +127,7 @@ class _Condition:
             return arb(0, float("inf"))
 
     def rate(self, time: Ball) -> Ball:
-        """The rate of change of the condition over a ball of times."""
+        """Return the rate of change of the condition over a ball of times."""
         z = self.step.reached(time)
         try:
             moved = zip(z, rates(self.law, z), strict=True)
@@ -138,7 +138,7 @@ class _Condition:
 
 
 def _positive(condition: _Condition, low: Ball, high: Ball, depth: int = DEEPEST) -> bool:
-    """Whether a condition is positive from one time to another."""
+    """Tell whether a condition is positive from one time to another."""
     if condition.positive(low.union(high)):
         return True
     middle = ((low + high) / 2).mid()
@@ -148,7 +148,7 @@ def _positive(condition: _Condition, low: Ball, high: Ball, depth: int = DEEPEST
 
 
 def _require_weights(law: AtLevels, steps: Sequence[Step]) -> None:
-    """Magnitudes may cost something, but bring nothing, or H is not convex in the controls."""
+    """Require that weights of magnitudes are not negative, since H would not be convex in the controls."""
     for step in steps:
         ctx.cap = 1
         t, x, lam = law.parts([arb_series([v]) for v in step.range])

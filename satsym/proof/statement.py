@@ -1,4 +1,4 @@
-"""The problem that is proved: every feature of an instance is recognised here, or refused by name."""
+"""The problem that is proved: every feature of an instance is either recognised here, or refused by name."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _OF_INSTANCES = frozenset(
     """name path title model parameters initial final t0 tf tf_guess lower upper max_norm solver lqr guess classical
     limits deadband driven norms free continuation ranges met work orbit""".split()
 )
-"""Fields of instances; `orbit` says where in the sky a motion takes place, and changes nothing of the problem."""
+"""The fields of instances that a proof covers; `orbit` only places a motion in the sky."""
 
 _OF_MODELS = frozenset(
     """name title source states controls parameters control_set has_cost has_terminal_cost has_reference autonomous
@@ -34,7 +34,7 @@ _OF_MODELS = frozenset(
     switching_curve conditions equilibria control_parts mode_groups maximise objective_unit chattering moving_magnitudes
     path_constraints linear_quadratic terminal_inequalities interior""".split()
 )
-"""Fields of models. An instance or a model with fields that are not among these is refused."""
+"""The fields of models that a proof covers; an instance or a model with other fields is refused."""
 
 
 _ALONG = frozenset(
@@ -48,7 +48,7 @@ _NOTHING: Mapping[str, Side] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Target:
-    """What a final state must be.
+    """The target of a final state.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Statement:
-    """The exact numbers of a problem, as balls of the present precision.
+    """The exact statement of a problem, with numbers as balls of the present precision.
 
     Attributes
     ----------
@@ -105,22 +105,22 @@ class Statement:
 
     @property
     def spec(self) -> ProblemSpec:
-        """The specification of the model."""
+        """Return the specification of the model."""
         return self.kernel.spec
 
     @property
     def p(self) -> list[Any]:
-        """The parameters as constants."""
+        """Return the parameters as constants."""
         return [constant(v) for v in self.parameters]
 
     @property
     def own(self) -> int:
-        """How many states the model has itself."""
+        """Return the number of the model's own states."""
         return len(self.case.model.spec.states)
 
 
 def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[float] = ()) -> Statement:
-    """The problem of an instance.
+    """Return the statement of an instance's problem.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def stated(case: Instance, met: Mapping[str, Side] = _NOTHING, last: Sequence[fl
 
 
 def _lifted(statement: Statement, places: Sequence[int], starts: bool) -> Statement:
-    """The problem with free parameters among its states, and time if it begins freely or the motion depends on it."""
+    """Return the problem with free parameters among its states, and time where it is free or enters the motion."""
     spec, t0, tf = statement.spec, statement.t0, statement.tf
     on_reference = [i for i, target in statement.targets.items() if target.value is None]
     clocked = starts or not spec.autonomous
@@ -213,19 +213,19 @@ def _lifted(statement: Statement, places: Sequence[int], starts: bool) -> Statem
 
 
 def _constraints(spec: ProblemSpec, met: Mapping[str, Side]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Places of the constraints at the end that hold with equality, and of the inequalities."""
+    """Return the places of constraints at the end that hold with equality, and of the inequalities."""
     names, first = spec.terminal_inequalities, len(spec.multipliers) - len(spec.terminal_inequalities)
     active = [*range(first), *(first + k for k, name in enumerate(names) if name in met)]
     return tuple(active), tuple(range(first, len(spec.multipliers)))
 
 
 def walled(statement: Statement) -> bool:
-    """Whether path constraints limit the states alone."""
+    """Tell whether path constraints limit the states alone."""
     return bool(statement.spec.path_constraints) and not mixed(statement.spec)
 
 
 def mixed(spec: ProblemSpec) -> bool:
-    """Whether path constraints hold the control itself."""
+    """Tell whether path constraints contain the control."""
     return any(one.order == 0 for one in spec.path_constraints)
 
 
@@ -237,7 +237,7 @@ def _time_unit(case: Instance) -> str:
 
 
 def _turned(case: Instance, i: int, target: Target, last: float) -> Target:
-    """The end of an angle that is near a final state, where it counts modulo a turn; else what it was."""
+    """Return the target of an angle modulo a turn that is nearest to a final state; other targets are unchanged."""
     name = case.model.spec.state_names[i]
     if name not in case.solver.free_angles:
         return target
@@ -273,7 +273,7 @@ def _ends(
 
 
 def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) -> tuple[Any, ...]:
-    """The argument ``bounds`` of generated functions."""
+    """Return the argument ``bounds`` of generated functions."""
     spec = case.model.spec
     if spec.switching or spec.control_set == "free":
         return ()
@@ -295,7 +295,7 @@ def _bounds(case: Instance, source: Source, lower: list[Any], upper: list[Any]) 
 
 
 def _norm(case: Instance, source: Source, part: ControlPart, key: str) -> Any:
-    """The largest or the least norm of a vector of controls."""
+    """Return the largest or the smallest norm of a vector of controls."""
     value = case.norms[part.name][key == MAX_NORM]
     if key == MIN_NORM and value == 0.0:
         return constant(0)
@@ -304,7 +304,7 @@ def _norm(case: Instance, source: Source, part: ControlPart, key: str) -> Any:
 
 
 def _refuse_cases(kernel: BallKernel) -> None:
-    """Refuse motions and costs with cases; what controls that switch cost may be their magnitudes."""
+    """Refuse motions and costs with cases, except for magnitudes in the cost of controls that switch."""
     spec = kernel.spec
     besides = (("reference",) if spec.has_reference else ()) + (("path_constraints",) if spec.path_constraints else ())
     besides += (CONSTRAINTS,) if spec.multipliers else ()
@@ -321,7 +321,7 @@ def _refuse_cases(kernel: BallKernel) -> None:
 
 
 def refuse(case: Instance) -> None:
-    """Refuse what is not recognised.
+    """Refuse an instance with a feature that no theorem covers.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where to look: the arcs of what a solver found, and nodes on them. Nothing here is part of a proof."""
+"""The arcs of a solver's answer, and nodes on them: where a proof looks for the extremal, and no part of the proof."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from satsym.proof.statement import Statement
 from satsym.solution import Solution
 
 GROWTH = 20.0
-"""How much errors may grow along a segment, relative to the sizes of components."""
+"""Largest growth of errors along a segment, relative to the sizes of components."""
 FINEST = 2.0**-24
-"""Fractions of an arc at which nodes are placed are multiples of this."""
+"""The fractions of an arc at which nodes are placed are multiples of this number."""
 TERMS, REMAINDER = 16, 1e-15
 NEAR_LEVEL = 1e-6
-"""How far a control may be from one of its levels, relative to their distance."""
+"""Largest distance of a control from a level that it is at, relative to the distance of levels."""
 TOGETHER = 1e-9
-"""Nodes of a solver that are so close to a switching time, relative to the horizon, tell nothing of the arcs."""
+"""Distance from a switching time, relative to the horizon, within which a solver's nodes are ignored."""
 
 
 class Path:
-    """What a solver found, as a function of time: states and costates between its nodes."""
+    """A solver's answer as a function of time: states and costates between its nodes."""
 
     def __init__(self, found: Solution, timed: bool) -> None:
         if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
@@ -46,7 +46,7 @@ class Path:
 
 
 def arcs(statement: Statement, found: Solution, path: Path) -> tuple[list[Law], list[float]]:
-    """Laws in order, and the times at which the first begins, each ends and the next one begins, and the last ends.
+    """Return the laws in order, and the times at which arcs begin and end.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def _regular(statement: Statement, found: Solution, path: Path, kind: type[Regul
 
 
 def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]]:
-    """Arcs of controls that switch between levels."""
+    """Return the arcs of controls that switch between levels."""
     levels = []
     ctx.cap = 1
     weighed = _weighed(statement, found)
@@ -126,7 +126,7 @@ def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]
 
 
 def _weighed(statement: Statement, found: Solution) -> list[bool]:
-    """Whether the magnitude of each control costs something."""
+    """Tell whether the magnitude of each control has a weight in the cost."""
     z = [arb_series([arb(float(v[0]))]) for v in (*found.x, *found.lam)]
     t, n = arb_series([arb(float(found.times[0]))]), len(found.x)
     weights = statement.kernel.magnitude_weight(t, z[:n], z[n:], statement.p)
@@ -145,7 +145,7 @@ def _level(u: float, then: float, levels: Sequence[Ball]) -> int:
 def placed(
     laws: Sequence[Law], times: Sequence[float], path: Path, sizes: Sequence[float]
 ) -> tuple[list[Arc], list[list[Ball]], list[Ball]]:
-    """Nodes between which errors grow little: the arcs with them, the components there, and the arcs' lengths."""
+    """Place nodes between which errors grow little; return arcs with nodes, components there, and lengths of arcs."""
     found, nodes, lengths = [], [path(times[0])], []
     for law, begin, end in zip(laws, times[:-1], times[1:], strict=True):
         length, fractions = end - begin, [0.0]
@@ -161,7 +161,7 @@ def placed(
 
 
 def _far(law: Law, start: list[Ball], left: float, sizes: Sequence[float]) -> float:
-    """How long from a start it takes until errors have grown as much as they may; no longer than what is left."""
+    """Return the time from a start in which errors grow as much as allowed, up to the time that is left."""
     m, t, z, flow = law.m, 0.0, start, unit(law.m)
     while True:
         z, v, h, whole = leap(law, z, arb(left - t), sizes)
@@ -174,7 +174,7 @@ def _far(law: Law, start: list[Ball], left: float, sizes: Sequence[float]) -> fl
 def leap(
     law: Law, z: Sequence[Ball], most: Ball, sizes: Sequence[float], terms: int = TERMS, rest: float = REMAINDER
 ) -> tuple[list[Ball], Any, Ball, bool]:
-    """A step without enclosures: where it leads, the derivatives, its length, and whether it is as long as asked."""
+    """Take a step without enclosures; return its end, derivatives, length, and whether it is as long as requested."""
     series = expand(law, [v.mid() for v in z], terms)
     last = max(abs(float(s[terms].mid())) / size for s, size in zip(series, sizes, strict=False))
     if not math.isfinite(last):
@@ -190,7 +190,7 @@ def leap(
 def multipliers(
     statement: Statement, law: Law, z: Sequence[Ball], time: Ball, sizes: Sequence[float]
 ) -> tuple[list[Ball], tuple[float, ...]]:
-    """Multipliers of constraints at the end that fit its costates best; and sizes that they have at least."""
+    """Return least-squares multipliers of constraints at the end, with lower bounds of their sizes."""
     if not statement.active:
         return [], ()
     n, zero = law.n, [arb(0)] * len(statement.active)
@@ -206,7 +206,7 @@ def multipliers(
 
 
 def sizes_of(statement: Statement, found: Solution, path: Path) -> list[float]:
-    """Sizes of the components and of the cost: the largest of each, no less than a share of the largest of its kind."""
+    """Return the sizes of components and cost: the largest values, at least a fraction of the largest of their kind."""
     n = (len(path.values)) // 2
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])

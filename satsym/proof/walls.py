@@ -1,8 +1,8 @@
 """Arcs on and beside the boundaries of path constraints of order one or two that are linear in the states.
 
-On a boundary the controls keep the first or the second rate of the constraint at zero, and the costates change by a
-multiple of its gradient besides; where a boundary of order two is entered, left or touched they jump by such a multiple
-(direct adjoining). In a convex problem, multiples that are not negative make the extremal a global minimum.
+On a boundary the controls keep the first or the second rate of the constraint at zero, and the rates of the costates
+have a multiple of its gradient in addition; where a boundary of order two is entered, left or touched the costates jump
+by such a multiple (direct adjoining). In a convex problem, non-negative multiples make the extremal a global minimum.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from satsym.solution import Solution
 
 
 def wall(which: int) -> Key:
-    """The key of the condition that a constraint is kept."""
+    """Return the key of the condition that a constraint is satisfied."""
     return ("path_constraints", which)
 
 
 def levels(law: Law, z: Sequence[Series]) -> list[Series]:
-    """What must not be positive."""
+    """Return the values of the constraints, which must not be positive."""
     t, x, _ = law.parts(z)
     return list(law.kernel.path_constraints(t, x, law.control(z), law.p, ()))
 
 
 def gradient_of(law: Law, which: int) -> list[Ball]:
-    """The derivatives of a constraint by the states, which do not depend on these.
+    """Return the derivatives of a constraint by the states, which do not depend on the states.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def gradient_of(law: Law, which: int) -> list[Ball]:
 
 
 class BesideWalls(Regular):
-    """An arc on which no constraint is active."""
+    """An arc on which no path constraint is active."""
 
     def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
         kept = [(wall(k), -v) for k, v in enumerate(levels(self, z))]
@@ -75,10 +75,10 @@ class Pushed(Law):
 
     @abstractmethod
     def gradient(self, z: Sequence[Series]) -> list[Series]:
-        """The gradient of the constraint by the states."""
+        """Return the gradient of the constraint by the states."""
 
     def multiplier(self, z: Sequence[Series]) -> Series:
-        """The factor of the constraint's gradient in the rates of the costates."""
+        """Return the factor of the constraint's gradient in the rates of the costates."""
         t, x, lam = self.parts(z)
         return self.kernel.path_multiplier(t, x, self.control(z), lam, self.p, ())[self.which] + constant(0)
 
@@ -111,9 +111,9 @@ class OnBoundary(Pushed):
         return self.slope
 
     def vanishing(self, z: Sequence[Series], law: Law | None = None) -> list[Series]:
-        """What is zero all along: the constraint, its rate, H_u along the boundary, and the rate of that.
+        """Return what is zero on the arc: the constraint, its rate, H_u along the boundary, and the rate of H_u.
 
-        Of a constraint of order one its rate is zero by the control, and only H_u is left of the others.
+        For a constraint of order one, its rate is zero by the control, and only H_u is left of the others.
         """
         t, x, lam = self.parts(z)
         u, k = (law or self).control(z), self.which
@@ -130,7 +130,7 @@ class OnBoundary(Pushed):
 
 
 def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float], list[float]]:
-    """Laws, junctions, times and jumps of the costates of an answer whose events are known."""
+    """Return laws, junctions, times and jumps of the costates of an answer whose events are known."""
     kernel, p = statement.kernel, statement.p
     names = [one.name for one in statement.spec.path_constraints]
     laws: list[Law] = [BesideWalls(kernel, p, ())]
@@ -158,19 +158,19 @@ def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[J
 
 
 def _first(boundary: OnBoundary, law: Law, count: int, z: Sequence[Series]) -> list[Series]:
-    """The first of what vanishes on a boundary, under the law of the arc that begins there."""
+    """Return the first vanishing quantities on a boundary, under the law of the arc that begins there."""
     return boundary.vanishing(z, law)[:count]
 
 
 def _jump(found: Solution, t: float, slope: Sequence[Ball]) -> float:
-    """How many times the gradient the costates fall at a time, where an answer has it twice."""
+    """Return by how many times the gradient the costates fall at a time, where an answer has that time twice."""
     k = int(np.argmin(np.abs(found.times[:-1] - t) + 1e9 * (np.diff(found.times) > 0.0)))
     fall, along = found.lam[:, k] - found.lam[:, k + 1], np.array([float(v.mid()) for v in slope])
     return float(fall @ along / (along @ along))
 
 
 def require_push(law: OnBoundary, steps: Sequence[Step]) -> None:
-    """Show that a boundary pushes nowhere inwards.
+    """Show that the multiplier of a boundary is not negative.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def require_push(law: OnBoundary, steps: Sequence[Step]) -> None:
 
 
 def require_jumps(jumps: Sequence[Ball]) -> None:
-    """Show that boundaries are met and left by jumps in their own direction.
+    """Show that the multipliers of jumps at boundaries are not negative.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""What generated code calls, on power series of balls; its comparisons are answered as an arc states, and noted.
+"""The arithmetic that generated code calls, on power series of balls; an arc states how its comparisons come out.
 
-All numbers are power series, those of one term included, for python-flint is quick with these. A series that was made
-while ``ctx.cap`` was small stays short whatever it is combined with, so constants are made by :func:`constant`.
+All numbers are power series, those of one term included, since python-flint is fast with these. A series that was made
+while ``ctx.cap`` was small stays short in every operation, so constants are made by :func:`constant`.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ Ball = Any
 Series = Any
 """An ``arb_series``: a power series whose coefficients are balls."""
 Key = tuple[str, int]
-"""The name of a generated function, and which of its comparisons it is."""
+"""The name of a generated function, and the number of one of its comparisons."""
 
 LONGEST_PRODUCT = 1000
-"""Terms that a constant may be multiplied with."""
+"""Largest number of terms of a series that a constant is multiplied with."""
 
 
 class BeyondProof(Exception):
-    """A feature that this proof says nothing about; the message names it."""
+    """The problem has a feature that this proof does not cover; the message names it."""
 
 
 class NotProved(Exception):
-    """A step of the proof fails; the message says which, where and what would help."""
+    """A step of the proof fails; the message says which step, where, and what would help."""
 
 
 def constant(value: Any) -> Series:
-    """A ball as a series of one term, of no limited precision in the variable."""
+    """Return a value as a series of one term, with unlimited precision in the variable."""
     cap, ctx.cap = ctx.cap, LONGEST_PRODUCT
     try:
         return arb_series([arb(value)])
@@ -43,13 +43,13 @@ def constant(value: Any) -> Series:
 
 
 def term(series: Any, k: int) -> Ball:
-    """Coefficient k of a series."""
+    """Return coefficient k of a series."""
     return series[k]
 
 
 @dataclass
 class Answers:
-    """How comparisons of generated code come out along an arc, and the differences that must be positive for that.
+    """The outcomes of comparisons in generated code along an arc, and the differences that must then be positive.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Answers:
     noted: list[tuple[Key, Series]] | None = None
 
     def notes(self, evaluate: Callable[[], Any]) -> list[tuple[Key, Series]]:
-        """What an evaluation compares."""
+        """Return the differences that an evaluation compares."""
         self.noted = []
         try:
             evaluate()
@@ -73,7 +73,7 @@ class Answers:
             self.noted = None
 
     def below(self, key: Key, a: Any, b: Any) -> bool:
-        """Whether a < b, where the two differ."""
+        """Answer whether a < b, where the two differ."""
         for bound, side in ((a, True), (b, False)):
             if isinstance(bound, float) and math.isinf(bound):  # where a control has no bound
                 return (bound < 0.0) == side
@@ -84,12 +84,12 @@ class Answers:
         return answer
 
     def magnitude(self, key: Key, a: Series) -> Series:
-        """The absolute value of a number that is not zero."""
+        """Return the absolute value of a number that is not zero."""
         return -a if self.below(key, a, constant(0)) else a
 
 
 def _atan2(y: Series, x: Series) -> Series:
-    """The angle, by the integral of its derivative."""
+    """Return the angle of a vector by integrating its derivative."""
     y, x = (v if hasattr(v, "sin") else constant(v) for v in (y, x))
     for one in (y, x):
         if hasattr(one, "angle"):  # of a jet
@@ -103,7 +103,7 @@ def _hyperbolic(sign: int) -> Callable[[Series], Series]:
 
 
 def mathematics() -> SimpleNamespace:
-    """What stands for the module ``math`` in generated code, with pi to the present precision."""
+    """Return the replacement of the module ``math`` in generated code, with pi to the present precision."""
     called = {name: _method(name) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "asin", "acos", "atan")}
     sinh, cosh = _hyperbolic(-1), _hyperbolic(1)
     return SimpleNamespace(
@@ -121,10 +121,10 @@ def _method(name: str) -> Callable[[Series], Series]:
 
 
 def value(number: Any) -> Ball:
-    """The first term of what generated code returns."""
+    """Return the first term of a result of generated code."""
     return number[0] if isinstance(number, arb_series) else arb(number)
 
 
 def balls(numbers: Any) -> list[Ball]:
-    """The first terms."""
+    """Return the first terms of several results of generated code."""
     return [value(v) for v in numbers]

@@ -1,4 +1,4 @@
-"""Numbers as they were written: decimals are rational numbers, quantities keep their units, degrees are parts of pi."""
+"""Exact numbers as they were written: decimals are rational, quantities have units, degrees are multiples of pi."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _ANGLES = {
     **dict.fromkeys(("arcmin", "arcminute"), Fraction(1, 10800)),
     **dict.fromkeys(("arcsec", "arcsecond"), Fraction(1, 648000)),
 }
-"""Units of angles, in pi; radians are plain numbers."""
+"""Units of angles as multiples of pi; radians are plain numbers."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number that the problem states.
+    """An exact number in the statement of a problem.
 
     Attributes
     ----------
@@ -49,14 +49,14 @@ class Number:
 
     @property
     def ball(self) -> Ball:
-        """It, to the present precision."""
+        """Return the number as a ball, to the present precision."""
         return exactly(self.rational) * arb.pi() ** self.turns
 
 
 class Source:
-    """The numbers of an instance, each as the text of its file has it.
+    """The numbers of an instance, each as the text of its file states it.
 
-    Where the instance has another number than its file, that is the number: the binary fraction that a float is. So is
+    Where the instance has another number than its file, its float is taken as the binary fraction that it is; so is
     every number of an instance that was made in Python.
     """
 
@@ -73,7 +73,7 @@ class Source:
         """What was read, by name: the decimal, the quantity, or the binary fraction."""
 
     def number(self, value: float, unit: str, *key: str | int) -> Ball:
-        """The number of an instance that its file has under these keys.
+        """Return the exact number of an instance that its file states under these keys.
 
         Parameters
         ----------
@@ -96,22 +96,22 @@ class Source:
         return found.ball
 
     def default(self, value: float, *key: str) -> Ball:
-        """The default of a parameter, whose decimal the generated module has."""
+        """Return the default of a parameter, whose decimal is in the generated module."""
         found = Number(Fraction(repr(float(value))), 0, repr(float(value)))
         self.stated[_named(key)] = found.stated
         return found.ball
 
     def free(self, value: float, *key: str) -> Ball:
-        """A number that is to be found; where a solver begins."""
+        """Return the initial guess of a number that is to be found."""
         self.stated[_named(key)] = "free"
         return arb(value)
 
     def has_units(self, table: str) -> bool:
-        """Whether a table of the file has a quantity with its unit."""
+        """Tell whether a table of the file contains a quantity with its unit."""
         return any(isinstance(v, str) for v in self._tree.get(table, {}).values())
 
     def gives(self, *key: str) -> bool:
-        """Whether the file says something under these keys."""
+        """Tell whether the file has an entry under these keys."""
         written: Any = self._tree
         for part in key:
             if not isinstance(written, Mapping) or part not in written:
@@ -125,7 +125,7 @@ def _named(key: tuple[str | int, ...]) -> str:
 
 
 def _read(written: Any, unit: str, value: float) -> Number | None:
-    """What a file has, if the number of the instance is that."""
+    """Return the exact number in a file, if the instance's number is its nearest float."""
     if isinstance(written, bool):
         return None
     if isinstance(written, int | Fraction):
@@ -143,7 +143,7 @@ def _read(written: Any, unit: str, value: float) -> Number | None:
 
 
 def _decimal(number: Fraction) -> str:
-    """A decimal fraction as one writes it."""
+    """Return a decimal fraction as it is usually written."""
     places = 0
     while (number * 10**places).denominator != 1 and places < 400:
         places += 1
@@ -159,7 +159,7 @@ def _dyadic(value: float) -> Number:
 
 
 def _factor(given: str, wanted: str) -> tuple[Fraction, int]:
-    """How many of a unit another one is: a rational number, times a power of pi."""
+    """Return the ratio of two units: a rational number, times a power of pi."""
     factor, turns = Fraction(1), 0
     for unit, sign in ((given, 1), (wanted, -1)):
         for name, exponent in units.factors(unit).items():
@@ -174,7 +174,7 @@ def _factor(given: str, wanted: str) -> tuple[Fraction, int]:
 
 @cache
 def _in_base_units(name: str) -> Fraction:
-    """How many base units a unit of one name is, exactly.
+    """Return the exact factor from a named unit to base units.
 
     Raises
     ------

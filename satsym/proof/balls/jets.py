@@ -1,4 +1,4 @@
-"""Values with their first and second derivatives by several variables, which generated code takes like numbers."""
+"""Jets: values with first and second derivatives by several variables, on which generated code runs as on numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _Second = dict[tuple[int, int], Any]
 
 
 class Jet:
-    """A value, its gradient and its Hessian; entries that are zero whatever the values are left out.
+    """A value with its gradient and its Hessian; entries that are identically zero are left out.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Jet:
         return self._of(v, -(v * v), constant(2) * v * v * v)
 
     def _of(self, v: Any, d: Any, dd: Any) -> Jet:
-        """A function of it, by its value and its derivatives there."""
+        """Return a function of the jet, given the function's value and derivatives there."""
         squares = {key: dd * v for key, v in _products(self.first, self.first, half=True).items()}
         return Jet(v, _times(self.first, d), _sum(_times(self.second, d), squares))
 
@@ -105,7 +105,7 @@ class Jet:
 
     @staticmethod
     def angle(y: Any, x: Any) -> Jet:
-        """The angle of a vector, as ``atan2``."""
+        """Return the angle of a vector of jets, as ``atan2`` does."""
         y, x = _jet(y), _jet(x)
         r = _ONE() / (x.value * x.value + y.value * y.value)
         dy, dx = x.value * r, -y.value * r
@@ -140,7 +140,7 @@ def _times(a: dict[Any, Any], by: Any) -> dict[Any, Any]:
 
 
 def _products(a: _First, b: _First, half: bool = False) -> _Second:
-    """The entries of a b' + b a', or of half of it, with i <= j."""
+    """Return the entries with i <= j of a b' + b a', or of half of it."""
     found: _Second = {}
     for i, v in a.items():
         for j, w in b.items():
@@ -154,16 +154,16 @@ def _products(a: _First, b: _First, half: bool = False) -> _Second:
 
 
 def variables(values: Sequence[Ball], among: int | None = None) -> list[Jet]:
-    """Variables with these values, the first of which (by default all) are differentiated by."""
+    """Return variables with these values, the first of which (by default all) are differentiated by."""
     ctx.cap = 1
     count = len(values) if among is None else among
     return [Jet(constant(v), {i: _ONE()} if i < count else {}) for i, v in enumerate(values)]
 
 
 def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ball], list[list[Ball]]]:
-    """Value, gradient and Hessian of the jet that a function returns, by the first ``count`` :func:`variables`.
+    """Return value, gradient and Hessian of a jet by the first ``count`` :func:`variables`.
 
-    The function has these variables at hand and takes no arguments.
+    The function that makes the jet refers to these variables and takes no arguments.
     """
     found = _jet(function())
     first = [value(found.first[i]) if i in found.first else arb(0) for i in range(count)]
@@ -174,14 +174,14 @@ def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ba
 
 
 def gradients(function: Callable[[Sequence[Jet]], Sequence[Any]], z: Sequence[Any]) -> list[Any]:
-    """Derivatives of series that a function returns, by its arguments, row by row, as series."""
+    """Return, row by row, the derivatives of a function's series by its arguments, as series."""
     zero = constant(0)
     found = function([Jet(v, {i: constant(1)}) for i, v in enumerate(z)])
     return [(v.first.get(j, zero) if isinstance(v, Jet) else zero) for v in found for j in range(len(z))]
 
 
 class _Opaque:
-    """A number that nothing may depend on: arithmetic with it is an error."""
+    """A number that no result may depend on: arithmetic with it is an error."""
 
 
 OPAQUE: Any = _Opaque()

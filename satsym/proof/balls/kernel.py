@@ -1,4 +1,4 @@
-"""A generated module run on balls: the same text, with its decimals read as the exact numbers that they are."""
+"""A generated module run on balls: its own text, with decimals read as exact numbers."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from satsym.kernels.loading import shipped_text
 from satsym.proof.balls.arithmetic import Answers, BeyondProof, constant, mathematics
 
 CONSTRAINTS = "terminal_constraints"
-"""The name under which a kernel has the constraints at the end."""
+"""The name of a kernel's function for the constraints at the end."""
 ROUNDED = 15
-"""Digits from which a number of generated code may be a rounded one."""
+"""Number of digits from which a number in generated code may be rounded."""
 
 
 class BallKernel:
@@ -50,7 +50,7 @@ class BallKernel:
         return self._functions[name]
 
     def cases(self, name: str) -> list[str]:
-        """What a function compares or takes the absolute value of, as its text has it."""
+        """Return what a function compares or takes the absolute value of, as its text has it."""
         found = []
         for node in ast.walk(self._definitions[name]):
             if isinstance(node, ast.Compare):
@@ -75,12 +75,12 @@ class BallKernel:
 
 
 def exactly(number: Fraction) -> Any:
-    """A rational number as a ball."""
+    """Return a rational number as a ball."""
     return arb(fmpq(number.numerator, number.denominator))
 
 
 def _definitions(model: Kernels) -> Mapping[str, ast.FunctionDef]:
-    """The functions of one point that a module holds, by name."""
+    """Return the pointwise functions of a module by name."""
     text = model.text
     if text is None and model.origin is not None and model.origin[1] is None:
         text = shipped_text(model.origin[0])
@@ -99,10 +99,10 @@ def _definitions(model: Kernels) -> Mapping[str, ast.FunctionDef]:
 
 
 def _constraints(boundary: ast.FunctionDef, first: int, count: int) -> ast.FunctionDef:
-    """The function of time, states and parameters that has the constraints at the end alone.
+    """Return the function of time, states and parameters that has only the constraints at the end.
 
-    They are residuals of the end, which a module states in one function with transversality: what they are made of is
-    taken from it, and nothing else may occur in it.
+    A module states them together with transversality in one function of residuals. Their expressions are taken from it,
+    which may depend on nothing else.
     """
     *body, last = boundary.body
     if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Tuple)):
@@ -134,7 +134,7 @@ def _reads_time(node: ast.FunctionDef) -> bool:
 
 
 class _Exact(ast.NodeTransformer):
-    """Numbers become names of exact constants, comparisons and absolute values calls that note what they compare."""
+    """Replaces numbers by names of exact constants, and comparisons and absolute values by calls that note them."""
 
     def __init__(self, function: str) -> None:
         self.function, self.compared = function, 0

@@ -1,7 +1,7 @@
 """One validated step of z' = F(z) and of its derivatives by the start, V' = F_z V, by Taylor series.
 
-The coefficients of the series hold for every start in a ball; what the series leaves out is the next coefficient, taken
-over a ball that the motions of the step do not leave (Corliss and Rihm). Nothing here knows what F is.
+The coefficients of the series hold for every start in a ball; the remainder is the next coefficient, taken over a ball
+that the motions of the step do not leave (Corliss and Rihm). The module does not depend on what F is.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from satsym.proof.balls.arithmetic import Ball, NotProved, Series, value
 Matrix = Any
 """An ``arb_mat``."""
 SHORTEST = 1e-9
-"""The share of the length of a step to which it is cut, at most, until no enclosure counts as found."""
+"""Fraction of its length to which a step is cut before the search for an enclosure ends."""
 FEWER = 0.65
-"""The share of the terms that series of the derivatives by the start have, which multiply what is small."""
+"""Fraction of the terms used in series of the derivatives by the start, which multiply small numbers."""
 
 
 class Field(Protocol):
-    """What is integrated: autonomous rates of m components, their derivatives row by row, and an integrand."""
+    """A differential equation: autonomous rates of m components, their derivatives row by row, and an integrand."""
 
     def rates(self, z: Sequence[Series]) -> Sequence[Series]: ...
 
@@ -34,7 +34,7 @@ class Field(Protocol):
 
 @dataclass(frozen=True)
 class Order:
-    """Terms of the series, and how large the remainder of a step may be beside the sizes of components and cost."""
+    """The number of terms of the series, and the allowed remainder of a step relative to the sizes of components."""
 
     terms: int
     remainder: float
@@ -73,19 +73,19 @@ class Step:
     terms: int
 
     def from_middle(self, time: Ball) -> list[Ball]:
-        """Where the midpoint of the start leads in a time."""
+        """Return the end of the motion from the midpoint of the start, after a time."""
         return self._ended(self.middle, time)
 
     def reached(self, time: Ball) -> list[Ball]:
-        """Where all of the start leads."""
+        """Return the ends of all motions from the start, after a time."""
         return self._ended(self.series, time)
 
     def derivative(self, time: Ball | None = None) -> Matrix:
-        """Derivatives by the start after a time, by default the whole step."""
+        """Return derivatives by the start after a time, by default the whole step."""
         return polynomial(self.flow, self.h if time is None else time)
 
     def cost(self, time: Ball) -> Ball:
-        """The integral of the cost along the motion from the midpoint."""
+        """Return the integral of the cost along the motion from the midpoint."""
         return polynomial(self.costs, time)
 
     def _ended(self, series: Sequence[Series], time: Ball) -> list[Ball]:
@@ -94,17 +94,17 @@ class Step:
 
 
 def unit(m: int) -> Matrix:
-    """The identity matrix."""
+    """Return the identity matrix."""
     return arb_mat(m, m, [int(i == j) for i in range(m) for j in range(m)])
 
 
 def column(values: Sequence[Ball]) -> Matrix:
-    """A matrix of one column."""
+    """Return a matrix of one column."""
     return arb_mat(len(values), 1, list(values))
 
 
 def polynomial(coefficients: Sequence[Any], at: Ball) -> Any:
-    """The value of a polynomial in balls or in matrices, constant term first."""
+    """Evaluate a polynomial in balls or in matrices, constant term first."""
     total = coefficients[-1]
     for c in reversed(coefficients[:-1]):
         total = total * at + c
@@ -112,14 +112,15 @@ def polynomial(coefficients: Sequence[Any], at: Ball) -> Any:
 
 
 def from_zero(h: Ball) -> Ball:
-    """The ball of all times from 0 to h."""
+    """Return the ball of all times from 0 to h."""
     return arb(0).union(h)
 
 
 def expand(field: Field, z: Sequence[Ball], n: int) -> list[Series]:
-    """Coefficients 0 to n of the motion from each point of the ball z.
+    """Return coefficients 0 to n of the motion from each point of the ball z.
 
-    Newton's method on series: with k coefficients known, what they leave of the equation is linear in the next k.
+    They follow by Newton's method on series: with k coefficients known, the residual of the equation is linear in the
+    next k.
     """
     m, found, k = len(z), [[v] for v in z], 1
     while k <= n:
@@ -143,7 +144,7 @@ def expand(field: Field, z: Sequence[Ball], n: int) -> list[Series]:
 
 
 def _matrices(field: Field, series: Sequence[Series], count: int) -> list[Matrix]:
-    """Coefficients of F_z along a series."""
+    """Return the coefficients of F_z along a series."""
     if count <= 0:
         return []
     m, entries = len(series), field.jacobian(series)
@@ -151,7 +152,7 @@ def _matrices(field: Field, series: Sequence[Series], count: int) -> list[Matrix
 
 
 def expand_flow(field: Field, series: Sequence[Series], start: Matrix, n: int) -> list[Matrix]:
-    """Coefficients 0 to n of V' = F_z V along a series, V(0) given."""
+    """Return coefficients 0 to n of V' = F_z V along a series, for a given V(0)."""
     ctx.cap = n
     a, found = _matrices(field, series, n), [start]
     for k in range(n):
@@ -163,14 +164,14 @@ def expand_flow(field: Field, series: Sequence[Series], start: Matrix, n: int) -
 
 
 def jacobian(field: Field, z: Sequence[Ball]) -> Matrix:
-    """F_z over a ball."""
+    """Return F_z over a ball."""
     ctx.cap = 1
     m = len(z)
     return arb_mat(m, m, [value(v) for v in field.jacobian([arb_series([v]) for v in z])])
 
 
 def rates(field: Field, z: Sequence[Ball]) -> list[Ball]:
-    """F over a ball."""
+    """Return F over a ball."""
     ctx.cap = 1
     return [value(v) for v in field.rates([arb_series([v]) for v in z])]
 
@@ -178,7 +179,7 @@ def rates(field: Field, z: Sequence[Ball]) -> list[Ball]:
 def step(
     field: Field, middle: Sequence[Ball], z: Sequence[Ball], h: Ball, order: Order, sizes: Sequence[float]
 ) -> tuple[Step, Ball]:
-    """A step of length h, or a shorter one where the remainder asks for it; and the length to try next.
+    """Take a step of length h, or a shorter one to keep the remainder small; also return the length to try next.
 
     Raises
     ------
@@ -203,7 +204,7 @@ def step(
 
 @dataclass(frozen=True)
 class _Tried:
-    """What a trial of a step came to.
+    """The result of trying a step.
 
     Attributes
     ----------
@@ -219,7 +220,7 @@ class _Tried:
 
 
 def _enclosed(field: Field, near: Sequence[Series], h: Ball, order: Order, sizes: Sequence[float]) -> _Tried:
-    """Try a step: whether the polynomial, widened, contains itself with the remainder that it has over this range."""
+    """Try a step: tell whether the widened polynomial contains itself with its remainder over this range."""
     n, length = order.terms, float(h.mid())
     tau = from_zero(h)
     try:
@@ -241,12 +242,12 @@ def _enclosed(field: Field, near: Sequence[Series], h: Ball, order: Order, sizes
 
 
 def _wider(v: Ball) -> Ball:
-    """A ball that has v well inside."""
+    """Return a ball that contains v well inside."""
     return arb(v.mid(), v.rad() * 1.05 + abs(v.mid()) * 1e-5 + 1e-25)
 
 
 def _within(a: Matrix, h: Ball) -> Matrix:
-    """A ball matrix that no V with V' = A V, V(0) = I leaves within h: |V - I| <= exp(|A| h) - I (Gronwall)."""
+    """Return a ball matrix that no V with V' = A V, V(0) = I leaves within h: |V - I| <= exp(|A| h) - I (Gronwall)."""
     m = a.nrows()
     bound = (arb_mat(m, m, [v.abs_upper() for v in a.entries()]) * h.abs_upper()).exp() - unit(m)
     return unit(m) + arb_mat(m, m, [arb(0, v.abs_upper()) for v in bound.entries()])
