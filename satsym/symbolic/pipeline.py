@@ -1,4 +1,4 @@
-"""The visible lists of steps that follow a motion, and deriving as running all in order."""
+"""The lists of steps that follow a motion, and the function that runs them in order."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from satsym.symbolic.decimals import everywhere, lengthened
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.functions.pieces import breaks, in_pieces
-from satsym.symbolic.linear import regulator, stability, structure
+from satsym.symbolic.linear import properties, regulator
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of, with_origins
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
+from satsym.symbolic.principle import effort, pontryagin, product, transversality
 from satsym.symbolic.principle.parts import as_one
 from satsym.symbolic.principle.path import interior, mixed_constraints, path_constraints, stationary_controls
 from satsym.symbolic.principle.path import notation as path_notation
-from satsym.symbolic.switching import boundary, singular
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
+from satsym.symbolic.switching import singular
 from satsym.symbolic.time_limit import entering
 
 OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
@@ -42,7 +42,7 @@ PATH_CONSTRAINTS: tuple[MaybeStep, ...] = (
     mixed_constraints.mixed_constraints,
     mixed_constraints.mixed_costates,
 )
-"""Where there are inequalities along the way."""
+"""Steps for problems with path constraints."""
 
 MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,
@@ -65,14 +65,14 @@ PRODUCT_PRINCIPLE: tuple[MaybeStep, ...] = (
     product.control_parts,
     product.control_law,
     product.smoothed_law,
-    minimised.minimised_hamiltonian,
+    product.minimised_hamiltonian,
     pontryagin.state_equations,
     pontryagin.costate_equations,
     *PATH_CONSTRAINTS,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
 )
-"""Where the control set is a product of sets, or H is linear in a vector of controls."""
+"""Steps for problems whose control set is a product of sets, or whose H is linear in a vector of controls."""
 
 SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,
@@ -85,7 +85,7 @@ SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     singular.singular_arcs,
     singular.generalised_legendre_clebsch,
     path_constraints.constraint_order,
-    boundary.boundary_control,
+    singular.boundary_control,
     path_constraints.constraint_multiplier,
     path_constraints.constrained_costates,
     path_constraints.junction_conditions,
@@ -95,16 +95,16 @@ SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     switching_curve.switching_feedback,
     switching_curve.rest_to_rest,
 )
-"""Where H is linear in the controls and their magnitudes."""
+"""Steps for problems whose H is linear in the controls and their magnitudes."""
 
 LINEAR: tuple[MaybeStep, ...] = (
-    stability.stability,
-    stability.jordan_form,
-    stability.matrix_exponential,
-    stability.routh,
-    structure.controllability,
-    structure.observability,
-    structure.companion_form,
+    properties.stability,
+    properties.jordan_form,
+    properties.matrix_exponential,
+    properties.routh,
+    properties.controllability,
+    properties.observability,
+    properties.companion_form,
     regulator.lqr_hamiltonian,
     regulator.lqr_stationarity,
     regulator.lqr_costates,
@@ -112,7 +112,7 @@ LINEAR: tuple[MaybeStep, ...] = (
     regulator.lqr_differential_riccati,
     regulator.lqr,
 )
-"""For models without a cost that are linear with constant coefficients."""
+"""Steps for linear models without a cost and with constant coefficients."""
 
 
 def derive(subject: Problem | Model) -> Derivation:
@@ -142,14 +142,14 @@ def derive(subject: Problem | Model) -> Derivation:
 
 
 def _in_pieces(subject: Problem | Model) -> Problem | Model:
-    """Return a problem or model in which what is stated of time piece by piece has the form that is derived with."""
+    """Return a problem or model whose piecewise functions of time have the form that derivations use."""
     model = subject.model if isinstance(subject, Problem) else subject
     moving = {v.symbol for one in with_origins(model) for v in (*one.states, *one.controls)}
     return everywhere(subject, lambda e: in_pieces(e, n.TIME, moving))
 
 
 def _times(subject: Problem | Model) -> tuple[Variable, ...]:
-    """Time with where it typically lies, so that random points fall on all pieces of what is stated by pieces."""
+    """Return time with its typical range, so that random points fall on all pieces of piecewise functions."""
     stated: list[sp.Basic] = []
 
     def noted(e: sp.Basic) -> sp.Basic:
@@ -164,7 +164,7 @@ def _times(subject: Problem | Model) -> tuple[Variable, ...]:
 
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:
-    """The motion, then its outputs, then what follows from the cost."""
+    """Derive the motion, then its outputs, then the consequences of the cost."""
     derivation, known = _moving(model, problem and as_one(problem), "steps")
     if problem is not None and (apart := _as_sets(derivation, problem)) is not None:
         derivation, known = _moving(model, apart, "steps")
@@ -179,7 +179,7 @@ def _derived(model: Model, problem: Problem | None) -> Derivation:
 
 
 def _as_sets(motion_derived: Derivation, problem: Problem) -> Problem | None:
-    """The problem in the form over whose control sets H is minimised; ``None`` where that is the form it has."""
+    """Return the problem with the control sets over which H is minimised; ``None`` where it has them already."""
     so_far = _with_quantities(motion_derived)
     one = so_far.problem
     if one is not None and one.control_set == "box" and not product.applies(so_far) and switching.applies(so_far):
@@ -193,7 +193,7 @@ def _as_sets(motion_derived: Derivation, problem: Problem) -> Problem | None:
 def _moving(
     model: Model, problem: Problem | None, which: Literal["steps", "motion_steps"]
 ) -> tuple[Derivation, dimensions.Known]:
-    """Refuse what does not fit, then run one of the model's lists of steps."""
+    """Refuse misfits, then run one of the model's lists of steps."""
     steps: tuple[MaybeStep, ...] = getattr(model, which)()
     if not steps:
         kinds = " or ".join(sorted(kind.__name__ for kind in _kinds(Model) if which in vars(kind)))
@@ -211,9 +211,9 @@ def _moving(
 
 
 def _refuse_unsolved(name: str, motion: Derivation) -> None:
-    """Refuse to go on from rates without a closed form, whose symbols would be differentiated as if they were constant.
+    """Refuse steps after rates without a closed form, whose symbols would be differentiated as constants.
 
-    A model alone does not go on from its own: its kernels follow and differentiate the chain that leads to them.
+    A model without a cost needs no such steps: its kernels follow and differentiate the chain behind the rates.
     """
     rates = motion.step("first_order").equations
     unsolved = [e.name for e in rates if any(map(n.is_solved, e.rhs.free_symbols))]
@@ -226,7 +226,7 @@ def _refuse_unsolved(name: str, motion: Derivation) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Same:
-    """A model that is the same as itself alone, so that what was derived of it can be kept."""
+    """A model that compares equal only to itself, so that what was derived from it can be cached."""
 
     model: Model
 
@@ -247,7 +247,7 @@ def _kinds(of: type[Model]) -> list[type[Model]]:
 
 
 def _with_quantities(derivation: Derivation) -> Derivation:
-    """Return the derivation with derived quantities, where the cost names them, in terms of states and controls."""
+    """Return the derivation with derived quantities by states and controls, if the cost names them."""
     problem = derivation.problem
     if problem is None or "quantities" not in derivation:
         return derivation
@@ -257,7 +257,7 @@ def _with_quantities(derivation: Derivation) -> Derivation:
 
 
 def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
-    """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
+    """List the steps that follow the motion: the minimum principle for the cost, or linear theory without one."""
     if motion_derived.problem is None:
         return LINEAR
     if motion_derived.problem.interior and (product.applies(motion_derived) or switching.applies(motion_derived)):
@@ -268,7 +268,7 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     if not switching.applies(motion_derived):
         switching.refuse_magnitudes(motion_derived)
         return MINIMUM_PRINCIPLE
-    boundary.refuse(motion_derived)
+    singular.refuse_mixtures(motion_derived)
     return SWITCHING_PRINCIPLE
 
 
@@ -280,7 +280,7 @@ def _refuse_interior(name: str) -> None:
 def _taken(
     derivation: Derivation, known: dimensions.Known, steps: Iterable[MaybeStep]
 ) -> tuple[Derivation, dimensions.Known]:
-    """The derivation and the dimensions after some more steps."""
+    """Run some more steps, and return the derivation and the dimensions after them."""
     for step_function in steps:
         entering(derivation.name, step_function.__name__.replace("_", " "))
         step = step_function(derivation)

@@ -37,9 +37,8 @@ from satsym.symbolic.analysis import (
 )
 from satsym.symbolic.analysis.field import certain_rank, never_zero, sign_of
 from satsym.symbolic.analysis.stability import Cause
+from satsym.symbolic.linear import properties
 from satsym.symbolic.linear import regulator as lqr
-from satsym.symbolic.linear import stability as stability_steps
-from satsym.symbolic.linear import structure as structure_steps
 from satsym.symbolic.linear.matrices import system_of
 from tests.support.deviations import satellite, small
 from tests.support.examples import examples
@@ -529,13 +528,13 @@ def test_a_model_whose_variable_has_the_name_of_a_result_is_derived_without_the_
 STEPS = {
     f.__name__: f
     for f in (
-        stability_steps.stability,
-        stability_steps.jordan_form,
-        stability_steps.matrix_exponential,
-        stability_steps.routh,
-        structure_steps.controllability,
-        structure_steps.observability,
-        structure_steps.companion_form,
+        properties.stability,
+        properties.jordan_form,
+        properties.matrix_exponential,
+        properties.routh,
+        properties.controllability,
+        properties.observability,
+        properties.companion_form,
         lqr.lqr_hamiltonian_matrix,
         lqr.lqr_differential_riccati,
         lqr.lqr,

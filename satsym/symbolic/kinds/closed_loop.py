@@ -1,12 +1,13 @@
-"""A linear law that follows a command: what may be stated, and the steps that are derived from it.
+"""Closed loops: a linear control law that follows a command, and the steps that are derived from it.
 
-These are small motions about rest, transfer functions, poles, and critical damping.
+The steps are the linear motion about rest, transfer functions, poles, critical damping, and the step response.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import mpmath as mp
@@ -15,11 +16,10 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import simplify, tidy, vanishes
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, power_of, product
 from satsym.symbolic.factoring import factored
 from satsym.symbolic.kinds import commanded as cn
-from satsym.symbolic.kinds import step_answers
 from satsym.symbolic.kinds.commanded import COMMAND, SECONDS, Statement, control_of, loop_of, s
 from satsym.symbolic.kinds.derived import original_equations
 from satsym.symbolic.model import MaybeStep, Problem, Requirement, symbols_of
@@ -27,7 +27,7 @@ from satsym.symbolic.motion import steps as motion
 
 
 def linearised_about_rest(so_far: Derivation) -> Step:
-    """The equations of motion, to first order about rest."""
+    """Derive the equations of motion to first order about rest."""
     model = loop_of(so_far)
     states, control = symbols_of(model.states), control_of(model)
     rates = so_far.rhs("original_equations")
@@ -48,7 +48,7 @@ def linearised_about_rest(so_far: Derivation) -> Step:
 
 
 def control_law(so_far: Derivation) -> Step:
-    """The law as stated, and as a function of transforms."""
+    """State the control law in time, and as a function of Laplace transforms."""
     model = loop_of(so_far)
     equations = (Equation("law", control_of(model), sp.sympify(model.law)),)
     allowed = {s, COMMAND, *symbols_of(model.gains), *symbols_of(model.states), *symbols_of(model.of.parameters)}
@@ -64,7 +64,7 @@ def control_law(so_far: Derivation) -> Step:
 
 
 def transfer_functions(so_far: Derivation) -> Step:
-    """From the command to each state and to the control, by Laplace transforms from rest."""
+    """Derive the transfer functions from the command to each state and to the control."""
     model = loop_of(so_far)
     states, control = symbols_of(model.states), control_of(model)
     unknown = [*states, control]
@@ -80,7 +80,7 @@ def transfer_functions(so_far: Derivation) -> Step:
     found = numeric(list(ratios.values()))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The transforms by elimination, in numbers."""
+        """Return the transforms by numeric elimination, beside the derived ones."""
         size = len(unknown)
         return found(point), list(mp.lu_solve(_square(matrix(point), size), right(point)))
 
@@ -89,7 +89,7 @@ def transfer_functions(so_far: Derivation) -> Step:
 
 
 def poles_and_zeros(so_far: Derivation) -> Step:
-    """Zeros of the denominator and of the numerator on the way to the state that follows."""
+    """Find the poles, and the zeros of the transfer function to the state that follows the command."""
     model = loop_of(so_far)
     numerator, denominator = sp.fraction(so_far.equation(f"transfer_function.{model.follows.name}").rhs)
     lead = sp.Poly(denominator, s).LC()
@@ -106,7 +106,7 @@ def poles_and_zeros(so_far: Derivation) -> Step:
 
 
 def critical_damping(so_far: Derivation) -> Step:
-    """The gains with which both poles are where the damping says."""
+    """Solve for the gains that make both poles equal to the stated double pole."""
     model = loop_of(so_far)
     gains, (damping,) = symbols_of(model.gains), symbols_of((model.damping,))
     polynomial = so_far.equation("poles_and_zeros.characteristic_polynomial").rhs
@@ -119,7 +119,7 @@ def critical_damping(so_far: Derivation) -> Step:
     gain = numeric([e.rhs for e in equations])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The polynomial and its slope at the double pole."""
+        """Return the characteristic polynomial and its slope at the double pole."""
         return value({**point, **dict(zip(gains, gain(point), strict=True)), s: -point[damping]}), [0, 0]
 
     check = compare(
@@ -129,7 +129,7 @@ def critical_damping(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The loop after the step, its gains filled in: a motion without control."""
+    """Derive the motion of the closed loop after the step, with its gains filled in."""
     model = loop_of(so_far)
     states = symbols_of(model.states)
     (command,) = symbols_of((model.command,))
@@ -157,7 +157,7 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def _as_ratio(expression: sp.Expr) -> sp.Expr:
-    """A ratio of polynomials whose denominator has the leading coefficient 1."""
+    """Write an expression as a ratio of polynomials whose denominator has the leading coefficient 1."""
     numerator, denominator = sp.fraction(sp.cancel(sp.together(expression)))
     lead = sp.Poly(denominator, s).LC()
     above = sp.Poly(sp.cancel(numerator / lead), s)
@@ -172,14 +172,14 @@ def _square(entries: list[Any], size: int) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedLoop(Statement):
-    """Small motions about rest under a linear law that follows a command, critically damped.
+    """The linear motion about rest under a control law that follows a command, critically damped.
 
-    Its controls are none: the law takes their place. Its states are those of the motion.
-    What is stated of it: :class:`~satsym.symbolic.kinds.commanded.Statement`.
+    It has no controls: the law takes their place. Its states are those of the motion. The declarations are those of
+    :class:`~satsym.symbolic.kinds.commanded.Statement`.
     """
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """Small motions, the law, transfer functions, and the answer to a step."""
+        """List the steps: linear motion, law, transfer functions, and the step response."""
         return (
             original_equations,
             linearised_about_rest,
@@ -187,24 +187,24 @@ class ClosedLoop(Statement):
             transfer_functions,
             poles_and_zeros,
             critical_damping,
-            step_answers.step_response,
-            step_answers.control_response,
-            step_answers.extremes,
+            step_response,
+            control_response,
+            extremes,
             first_order,
             motion.linearisation,
         )
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
-        """The law, by states and gains."""
+        """Return the law, which is stated by states and gains."""
         known = set(symbols_of((*self.states, *self.parameters, *self.gains)))
         yield "the law", [self.law], known | {cn.s, cn.COMMAND}
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """Transfer functions, poles and answers; time is the old one."""
+        """Map the names of transfer functions, poles and step responses to LaTeX."""
         return cn.names(self)
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of transforms and answers, and refuse a law, command or damping that has others."""
+        """Enter the dimensions of transforms and answers, and refuse a law, command or damping of other ones."""
         super().enter_dimensions(known, require)
         second, control = known[n.TIME.name], cn.control_of(self)
         known[cn.COMMAND.name] = known[self.follows.name]
@@ -224,3 +224,153 @@ class ClosedLoop(Statement):
         known[cn.POLYNOMIAL.name] = power_of(known[cn.s.name], sp.Integer(2))
         for k in (1, 2):
             known[cn.pole(k).name] = known[cn.zero(k).name] = known[cn.s.name]
+
+
+def step_response(so_far: Derivation) -> Step:
+    """Derive the response of the states to a step of the command."""
+    model = loop_of(so_far)
+    states = symbols_of(model.states)
+    answers = {x: _answer(so_far, x) for x in states}
+    if any(impulse != 0 for impulse, _ in answers.values()):
+        raise DerivationError(f"{model.name}: the step response of a state contains an impulse")
+    special = [Equation(f"where_{symbol.name}", symbol, sp.sympify(value)) for symbol, value in model.where.items()]
+    equations = (*special, *(Equation(x.name, n.answer_of(x), value) for x, (_, value) in answers.items()))
+    check = _transformed(so_far, {x: (sp.Integer(0), value) for x, (_, value) in answers.items()})
+    rule = f"back from transforms{', special case' if special else ''}"
+    return Step("step_response", rule, equations, ("transfer_function", "critical_damping"), (check,))
+
+
+def control_response(so_far: Derivation) -> Step:
+    """Derive the control after a step of the command: an impulse, and the control after it."""
+    model = loop_of(so_far)
+    control = control_of(model)
+    impulse, value = _answer(so_far, control)
+    equations = (
+        Equation("impulse", cn.impulse_of(control), impulse),
+        Equation("smooth", n.answer_of(control), value),
+        Equation("initial", n.initial(control), value.xreplace({SECONDS: sp.Integer(0)})),
+    )
+    check = _transformed(so_far, {control: (impulse, value)})
+    sources = ("transfer_function", "critical_damping")
+    return Step("control_response", "back from transforms, impulse", equations, sources, (check,))
+
+
+def extremes(so_far: Derivation) -> Step:
+    """Derive when the following state first reaches the command, its overshoot, and the final values of all states."""
+    model = loop_of(so_far)
+    (command,), (damping,) = symbols_of((model.command,)), symbols_of((model.damping,))
+    answers = {x: so_far.equation(f"step_response.{x.name}").rhs for x in symbols_of(model.states)}
+    followed = answers[model.follows]
+    control, impulse = so_far.equation("control_response.smooth").rhs, so_far.equation("control_response.impulse").rhs
+    first, highest = _zeros(followed - command, damping), _zeros(sp.diff(followed, SECONDS), damping)
+    turns = _zeros(control, damping)
+    if not len(first) == len(highest) == len(turns) == 1:
+        raise DerivationError(
+            f"{model.name}: the step response must have exactly one crossing, one maximum and one change of sign"
+        )
+    overshoot = simplify(followed.xreplace({SECONDS: highest[0]}) / command - 1)
+    before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
+    pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
+    signs = numeric(pieces)({symbol: mp.mpf(1) for piece in pieces for symbol in piece.free_symbols})
+    total = factored(sp.Add(*(piece * (1 if sign > 0 else -1) for piece, sign in zip(pieces, signs, strict=True))))
+    square = _integral(sp.expand(control**2))
+    squared = factored(_in_the_end(square, damping) - square.subs(SECONDS, 0))
+    ends = {x: _in_the_end(value, damping) for x, value in answers.items()}
+    starts = {x: value.subs(SECONDS, 0) for x, value in answers.items()}
+    equations = [
+        Equation("first_reached", cn.FIRST_REACHED, first[0]),
+        Equation("highest_at", cn.HIGHEST_AT, highest[0]),
+        Equation("overshoot", cn.OVERSHOOT, overshoot),
+        *(Equation(f"initial_{x.name}", n.initial(x), simplify(value)) for x, value in starts.items()),
+        *(Equation(f"final_{x.name}", cn.final_of(x), simplify(value)) for x, value in ends.items()),
+        Equation("total_impulse", cn.TOTAL_IMPULSE, total),
+        Equation("smooth_square", cn.SMOOTH_SQUARE, squared),
+    ]
+    functions = numeric([followed, control])
+    found = numeric([first[0], highest[0], overshoot, total, squared, impulse, *turns])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """Return the same quantities by numeric root search and quadrature."""
+        reached, top, beyond, spent, square, sudden, *changes = found(point)
+
+        def at(time: Any, which: int) -> Any:
+            return functions({**point, SECONDS: time})[which]
+
+        crossing = mp.findroot(lambda time: at(time, 0) - point[command], reached * 1.01)
+        summit = mp.findroot(lambda time: mp.diff(lambda z: at(z, 0), time), top * 1.01)
+        places = [0, *changes, *(changes[-1] + k / point[damping] for k in (5, 20, 60)), mp.inf]
+        used = sum(abs(mp.quad(lambda z: at(z, 1), [a, b])) for a, b in pairwise(places))
+        effort = mp.quad(lambda z: at(z, 1) ** 2, places)
+        height = at(summit, 0) / point[command] - 1
+        return [reached, top, beyond, spent, square], [crossing, summit, height, used + abs(sudden), effort]
+
+    symbols = (followed.free_symbols | control.free_symbols | impulse.free_symbols) - {SECONDS}
+    check = compare("searched and integrated numerically", symbols, sides)
+    sources = ("step_response", "control_response")
+    return Step("extremes", "crossings and integrals", tuple(equations), sources, (check,))
+
+
+def _answer(so_far: Derivation, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return the impulse and the function of time with which a state or the control responds to the step."""
+    model = loop_of(so_far)
+    (command,) = symbols_of((model.command,))
+    gains = {e.lhs: e.rhs for e in so_far.step("critical_damping").equations}
+    image = sp.cancel(
+        sp.together((_transfer(so_far, symbol) * command / s).xreplace(gains).xreplace(dict(model.where)))
+    )
+    numerator, denominator = sp.fraction(image)
+    quotient, rest = sp.div(sp.Poly(numerator, s), sp.Poly(denominator, s))
+    if quotient.degree() > 0:
+        raise DerivationError(f"{model.name}: the step response of {symbol.name} is more singular than an impulse")
+    value = sp.Integer(0)
+    for part in sp.Add.make_args(sp.apart(factored((rest / denominator).as_expr()), s)):
+        above, below = sp.fraction(sp.together(part))
+        ((root, order),) = sp.roots(sp.Poly(below, s)).items() if below.has(s) else ((sp.Integer(0), 0),)
+        if order:
+            lead = sp.Poly(below, s).LC()
+            value += above / lead * SECONDS ** (order - 1) / sp.factorial(order - 1) * sp.exp(root * SECONDS)
+    (damping,) = symbols_of((model.damping,))
+    return factored(quotient.as_expr()), sp.collect(sp.expand(value), sp.exp(-damping * SECONDS), factored)
+
+
+def _zeros(answer: sp.Expr, damping: sp.Symbol) -> list[sp.Expr]:
+    """Return the zeros of e^(-E t) times a polynomial in time."""
+    polynomial = sp.Poly(sp.expand(sp.expand(answer) * sp.exp(damping * SECONDS)), SECONDS)
+    return [simplify(root) for root in sp.roots(polynomial)]
+
+
+def _integral(answer: sp.Expr) -> sp.Expr:
+    return sp.expand(sp.integrate(sp.expand(answer), SECONDS))
+
+
+def _in_the_end(answer: sp.Expr, damping: sp.Symbol) -> sp.Expr:
+    """Return the limit of a response as time grows, when all decaying terms have vanished."""
+    return factored(
+        sp.expand(answer).replace(lambda e: isinstance(e, sp.exp) and e.has(damping), lambda _: sp.Integer(0))
+    )
+
+
+def _transformed(so_far: Derivation, answers: dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]) -> Check:
+    """Check step responses by their numeric Laplace integrals."""
+    model = loop_of(so_far)
+    (command,), (damping,) = symbols_of((model.command,)), symbols_of((model.damping,))
+    gains = {e.lhs: e.rhs for e in so_far.step("critical_damping").equations}
+    images = [(_transfer(so_far, x) * command / s).xreplace(gains).xreplace(dict(model.where)) for x in answers]
+    expected = numeric(images)
+    values, impulses = [numeric([v]) for _, v in answers.values()], numeric([i for i, _ in answers.values()])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        here = {**point, s: abs(point[s]) + 1}
+        places = [0, *(k / (here[s] + here[damping]) for k in (2, 10, 40)), mp.inf]
+
+        def image(value: Callable[[Point], list[Any]]) -> Any:
+            return mp.quad(lambda time: mp.exp(-here[s] * time) * value({**here, SECONDS: time})[0], places)
+
+        return [i + image(value) for i, value in zip(impulses(here), values, strict=True)], expected(here)
+
+    symbols = set().union(*(e.free_symbols for e in images), *(v.free_symbols for _, v in answers.values())) - {SECONDS}
+    return compare("Laplace integral", symbols | {s, damping}, sides)
+
+
+def _transfer(so_far: Derivation, symbol: sp.Symbol) -> sp.Expr:
+    return so_far.equation(f"transfer_function.{symbol.name}").rhs

@@ -1,9 +1,9 @@
-"""The law over a control set that is a product of sets: H taken apart, its minimum set by set, a continuous companion.
+"""The control law over a product of sets: H is split, minimised set by set, and regularised to be continuous.
 
 The law of a direction (an angle, or a vector in a ball on which H depends linearly) is continuous wherever its slope
-does not vanish, but nothing leads to it from vanishing costates. In the regularised problem the direction may be
-shorter, and half its square costs ``smoothing``: its law is proportional to the slope up to the full length, and the
-same as the law itself where the slope is larger than the smoothing.
+does not vanish, but no continuous law leads to it from vanishing costates. In the regularised problem the direction may
+be shorter, and half its square costs ``smoothing``: its law is proportional to the slope up to the full length, and
+equals the exact law where the slope is larger than the smoothing.
 """
 
 from __future__ import annotations
@@ -12,15 +12,17 @@ import random
 from collections.abc import Sequence
 from typing import Any
 
+import mpmath as mp
 import sympy as sp
 
 from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import depends, simplify, vanishes
+from satsym.symbolic.algebra import depends, simplify, tidy, vanishes
 from satsym.symbolic.chain import named_parts
-from satsym.symbolic.checks import Point, identity, never_below, numeric
+from satsym.symbolic.checks import Point, compare, identity, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
+from satsym.symbolic.factoring import factored
 from satsym.symbolic.functions.roots import Argmin, Choice, Vertex
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
@@ -43,13 +45,14 @@ from satsym.symbolic.principle.set_laws import (
 from satsym.symbolic.principle.stationary import indefinite
 
 STEP = "control_parts"
-"""The step that only derivations of such problems have."""
+"""The name of the step that only derivations over products of control sets have."""
 
 
 def applies(so_far: Derivation) -> bool:
-    """Whether the control set is stated set by set, or is a ball on which H is linear, or H is not quadratic.
+    """Tell whether the problem needs the law over a product of sets.
 
-    Or a path constraint is not linear in the controls.
+    It does where the control set is stated set by set, where it is a ball on which H is linear, where H is not
+    quadratic, and where a path constraint is not linear in the controls.
     """
     problem = so_far.problem
     if problem is None:
@@ -77,20 +80,20 @@ def applies(so_far: Derivation) -> bool:
 
 
 def _falls(so_far: Derivation, cost: sp.Expr, u: sp.Symbol) -> bool:
-    """Whether a cost bends downwards by a control, always or in some states."""
+    """Tell whether a cost is concave in a control, everywhere or in some states."""
     curvature = simplify(sp.diff(cost, u, 2))
     return bool(curvature.is_negative) or _either_sign(so_far, curvature, symbols_of(so_far.model.states))
 
 
 def _either_sign(so_far: Derivation, curvature: sp.Expr, by: Sequence[sp.Symbol]) -> bool:
-    """Whether some of these symbols may turn its sign."""
+    """Tell whether a curvature may have either sign because of these symbols."""
     return curvature.has(*by) and indefinite(so_far.name, curvature)
 
 
 def needs_its_sets(so_far: Derivation) -> bool:
-    """Whether H is minimised set by set where sets that are all boxes, or free, have been put together in one.
+    """Tell whether H is minimised set by set though the sets, all boxes or all free, were joined into one.
 
-    That is so where a cost bends up or down by what parameters are given, too: a box asks for their sign.
+    That is so where a cost is convex or concave depending on parameters: a box then asks for their sign.
     """
     problem = problem_of(so_far)
     if problem.control_set != "box" or applies(so_far):
@@ -101,7 +104,7 @@ def needs_its_sets(so_far: Derivation) -> bool:
 
 
 def as_sets(so_far: Derivation, stated: Problem) -> Problem | None:
-    """The problem with a box for each control that switches beside others; ``None`` where it can stay as it is.
+    """Return the problem with a box for each control that switches beside others; ``None`` where it can stay.
 
     Parameters
     ----------
@@ -118,7 +121,7 @@ def as_sets(so_far: Derivation, stated: Problem) -> Problem | None:
 
 
 def _linear(so_far: Derivation, stated: Problem) -> set[str]:
-    """Controls in boxes on which cost and motion depend linearly, without products with others of the same box."""
+    """Return controls in boxes on which cost and motion depend linearly, without products with others of the box."""
     given = [sp.sympify(e) for e in (problem_of(so_far).running_cost, *so_far.rhs("first_order"))]
     found = set()
     for part in parts_of(stated):
@@ -130,7 +133,7 @@ def _linear(so_far: Derivation, stated: Problem) -> set[str]:
 
 
 def control_parts(so_far: Derivation) -> Step:
-    """What H is of the controls of each set."""
+    """Split H into its parts by the controls of each set."""
     problem, h = problem_of(so_far), so_far.equation("hamiltonian.H").rhs
     every = found(so_far)
     if problem.path_constraints:
@@ -164,18 +167,18 @@ def control_parts(so_far: Derivation) -> Step:
 
 
 def _stationary(one: Minimum) -> Check:
-    """Check that the derivatives of H by the controls of one set vanish where these are its unconstrained minimum."""
+    """Check that derivatives of H by the controls of one set vanish at its unconstrained minimum."""
     hats = dict(zip(one.part.symbols, one.hats, strict=True))
     return identity("vanishes there", [slope.xreplace(hats) for slope in one.gradient])
 
 
 def _others(every: Sequence[Minimum], one: Minimum) -> set[sp.Symbol]:
-    """The controls of the other sets."""
+    """Return the controls of the other sets."""
     return {u for other in every if other is not one for u in other.part.symbols}
 
 
 def _kinds(every: Sequence[Minimum]) -> tuple[str, ...]:
-    """What H is made of, of the controls of all sets: keys of texts, each once."""
+    """Return the keys of texts for the forms in which H depends on the controls, each once."""
     found: dict[str, None] = {}
     for one in every:
         if one.directed and one.branch != "switched":
@@ -187,7 +190,7 @@ def _kinds(every: Sequence[Minimum]) -> tuple[str, ...]:
 
 
 def control_law(so_far: Derivation) -> Step:
-    """The control that minimises H over the product of the sets: the minimiser over each."""
+    """Derive the control that minimises H over the product of the sets, set by set."""
     problem, every = problem_of(so_far), found(so_far)
     laws = {u: law for one in every for u, law in zip(one.part.symbols, law_of(problem, one), strict=True)}
     controls = symbols_of(problem.model.controls)
@@ -233,7 +236,7 @@ def control_law(so_far: Derivation) -> Step:
 def _in_parts(
     every: Sequence[Minimum], laws: Sequence[sp.Expr]
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    """Laws that compare minimisers, in named parts that people can read; others as they are."""
+    """Write laws that compare minimisers by named parts; leave other laws unchanged."""
     if not any(law.has(Choice, Vertex, Argmin) for one in every for law in one.laws):
         return [], list(laws)
     named = (pn.part_of_law(k) for k in range(1, pn.MOST_PARTS + 1))
@@ -245,12 +248,12 @@ def _in_parts(
 
 
 def _norm(one: Minimum) -> sp.Expr:
-    """The norm of a vector, or the magnitude that is its norm."""
+    """Return the norm of a vector, or the magnitude that is its norm."""
     return one.part.symbols[0] if one.turned_by else sp.sqrt(sum(u**2 for u in one.part.symbols))
 
 
 def smoothed_law(so_far: Derivation) -> Step | None:
-    """Where controls are directions: H of the problem in which half their squares cost a little, and its law."""
+    """Derive H of the regularised problem for directions, whose half squares cost a little, and its law."""
     problem = problem_of(so_far)
     every = found(so_far)
     directions = [one for one in every if one.directed]
@@ -301,3 +304,65 @@ def smoothed_law(so_far: Derivation) -> Step | None:
     kinds = tuple(f"regularised, {kind}" for kind in kinds)
     rule = worded("shorter directions and less of norms" if saved else "shorter directions", problem)
     return Step("smoothed_law", rule, tuple(equations), (STEP, "control_law"), (check,), kinds=kinds)
+
+
+def minimised_hamiltonian(so_far: Derivation) -> Step | None:
+    """Derive H* = H with the law in it, where no bound is active, and the law contains no bounds."""
+    problem, every = problem_of(so_far), found(so_far)
+    if any(one.branch == "stationary" for one in every):
+        return None
+    h = so_far.equation("hamiltonian.H").rhs
+    least: dict[sp.Symbol, sp.Expr] = {}
+    gained = sp.Integer(0)
+    for one in every:
+        if one.branch == "quadratic":
+            least |= dict(zip(one.part.symbols, one.hats, strict=True))
+            continue
+        least |= dict.fromkeys(pn.components_of(one.part), sp.Integer(0))
+        if one.branch == "switched":
+            (s,), ends = one.vector, one.part.bounds
+            gained += sign(problem) * sp.Max(*(-sign(problem) * end * s for end in ends))
+            continue
+        length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
+        shortest = one.part.bounds[0] if one.part.kind == "annulus" else 0
+        slope = sp.sqrt(factored(sum((s**2 for s in one.vector), sp.Integer(0))))
+        if one.weight != 0:
+            least[norm_of(one.part)] = sp.Integer(0)
+            margin = slope - sign(problem) * one.weight
+            gained += sign(problem) * sp.Max(length * margin, shortest * margin)
+        else:
+            gained += sign(problem) * length * slope
+    (plain,) = relaxed(so_far, [h])
+    h_star = tidy(plain.xreplace(least), ()) - gained
+    value, at_minimum = numeric([h]), numeric([h_star])
+    laws = [so_far.equation(f"control_law.{u.name}").rhs for u in symbols_of(problem.model.controls)]
+    wide = _wide(every)
+    chosen = numeric(written_out(so_far, laws))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        here = {**point, **wide}
+        for one in every:
+            here = ordered(one, here) if one.branch in SWITCHED else here
+        law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
+        return at_minimum(here), value({**here, **law})
+
+    everything = h.free_symbols.union(h_star.free_symbols, symbols_of(limits_of(problem)), costates(so_far))
+    check = compare("H at the optimal control", everything, sides)
+    name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
+    equation = Equation("H_star", n.MINIMISED, h_star)
+    bounded = any(one.branch == "quadratic" and one.part.kind != "free" for one in every)
+    rule = worded("substitute the law, inside" if bounded else "substitute the law", problem)
+    return Step(name, rule, (equation,), ("hamiltonian", "control_law"), (check,))
+
+
+def _wide(every: Sequence[Minimum]) -> dict[sp.Symbol, Any]:
+    """Return the conditions that no bound is active for sets on which H is quadratic."""
+    found: dict[sp.Symbol, Any] = {}
+    for one in every:
+        if one.branch == "quadratic" and one.part.kind == "box":
+            half = len(one.part.bounds) // 2
+            found |= dict.fromkeys(one.part.bounds[:half], mp.mpf(-(10**9)))
+            found |= dict.fromkeys(one.part.bounds[half:], mp.mpf(10**9))
+        elif one.branch == "quadratic":
+            found |= dict(zip(one.part.bounds[::-1], (mp.mpf(10**9), mp.mpf(10) ** -9), strict=False))
+    return found

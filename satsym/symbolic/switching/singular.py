@@ -1,4 +1,6 @@
-"""Singular arcs: a switching function that stays at its threshold, and what its time derivatives say of the control.
+"""Singular arcs and boundary arcs of controls in which H is linear: the controls that keep to them.
+
+On a singular arc a switching function stays at its threshold, and its time derivatives determine the control.
 
 Along such an arc every total time derivative of the switching function vanishes. The first one in which the control
 appears determines it (Kelley, Kopp and Moyer, Singular extremals, 1967); until then each derivative is a condition on
@@ -17,18 +19,20 @@ from typing import Any
 import sympy as sp
 
 from satsym.agreement import LIMIT
-from satsym.symbolic.algebra import definitions_of
-from satsym.symbolic.checks import Check, Point, compare, numeric, partial
+from satsym.symbolic.algebra import definitions_of, simplified, tidy
+from satsym.symbolic.checks import Check, Point, compare, identity, numeric, partial
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.derivation import Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.principle.path import notation as pn
+from satsym.symbolic.principle.path.path_constraints import STEP, acting, affine, constraints
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.functions import along_extremals, directional, flow
 from satsym.symbolic.switching.singular_search import SIDES, Search, searches
 
 
 def singular_arcs(so_far: Derivation) -> Step:
-    """Derivatives of each switching function until its control appears, and the control on a singular arc."""
+    """Derive time derivatives of each switching function until its control appears, and the singular control."""
     equations: dict[str, Equation] = {}
     checks: list[Check] = []
     conclusions: list[Conclusion] = []
@@ -63,7 +67,7 @@ def singular_arcs(so_far: Derivation) -> Step:
 
 
 def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
-    """What a singular arc needs in order to minimise; nothing where no derivative contains the control."""
+    """Derive the condition for a singular arc to minimise, if a derivative contains the control."""
     assert so_far.problem is not None
     equations, checks, conclusions = [], list[Check](), []
     found = searches(so_far)
@@ -93,14 +97,14 @@ def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
 
 
 def _is_found_before(so_far: Derivation, search: Search, suffix: str) -> bool:
-    """Whether the step ``singular_arcs`` took as many derivatives and came to the same end."""
+    """Tell whether the step ``singular_arcs`` took as many derivatives with the same outcome."""
     stated, name = {equation.name for equation in so_far.step("singular_arcs").equations}, search.control.name
     taken = [f"{name}{suffix}_{count}" in stated for count in (search.order, search.order + 1)]
     return taken == [True, False] and (f"{name}{search.branch}" in stated) == (search.outcome == "order")
 
 
 def chattering(so_far: Derivation) -> tuple[str, ...]:
-    """Names of the controls whose singular arcs no arc at a bound joins with a finite number of switches.
+    """Return controls whose singular arcs cannot be joined to a bound by finitely many switches.
 
     So it is where the control first appears in a derivative of order 2q with an even q, and the generalised
     Legendre-Clebsch condition holds strictly: within its bounds, the control would have to leave such an arc towards
@@ -118,23 +122,23 @@ def chattering(so_far: Derivation) -> tuple[str, ...]:
 
 
 def _kelley(search: Search) -> sp.Expr:
-    """What the generalised Legendre-Clebsch condition is about, of an even order; factored, as the slope is."""
+    """Return the factored quantity of the generalised Legendre-Clebsch condition, of an even order."""
     return (-1) ** (search.order // 2) * search.slope
 
 
 def _kept(search: Search) -> tuple[sp.Expr, ...]:
-    """The derivatives of which a further one was taken."""
+    """Return the derivatives that were differentiated once more."""
     return search.derivatives[:-1]
 
 
 def _suffix(found: Sequence[Search], search: Search) -> str:
-    """What names of derivatives end with: nothing where they are the same at all thresholds of the control."""
+    """Return the suffix of names of derivatives; empty if they are the same at all thresholds."""
     alike = all(o.derivatives == search.derivatives for o in found if o.control == search.control)
     return "" if alike else search.branch
 
 
 def _on_surface(search: Search) -> Any:
-    """A function that moves a point to the surface, the control to its singular value."""
+    """Return a function that moves a point to the surface of conditions, with the singular control."""
     values = dict(search.surface.solved)
     if search.outcome == "order":
         values[search.control] = search.singular
@@ -143,9 +147,9 @@ def _on_surface(search: Search) -> Any:
 
 
 def _stays(so_far: Derivation, search: Search) -> Check:
-    """Check that on the surface, with the singular control, the next derivatives vanish, by differences.
+    """Check by differences that the next derivatives vanish on the surface under the singular control.
 
-    Where some of the conditions are not solved, points do not meet these. The control is solved for without them, so
+    Where some of the conditions are not solved, points do not satisfy them. The control is solved for without them, so
     that the last derivative vanishes all the same.
     """
     rates = {z: rate.xreplace(dict(search.magnitude)) for z, rate in flow(so_far).items()}
@@ -166,9 +170,9 @@ def _stays(so_far: Derivation, search: Search) -> Check:
 
 
 def _slope_of_differences(so_far: Derivation, search: Search, suffix: str) -> Check:
-    """Compare what multiplies the control with the slope, in the control, of differences along extremals.
+    """Compare the factor of the control with the slope, in the control, of differences along extremals.
 
-    They are differences of the derivative before the last one as the step ``singular_arcs`` has it.
+    These are differences of the derivative before the last one, as the step ``singular_arcs`` has it.
     """
     rates = {z: rate.xreplace(dict(search.magnitude)) for z, rate in flow(so_far).items()}
     before = search.threshold
@@ -190,14 +194,14 @@ def _slope_of_differences(so_far: Derivation, search: Search, suffix: str) -> Ch
 
 
 def _symbols(so_far: Derivation, expressions: Sequence[sp.Expr], rates: Mapping[sp.Symbol, sp.Expr]) -> set[sp.Symbol]:
-    """Everything that points must give values to."""
+    """Return all symbols that need values at points."""
     model = so_far.model
     found = {t, *rates, *symbols_of((*model.controls, *model.parameters)), *definitions_of(model)}
     return found.union(*(sp.sympify(e).free_symbols for e in (*expressions, *rates.values())))
 
 
 def _level(so_far: Derivation, search: Search) -> sp.Basic:
-    """Where the switching function is, and of which sign the control."""
+    """Return the threshold of the switching function, and the sign of the control there."""
     assert so_far.problem is not None
     u, sigma = search.control, s.switching_of(search.control)
     if not search.branch:
@@ -226,7 +230,7 @@ def _conclusions(so_far: Derivation, search: Search) -> list[Conclusion]:
 
 
 def _by_h(so_far: Derivation, search: Search) -> list[Conclusion]:
-    """What the value of H says of an arc on which no derivative determines the control."""
+    """Draw conclusions from the value of H about an arc on which no derivative determines the control."""
     problem = so_far.problem
     assert problem is not None
     h = so_far.equation("hamiltonian.H").rhs.xreplace(dict(search.magnitude))
@@ -244,3 +248,47 @@ def _terminal(so_far: Derivation) -> list[sp.Expr]:
     problem = so_far.problem
     assert problem is not None
     return [problem.terminal_cost, *problem.end_conditions]
+
+
+# On the boundary of a path constraint a control is where the constraint keeps it, as a rule between its bounds. As the
+# control minimises H there, its switching function vanishes all along, and the multiplier of the constraint is what
+# keeps it zero (Maurer, On optimal control problems with bounded state variables and control appearing linearly, SIAM
+# Journal on Control and Optimization 15, 1977). Order, multiplier, costates and junctions are as in
+# satsym.symbolic.principle.path.path_constraints.
+
+
+def boundary_control(so_far: Derivation) -> Step | None:
+    """Derive the control that keeps g <= 0 on its boundary from g^(q) = 0, where q is the order of the constraint g."""
+    if STEP not in so_far:
+        return None
+    controls, equations, checks = symbols_of(so_far.model.controls), list[Equation](), []
+    for found in constraints(so_far):
+        effect, rest = affine(so_far, found, controls)
+        u = acting(so_far, found)
+        law = tidy(simplified(-rest / effect[controls.index(u)]))
+        equations.append(Equation(f"{found.name}_{u.name}", pn.boundary_control(found.name, u), law))
+        checks.append(identity("keeps the constraint", [found.rates[-1].xreplace({u: law})]))
+    return Step("boundary_control", "stay on the boundary", tuple(equations), (STEP,), tuple(checks))
+
+
+def refuse_mixtures(so_far: Derivation) -> None:
+    """Refuse path constraints for which no boundary control can be derived, before any step.
+
+    Raises
+    ------
+    DerivationError
+        If a constraint holds a control that switches, or magnitudes of controls cost something or move something.
+    """
+    problem = so_far.problem
+    assert problem is not None
+    controls, what = symbols_of(problem.model.controls), f"{problem.name}: path_constraints"
+    held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
+    if held:
+        message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
+        raise DerivationError(
+            f"{message}derived; state the constraint as a bound of that control", ("path_constraints",)
+        )
+    stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
+    if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
+        message = "beside |u| they are not derived; use two controls, one for each sign, both with the lower bound 0"
+        raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))

@@ -1,10 +1,10 @@
-"""Inequalities on the state along the way, g(x, t, p) <= 0: order, boundary control, multiplier, junctions.
+"""Path constraints on the state, g(x, t, p) <= 0: their order, boundary control, multiplier and junctions.
 
 Constraints are adjoined directly (Hartl, Sethi and Vickson, SIAM Review 37, 1995, theorem 4.1): to H comes eta g with a
-multiplier eta >= 0 that vanishes where g < 0. The control then minimises H itself, also on the boundary, and the
-multiplier is what keeps it there: of a constraint of order q it follows from the q-th rate of g^(q) along the extremal.
-Costates jump by -zeta g_x with zeta >= 0 where arcs on the boundary begin and end and at touch points, but for
-constraints of order one, where the control would jump with them. One constraint is on its boundary at a time.
+multiplier eta >= 0 that vanishes where g < 0. The control minimises H itself, also on the boundary, and the multiplier
+keeps it there: for a constraint of order q it follows from the derivative of order q of g^(q) along the extremal.
+Costates jump by -zeta g_x with zeta >= 0 at entries, exits and touch points, except for constraints of order one, where
+the control would jump with them. One constraint is on its boundary at a time.
 """
 
 from __future__ import annotations
@@ -29,30 +29,31 @@ COMPETITORS = 20
 """Controls on the boundary with which the boundary control is compared at each random point."""
 
 STEP = "constraint_order"
-"""The step that only derivations of such problems have."""
+"""The name of the step that only derivations with constraints on states have."""
 
 CONTROL_PARTS = "control_parts"
-"""The step of derivations whose law is found set by set; see :mod:`satsym.symbolic.principle.product`."""
+"""The name of the step in derivations whose law is found set by set; see :mod:`satsym.symbolic.principle.product`."""
 
 SWITCHING = "switching_function"
-"""The step of derivations in which H is linear in the controls; see :mod:`satsym.symbolic.switching.boundary`."""
+"""The name of the step in derivations in which H is linear in the controls; see
+:mod:`satsym.symbolic.switching.singular`."""
 
 
 @dataclass(frozen=True)
 class Constraint:
-    """One constraint with its rates g, g', ..., g^(q), of which only the last depends on the controls."""
+    """A path constraint with its derivatives g, g', ..., g^(q), of which only the last contains the controls."""
 
     name: str
     rates: tuple[sp.Expr, ...]
 
     @property
     def order(self) -> int:
-        """How often it is differentiated until a control appears."""
+        """Return the order of the constraint: the number of time derivatives until a control appears."""
         return len(self.rates) - 1
 
 
 def constraint_order(so_far: Derivation) -> Step | None:
-    """Rates of each constraint along the motion, up to the first in which a control appears."""
+    """Derive the time derivatives of each constraint along the motion, until a control appears."""
     if not (stated := pn.of_states(problem_of(so_far))):
         return None
     motion, equations, checks = motion_of(so_far), list[Equation](), []
@@ -65,7 +66,7 @@ def constraint_order(so_far: Derivation) -> Step | None:
 
 
 def boundary_control(so_far: Derivation) -> Step | None:
-    """The control that minimises H among those that keep g^(q) = 0, in closed form."""
+    """Derive the control that minimises H among those with g^(q) = 0, in closed form."""
     if STEP not in so_far or stationary(so_far):
         return None
     problem, controls = problem_of(so_far), symbols_of(so_far.model.controls)
@@ -94,7 +95,7 @@ def boundary_control(so_far: Derivation) -> Step | None:
 
 
 def constraint_multiplier(so_far: Derivation) -> Step | None:
-    """The multiplier with which the control that minimises H keeps to the boundary, and what vanishes there."""
+    """Derive the multiplier with which the minimising control stays on the boundary, and vanishing quantities."""
     if STEP not in so_far:
         return None
     equations, checks, law = list[Equation](), [], free_law(so_far)
@@ -120,7 +121,7 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
 
 
 def constrained_costates(so_far: Derivation) -> Step | None:
-    """The costate equations on the boundary."""
+    """Derive the costate equations on the boundary."""
     if STEP not in so_far:
         return None
     states, equations, drifts, checks = symbols_of(so_far.model.states), list[Equation](), [], []
@@ -140,10 +141,10 @@ def constrained_costates(so_far: Derivation) -> Step | None:
 
 
 def junction_conditions(so_far: Derivation) -> Step | None:
-    """What holds where arcs on the boundary begin and end and at touch points: tangency, and jumps of costates and H.
+    """Derive tangency conditions and jumps of costates and H at entries, exits and touch points.
 
-    The jump leaves the control as it is where the order is two or more; where it is one it moves g' by a multiple of
-    zeta, which must vanish because g' = 0 on both sides.
+    The jump leaves the control unchanged where the order is two or more; where it is one, the jump changes g' by a
+    multiple of zeta, which must vanish because g' = 0 on both sides.
     """
     if STEP not in so_far:
         return None
@@ -183,10 +184,11 @@ def junction_conditions(so_far: Derivation) -> Step | None:
 def _moved_by_jump(
     so_far: Derivation, found: Constraint, before: Mapping[sp.Symbol, sp.Expr]
 ) -> tuple[list[sp.Expr], list[sp.Expr]]:
-    """By what a jump of the costates times its multiplier moves what the control follows from, and what must vanish.
+    """Return the change that a jump of the costates makes to the condition for the control, and what must vanish.
 
-    Of an order of one that is g' under the law, by a multiple of zeta; or H_u, of which the control is the root, by
-    zeta times the effect of controls on g'. Of an order of two it is the law, or H_u, which must not move.
+    For order one this is g' under the law, which changes by a multiple of zeta, or H_u where the control is its root,
+    which changes by zeta times the effect of controls on g'. For order two it is the law, or H_u, which must not
+    change.
     """
     zeta = pn.jump(found.name)
     if stationary(so_far):
@@ -206,7 +208,7 @@ def _moved_by_jump(
 
 
 def constraints(so_far: Derivation) -> list[Constraint]:
-    """All on states alone, with their rates as the step has them; none where there are none."""
+    """Return all path constraints on states alone, with their derivatives as the step has them."""
     if STEP not in so_far:
         return []
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
@@ -234,7 +236,7 @@ def _differentiated(so_far: Derivation, name: str) -> Constraint:
 
 
 def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: set[sp.Symbol]) -> bool:
-    """Whether no control enters any rate: further ones say nothing new once there are as many as states."""
+    """Tell whether no control enters any time derivative; there are no new ones after as many as states."""
     for _ in motion:
         rate = total_derivative(rate, motion)
         if depends(rate, controls):
@@ -243,7 +245,7 @@ def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: 
 
 
 def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matrix, sp.Expr]:
-    """What multiplies the controls in g^(q), and the rest."""
+    """Return the factors of the controls in g^(q), and the rest of it."""
     effect = sp.Matrix(gradient(found.rates[-1], controls)).applyfunc(simplified)
     if any(e.free_symbols & set(controls) for e in effect):
         raise DerivationError(
@@ -256,17 +258,17 @@ def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...
 
 
 def stationary(so_far: Derivation) -> bool:
-    """Whether H is not known to be quadratic in the controls, which then stay symbols at which H_u vanishes."""
+    """Tell whether controls stay symbols at which H_u vanishes, because H is not known to be quadratic in them."""
     return CONTROL_PARTS in so_far
 
 
 def switching(so_far: Derivation) -> bool:
-    """Whether H is linear in the controls, which are at bounds then, or kept where H does not depend on them."""
+    """Tell whether H is linear in the controls, which are then at bounds, or kept where H does not depend on them."""
     return SWITCHING in so_far
 
 
 def acting(so_far: Derivation, found: Constraint) -> sp.Symbol:
-    """The one control that moves the last rate of a constraint.
+    """Return the one control that occurs in the last time derivative of a constraint.
 
     Raises
     ------
@@ -285,7 +287,7 @@ def acting(so_far: Derivation, found: Constraint) -> sp.Symbol:
 
 
 def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """The control that minimises H, without bounds; nothing where the controls stay symbols."""
+    """Return the unbounded control that minimises H; empty where the controls stay symbols."""
     if stationary(so_far) or switching(so_far):
         return {}
     controls = symbols_of(so_far.model.controls)
@@ -293,9 +295,9 @@ def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 
 def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
-    """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates.
+    """Return what vanishes on the boundary besides g, ..., g^(q-1): g^(q) under the law, and q - 1 derivatives of it.
 
-    Where H is linear in the controls, the switching function of the one that keeps to the boundary instead.
+    Where H is linear in the controls, it is the switching function of the control that acts on the boundary.
     """
     if switching(so_far):
         steps = (SWITCHING, "switching_rate")[: found.order]
@@ -308,7 +310,7 @@ def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
 
 
 def canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
-    """Rates of states and costates on the boundary, the multiplier being a symbol."""
+    """Return the rates of states and costates on the boundary, with the multiplier as a symbol."""
     states, law = symbols_of(so_far.model.states), free_law(so_far)
     force = -sign(problem_of(so_far)) * pn.multiplier(found.name)
     rates = so_far.rhs("costate_equations")
@@ -319,7 +321,7 @@ def canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]
 
 
 def rates_of_controls(so_far: Derivation, moving: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
-    """At what rate controls move at which H_u vanishes, with states and costates: H_uu u' = -d/dt H_u without them."""
+    """Return the rates of the controls at which H_u vanishes, from H_uu u' = -d/dt H_u without them."""
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     drift = sp.Matrix([total_derivative(slope, moving) for slope in gradient(h, controls)])
     rates = -sp.hessian(h, controls).applyfunc(simplify).LUsolve(drift)
@@ -327,12 +329,12 @@ def rates_of_controls(so_far: Derivation, moving: Mapping[sp.Symbol, sp.Expr]) -
 
 
 def motion_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """The rate of each state."""
+    """Return the rate of each state."""
     return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
 
 
 def rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Check:
-    """Each but the first against the numeric rate of the one before it along the motion."""
+    """Check each time derivative of a constraint against the numeric one of the one before it."""
     values, derived, pace = numeric(list(rates[:-1])), numeric(list(rates[1:])), numeric(list(motion.values()))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
@@ -348,7 +350,7 @@ def rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr])
 
 
 def adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr], law: Mapping[sp.Symbol, sp.Expr]) -> Check:
-    """Costate rates under a law against numeric derivatives of H with the constraint and its positive multiplier."""
+    """Check costate rates under a law against numeric derivatives of H with the constraint adjoined."""
     states = symbols_of(so_far.model.states)
     rates = [rate.xreplace(dict(law)) for rate in rates]
     penalty = pn.multiplier(found.name) * found.rates[0]
@@ -365,7 +367,7 @@ def adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr], law: M
 
 
 def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.Expr], direction: int) -> Check:
-    """H against that of other controls that keep g^(q) = 0: the law moved, and brought back along its effect."""
+    """Check H against its value for other controls with g^(q) = 0: the law moved, and brought back to the boundary."""
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     effect, _ = affine(so_far, found, controls)
     value, chosen, push = numeric([h]), numeric(laws), numeric(list(effect))
@@ -386,6 +388,6 @@ def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.E
 
 
 def problem_of(so_far: Derivation) -> Problem:
-    """The problem, which there is."""
+    """Return the problem of a derivation, which must have one."""
     assert so_far.problem is not None
     return so_far.problem

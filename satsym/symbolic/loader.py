@@ -1,15 +1,19 @@
-"""Reading derivation files: Python that states physics. Reading one derives nothing."""
+"""Reading of derivation files, which are Python that states physics, without deriving anything.
+
+Errors that Python raises in a file are told in one line, with the place, in the words of the declarations.
+"""
 
 from __future__ import annotations
 
 import ast
 import hashlib
 import importlib.util
+import re
 import sys
 import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import MISSING, fields, is_dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,37 +22,37 @@ from satsym import source_files
 from satsym.source_files import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.loader.mistakes import said
 from satsym.symbolic.model import Model, Problem
 from satsym.wording import printable, suggestion
 
 __all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
 
 _REACHED: dict[Path, dict[Path, str]] = {}
-"""Derivation files that were executed -> what they read, themselves included, with digests of its content."""
+"""For each executed derivation file, the files it read, itself included, with digests of their contents."""
 
 _IMPORTED: dict[Path, str] = {}
-"""Modules that any of them imported, neither satsym's nor a library's: the second one to import them opens nothing."""
+"""Modules that derivation files imported, apart from satsym's and libraries', with digests; each is opened only once.
+"""
 
 _EXECUTING: list[Path] = []
-"""The files whose execution has begun and is not over, each asked for by the one before."""
+"""The derivation files under execution, each requested by the one before."""
 
-_LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parents[2])})
+_LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parents[1])})
 
 
 def reached(path: Path) -> dict[Path, str]:
-    """The files that a loaded derivation file consists of, itself and all that it read, with their digests.
+    """Return the files that a loaded derivation file read, itself included, with their digests.
 
-    What it took from elsewhere, such as the environment, is not known here.
+    What the file took from elsewhere, such as the environment, is not known here.
     """
     imported = {each: digest for each, digest in _IMPORTED.items() if each not in _REACHED}
     return imported | _REACHED.get(path.resolve(), {})
 
 
 def stating(path: Path) -> dict[Path, str]:
-    """The code that a loaded derivation file states its problems with, with digests as of when it was read.
+    """Return the code files that a loaded derivation file states its problems with, with digests as of reading.
 
-    That is the file itself, first, then the derivations that it asked for and the modules beside one of these.
+    These are the file itself, first, then the derivations that it asked for, and modules beside these.
     """
     first, digests = path.resolve(), reached(path)
     known = [first, *sorted(each for each in _REACHED.get(first, {}) if each in _REACHED and each != first)]
@@ -60,7 +64,7 @@ def stating(path: Path) -> dict[Path, str]:
 
 
 def _watch(event: str, arguments: tuple[Any, ...]) -> None:
-    """Note what a derivation file opens. Python calls this at every event, so that it has to be quick."""
+    """Record the files that a derivation file opens; Python calls this at every event, so that it has to be quick."""
     if event == "open" and _EXECUTING and isinstance(arguments[0], str) and not arguments[0].startswith(_LIBRARIES):
         asking = tuple(_EXECUTING)
         _EXECUTING.clear()  # what is opened here is not opened by the file
@@ -74,7 +78,7 @@ def _watch(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 def _source(path: Path) -> Path:
-    """The source behind a compiled file; any other file itself."""
+    """Return the source of a compiled file; any other file is its own source."""
     return path.parents[1] / f"{path.name.partition('.')[0]}.py" if path.suffix == ".pyc" else path
 
 
@@ -82,7 +86,7 @@ sys.addaudithook(_watch)
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:
-    """As :func:`satsym.source_files.find`; what a file that is being executed looked for in vain is noted, too."""
+    """Find a derivation file as :func:`satsym.source_files.find` does, and record also searches in vain."""
     found = source_files.find(name_or_path, folder)
     if folder is not None and not name_or_path.endswith(source_files.SUFFIX):
         first = folder / f"{name_or_path}{source_files.SUFFIX}"
@@ -92,7 +96,7 @@ def find(name_or_path: str, folder: Path | None = None) -> Path:
 
 
 def load(path: Path) -> tuple[Problem | Model, ...]:
-    """The problems and models that a derivation file states.
+    """Execute a derivation file, the user's own Python, and return the problems and models that it states.
 
     A derivation file is the user's own Python and is executed.
 
@@ -139,7 +143,7 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
 
 @contextmanager
 def explained(path: Path | None = None, subject: Problem | Model | None = None) -> Iterator[None]:
-    """Turns what is wrong with a derivation into bad input: one line, no traceback.
+    """Turn errors about a derivation into bad input with one line and no traceback.
 
     Parameters
     ----------
@@ -157,7 +161,7 @@ def explained(path: Path | None = None, subject: Problem | Model | None = None) 
 
 
 def _module(path: Path) -> ModuleType:
-    """Execute a file under a name that its path determines; once, unless it or what it asks for has changed since."""
+    """Execute a file as a module whose name its path determines; again only if a file that it read has changed."""
     resolved = path.resolve()
     name = f"satsym_derivation_{hashlib.sha256(str(resolved).encode()).hexdigest()[:12]}_{path.stem}"
     if name not in sys.modules or any(digest_of(each) != known for each, known in _REACHED[resolved].items()):
@@ -168,7 +172,7 @@ def _module(path: Path) -> ModuleType:
 
 
 def _translate(module: ModuleType) -> None:
-    """Give the file's translations to what it states; its own ones go first."""
+    """Give a file's translations to the models and problems that it states, whose own ones take precedence."""
     words, stated = getattr(module, "TRANSLATIONS", {}), getattr(module, "PROBLEMS", ())
     if not isinstance(words, Mapping) or not all(isinstance(each, Mapping) for each in words.values()):
         raise TypeError('TRANSLATIONS must have phrases by language, {"id": {"velocity": "kecepatan"}}')
@@ -181,7 +185,7 @@ def _translate(module: ModuleType) -> None:
 
 
 def _phrases(path: Path) -> dict[str, str]:
-    """Phrases of a derivation file and what they are in the language of a file beside it."""
+    """Return the phrases of a derivation file with their translations, from the file of a language beside it."""
     try:
         return source_files.phrases(path)
     except ValueError as error:
@@ -214,14 +218,14 @@ def _execute(path: Path, name: str) -> None:
         _translate(module)
     except Exception as error:
         del sys.modules[name]
-        line, message = said(error, resolved, vars(module))
+        line, message = described(error, resolved, vars(module))
         raise BadInput(f"{path}{f':{line}' if line else ''}: {message}") from error
     finally:
         _EXECUTING.pop()
 
 
 def _line_of(path: Path, subject: Problem | Model, named: Sequence[str]) -> int | None:
-    """The line of the statement of a problem or its model at which something stands; ``None`` where none is known.
+    """Return the line of a statement about a problem or its model; ``None`` where it is not known.
 
     Parameters
     ----------
@@ -255,7 +259,7 @@ def _line_of(path: Path, subject: Problem | Model, named: Sequence[str]) -> int 
 
 
 def _statements(tree: ast.Module, name: str) -> Iterator[ast.Call]:
-    """Calls that state something of this name."""
+    """Return the calls that state a problem or model with this name."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             keywords = {k.arg: k.value for k in node.keywords}
@@ -265,10 +269,116 @@ def _statements(tree: ast.Module, name: str) -> Iterator[ast.Call]:
 
 
 def _mentions(node: ast.AST, named: Collection[str]) -> Iterator[int]:
-    """Lines at which one of these names is used, as a variable or in quotes, from the top."""
+    """Return the lines at which one of these names is used, as a variable or in quotes, in order."""
     lines = []
     for each in ast.walk(node):
         used = each.id if isinstance(each, ast.Name) else each.value if isinstance(each, ast.Constant) else None
         if isinstance(used, str) and used in named and isinstance(each, ast.expr):
             lines.append(each.lineno)
     yield from sorted(lines)
+
+
+DECLARING = "satsym.symbolic"
+"""The package with the classes and functions with which a derivation file declares models."""
+
+_OURS = Path(__file__).parents[1]
+"""The folder of the package satsym."""
+
+_UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'")
+_MISSING = re.compile(r"(\w+)\.__init__\(\) missing \d+ required (?:keyword-only|positional) arguments?: (.*)")
+_TOO_MANY_ARGUMENTS = re.compile(r"(\w+)\.__init__\(\) takes (?:from \d+ to )?(\d+) positional arguments?")
+
+_POWER = re.compile(r"unsupported operand type\(s\) for \^")
+
+_NOT_THERE = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
+
+
+def described(error: Exception, path: Path, names: Mapping[str, Any]) -> tuple[int | None, str]:
+    """Return the line at which an error arose in a file, where it is known, and a sentence about the error.
+
+    Parameters
+    ----------
+    names
+        What the file has defined until then.
+    """
+    line, text = _line(path, error), " ".join(str(error).split())
+    if isinstance(error, TypeError):
+        if _POWER.match(text):
+            return line, "write powers with **, as in x**3; ^ is not the power operator in Python"
+        if (found := _UNKNOWN.match(text)) and (known := _fields(found[1], names)):
+            at = next(_keywords(path, line, found[2]), line)
+            return at, f"{found[1]} has no field {found[2]!r}; {suggestion(found[2], known)}"
+        if (found := _MISSING.match(text)) and (known := _fields(found[1], names)):
+            return line, f"{found[1]} needs {found[2]}; its fields are {', '.join(known)}"
+        if (found := _TOO_MANY_ARGUMENTS.match(text)) and (known := _fields(found[1], names)):
+            ordered = ", ".join(name for name, keyword in known.items() if not keyword)
+            instead = (
+                f"its positional fields are {ordered}"
+                if ordered
+                else "pass its fields by keyword, for example name=..."
+            )
+            return line, f"{found[1]} was given more values than it has fields; {instead}"
+    if isinstance(error, SyntaxError):
+        return line, f"{type(error).__name__}: {error.msg}"
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").startswith("satsym"):
+        return line, f"there is no {error.name}; write `from {DECLARING} import ...`"
+    if isinstance(error, NameError) and error.name:
+        return line, f"{error.name!r} is not defined; {_instead(error.name, names)}"
+    if isinstance(error, ImportError) and (found := _NOT_THERE.match(text)) and found[2] == DECLARING:
+        return line, f"{DECLARING} has no {found[1]!r}; {suggestion(found[1], _offered())}"
+    if isinstance(error, ValueError) and _refused(error):
+        return line, text
+    return line, f"{type(error).__name__}: {text}"
+
+
+def _instead(name: str, names: Mapping[str, Any]) -> str:
+    """Suggest what to write instead of a name that is not defined."""
+    if name in _offered():
+        return f"write `from {DECLARING} import {name}`"
+    defined = [known for known in names if not known.startswith("__")]
+    return suggestion(name, [*defined, *_offered()])
+
+
+def _offered() -> list[str]:
+    """Return the names that a derivation file can import to declare something."""
+    return sorted(getattr(sys.modules[DECLARING], "__all__", ()))
+
+
+def _fields(kind: str, names: Mapping[str, Any]) -> dict[str, bool]:
+    """Return the fields of a class that declares something, required ones first, and whether they must be named."""
+    found = names.get(kind, getattr(sys.modules[DECLARING], kind, None))
+    if not is_dataclass(found):
+        return {}
+    stated = sorted(fields(found), key=lambda f: f.default is not MISSING or f.default_factory is not MISSING)
+    return {field.name: bool(field.kw_only) for field in stated if field.init}
+
+
+def _keywords(path: Path, line: int | None, keyword: str) -> Iterator[int]:
+    """Return the lines of a keyword in the call that spans a line."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (OSError, SyntaxError, ValueError):
+        return
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and line and call.lineno <= line <= (call.end_lineno or line):
+            yield from (k.lineno for k in call.keywords if k.arg == keyword)
+
+
+def _refused(error: Exception) -> bool:
+    """Tell whether an error is a refusal by the classes of declarations, in a sentence, and not by Python."""
+    traceback = error.__traceback__
+    while traceback and traceback.tb_next:
+        traceback = traceback.tb_next
+    return traceback is not None and Path(traceback.tb_frame.f_code.co_filename).is_relative_to(_OURS)
+
+
+def _line(path: Path, error: Exception) -> int | None:
+    """Return the line of a file at which an error arose."""
+    if isinstance(error, SyntaxError):
+        return error.lineno or None
+    line, traceback = None, error.__traceback__
+    while traceback:
+        if traceback.tb_frame.f_code.co_filename == str(path):
+            line = traceback.tb_lineno
+        traceback = traceback.tb_next
+    return line
