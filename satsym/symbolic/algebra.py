@@ -1,4 +1,4 @@
-"""Small symbolic operations that several steps share."""
+"""Symbolic operations that several steps of a derivation share: derivatives, simplification, forms of expressions."""
 
 from __future__ import annotations
 
@@ -20,60 +20,66 @@ from satsym.symbolic.model import Model, symbols_of, t
 Simplified = TypeVar("Simplified", sp.Expr, sp.Matrix)
 
 MOST_TERMS_SIMPLIFIED = 400
-"""Terms, were it multiplied out, of what is simplified; what would have more stays as it was derived."""
+"""Largest number of terms, after expansion, of an expression that is simplified; larger ones stay unchanged."""
 
 LENGTHY = 1000
-"""Operations, likewise."""
+"""Largest number of operations of an expression that is simplified; longer ones stay unchanged."""
 
 COMMON = 300
-"""Terms over a common denominator beyond which FLINT cancels and factors, and sympy, which takes long, is not asked."""
+"""Terms over a common denominator above which FLINT, and not sympy, cancels and factors, because sympy is slow."""
 
 TURNING = 300
-"""Operations times sines and cosines of it, likewise, unless it may be zero: rewriting them grows with both."""
+"""Largest product of operations and sines or cosines of an expression in which these are rewritten."""
 
 PROVABLE = 4000
-"""Terms of a sum that is multiplied out."""
+"""Largest number of terms of a sum that is multiplied out to decide whether it is zero."""
 
 MOST_OPERATIONS = 150
 GROWTH = 2
-"""Terms of what is multiplied out, and how many times as many operations as before, beyond which it stays as it was."""
+"""Largest growth in operations, and number of terms, by which an expression is multiplied out."""
 
 FACTORED = 40
-"""Terms of a sum that is looked at as a product; those of longer ones hardly ever have a form worth the time."""
+"""Largest number of terms of a sum that is tried as a product; longer sums hardly ever have a short one."""
 
 MINUTE = 1e-30
-"""A number that is smaller may be zero."""
+"""Magnitude below which a number may be zero."""
 
 ONE_POINT = 20
-"""Seed of the point at which expressions are looked at first."""
+"""Seed of the first random point at which expressions are evaluated."""
 
 LARGEST_EXPONENT = 20
-"""Largest number in an exponent that is multiplied out."""
+"""Largest exponent of a power that is multiplied out."""
 
 
 def total_derivative(expression: sp.Expr | sp.Matrix, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | sp.Matrix:
-    """d/dt of an expression, or entry by entry of a matrix, along a motion with the given rates: the chain rule."""
+    """Return the time derivative of an expression or a matrix along a motion with given rates.
+
+    It is taken by the chain rule, entry by entry of a matrix.
+    """
     along = (sp.diff(expression, symbol) * rate for symbol, rate in rates.items())
     return sum(along, sp.diff(expression, t))
 
 
 def definitions_of(model: Model) -> dict[sp.Symbol, sp.Expr]:
-    """Named constants -> their values, for substitution."""
+    """Return the named constants of a model with their values, for substitution into expressions."""
     return {symbols_of((d.variable,))[0]: d.value for d in model.definitions}
 
 
 def constants_of(model: Model) -> set[sp.Symbol]:
-    """Time, parameters and named constants: what does not move."""
+    """Return the symbols of a model that do not move: time, parameters and named constants."""
     return {t, *symbols_of(model.parameters), *definitions_of(model)}
 
 
 def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]:
-    """Partial derivatives, in order."""
+    """Return the partial derivatives of an expression by the given symbols, in their order."""
     return [sp.diff(expression, s) for s in symbols]
 
 
 def simplified(expression: sp.Expr) -> sp.Expr:
-    """As by sympy, which need not be asked where only sums of products of symbols and their powers are left.
+    """Simplify an expression; sympy is asked only where the expression is no polynomial.
+
+    Sums of products of symbols and their powers are multiplied out, for which there is only one form; squares of
+    cosines are first replaced by sines.
 
     Of those there is but one way to write them; squares of cosines are put in terms of sines to get there.
     """
@@ -97,9 +103,10 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
 
 
 def simplify(expression: Simplified) -> Simplified:
-    """As by sympy's simplify, which is given letters for decimals, unless what has them may vanish; entry by entry.
+    """Simplify an expression or each entry of a matrix by sympy, with letters in place of decimal numbers.
 
-    Its polynomials have whole numbers with all digits of a decimal, whose factors it may seek for hours.
+    Sympy turns decimals into fractions of long whole numbers, whose factors it may seek for hours. Decimals stay where
+    the expression that has them may vanish.
     """
     if isinstance(expression, sp.MatrixBase):
         return expression.applyfunc(simplify)
@@ -109,7 +116,10 @@ def simplify(expression: Simplified) -> Simplified:
 
 
 def shortened(expression: sp.Expr) -> sp.Expr:
-    """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
+    """Simplify an expression by sympy without merging its logarithms.
+
+    When logarithms are merged, their factors become exponents, and these have no units.
+    """
     operations, turned = expression.count_ops(), len(expression.atoms(TrigonometricFunction))
     if terms_of(expression) > MOST_TERMS_SIMPLIFIED or operations > LENGTHY:
         return expression
@@ -140,10 +150,10 @@ def shortened(expression: sp.Expr) -> sp.Expr:
 
 
 def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
-    """Letters for functions of which nothing is known together with others: sympy would look for that for minutes.
+    """Replace functions that sympy cannot relate to others by letters: sympy would search for minutes.
 
-    Of sines and cosines those are such of which there are no powers, and all of them where none multiplies another. Of
-    hyperbolic functions those next to exponentials are such, too, unless the expression may be zero.
+    A sine or cosine is replaced where no power of it occurs, and all of them are where none multiplies another.
+    Hyperbolic functions are replaced next to exponentials, unless the expression may be zero.
     """
     hyperbolic, turning = expression.atoms(HyperbolicFunction), expression.atoms(TrigonometricFunction)
     nonzero = bool(hyperbolic or turning) and differs_from_zero(expression)
@@ -176,30 +186,33 @@ def _meets(function: sp.Expr, others: Iterable[sp.Expr]) -> bool:
 
 
 def shortest(*forms: sp.Expr) -> sp.Expr:
-    """The form of an expression with the fewest operations, the first of several."""
+    """Return the one of several equal expressions that has the fewest operations, the first of several such."""
     return min(forms, key=sp.count_ops)
 
 
 def vanishes(expression: sp.Expr) -> bool:
-    """Whether an expression is identically zero, as far as simplifying shows it; a number elsewhere shows that not."""
+    """Tell whether an expression is identically zero, as far as simplification shows.
+
+    A number other than zero at a random point shows that the expression is not zero.
+    """
     return expression == 0 or (not differs_from_zero(expression) and bool(simplified(expression) == 0))
 
 
 def divisors_in_time(model: Model, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """What expressions are divided by that time alone moves, and that must never be zero."""
+    """Return divisors that depend on time and constants alone, and so must never be zero."""
     powers = {p for e in expressions for p in e.atoms(sp.Pow) if p.exp.is_negative and p.base.has(t)}
     moving = {*symbols_of(model.states), *symbols_of(model.controls)}
     return sorted({p.base for p in powers if not p.base.free_symbols & moving}, key=sp.default_sort_key)
 
 
 def depends(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
-    """Whether an expression changes with any of these symbols, as far as simplifying shows it."""
+    """Tell whether an expression changes with any of the given symbols, as far as simplification shows."""
     return any(not vanishes(sp.diff(expression, s)) for s in expression.free_symbols & set(symbols))
 
 
 @lru_cache(maxsize=4096)
 def differs_from_zero(expression: sp.Expr) -> bool:
-    """Whether its number at one point, which is good to 15 digits, is certainly not zero."""
+    """Tell whether an expression is certainly not zero: its value at one point, to 15 digits, is not."""
     rng = random.Random(ONE_POINT)
     point = {symbol: sp.Rational(rng.randrange(500, 1500), 1000) for symbol in sorted(expression.free_symbols, key=str)}
     value = expression.xreplace(point).evalf()
@@ -207,7 +220,7 @@ def differs_from_zero(expression: sp.Expr) -> bool:
 
 
 def terms_of(expression: sp.Expr) -> int:
-    """How many terms the expression has when it is multiplied out, or what is inside its functions, if none cancel."""
+    """Count the terms of an expression that is multiplied out, or of what is inside its functions, if none cancel."""
     if expression.is_Add:
         return sum(terms_of(e) for e in expression.args)
     if expression.is_Mul:
@@ -218,12 +231,12 @@ def terms_of(expression: sp.Expr) -> int:
 
 
 def terms_over(expression: sp.Expr) -> int:
-    """How many terms the numerator has over a common denominator, multiplied out, if none cancel."""
+    """Count the terms of the numerator of an expression over a common denominator, multiplied out, if none cancel."""
     return _over(expression)[0]
 
 
 def _over(expression: sp.Expr) -> tuple[int, dict[sp.Expr, int]]:
-    """Terms of the numerator, and the sums in the denominator with their powers."""
+    """Return the number of terms of the numerator, and the sums in the denominator with their powers."""
     if expression.is_Add:
         parts = [_over(e) for e in expression.args]
         common = {base: max(below.get(base, 0) for _, below in parts) for _, below in parts for base in below}
@@ -247,12 +260,15 @@ def _product(powers: Mapping[sp.Expr, int]) -> int:
 
 
 def _power(terms: int, power: int) -> int:
-    """Terms of a power of a sum."""
+    """Return the number of terms of a power of a sum with so many terms."""
     return math.comb(terms + power - 1, power)
 
 
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
-    """The expression as a sum over the symbols it is linear in, each with its shortest coefficient.
+    """Write an expression as a sum over the symbols in which it is linear, each with its shortest coefficient.
+
+    An expression that would be too long when multiplied out is only split into such terms, and its coefficients stay as
+    they are.
 
     What would be too long when multiplied out is only parted, and its coefficients are left as they are.
     """
@@ -266,7 +282,7 @@ def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
 
 
 def _multiplied_out(expression: sp.Expr) -> sp.Expr | None:
-    """The expanded expression, unless that is long and much longer than it was."""
+    """Expand an expression, unless the result is long and much longer than the expression."""
     if terms_of(expression) > PROVABLE:
         return None
     expanded = _expand(expression)
@@ -275,7 +291,7 @@ def _multiplied_out(expression: sp.Expr) -> sp.Expr | None:
 
 
 def _parted(expression: sp.Expr, by: tuple[sp.Symbol, ...]) -> sp.Expr:
-    """A sum over the symbols it is linear in, each with the coefficient that differentiating leaves."""
+    """Split an expression into a sum over the symbols in which it is linear, with its derivatives as coefficients."""
     for k, symbol in enumerate(by):
         slope = sp.diff(expression, symbol)
         if slope != 0 and not slope.has(symbol):
@@ -285,7 +301,9 @@ def _parted(expression: sp.Expr, by: tuple[sp.Symbol, ...]) -> sp.Expr:
 
 
 def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h.
+    """Replace exponentials with large exponents by symbols; return the expression and what they stand for.
+
+    Sympy treats e^(500 h) as the 500th power of e^h and e^(2.34 h) as the 117th power of e^(h/50).
 
     And e^(2.34 h) is the 117th power of e^(h/50). Those whose exponents are small multiples of a common one are powers
     of one symbol. So are named those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as
@@ -298,9 +316,9 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
 
 
 def _of_functions_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """The expression with symbols for exponentials of functions, such as e^(sin x), and these.
+    """Replace exponentials of functions, such as e^(sin x), by symbols; return the expression and the symbols.
 
-    No identity of sines relates them to sines outside. sympy looks for one all the same, and may do so for hours.
+    No identity relates them to sines elsewhere in the expression, but sympy may search for one for hours.
     """
     exponentials = expression.atoms(sp.exp)
     inner = set().union(*(e.args[0].atoms(sp.exp) for e in exponentials))
@@ -308,7 +326,7 @@ def _of_functions_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, s
 
 
 def _named(expression: sp.Expr, exponentials: Iterable[sp.Expr]) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """The expression with symbols for exponentials, as powers of one where exponents are small multiples of each other.
+    """Replace exponentials by symbols, as powers of one symbol where exponents are small multiples of each other.
 
     Returns
     -------
@@ -343,7 +361,7 @@ def _divides_by_a_sum(exponential: sp.exp) -> bool:
 
 
 def _is_steep(coefficient: sp.Expr) -> bool:
-    """Whether a coefficient in an exponent makes a high power, or none that sympy sees."""
+    """Tell whether a coefficient in an exponent makes a high power, or one that sympy does not recognise."""
     return abs(coefficient.p if coefficient.is_Rational else coefficient) > LARGEST_EXPONENT
 
 
@@ -365,9 +383,9 @@ def _shortest(expression: sp.Expr) -> sp.Expr:
 
 
 def _expand(expression: sp.Expr) -> sp.Expr:
-    """Products and powers multiplied out, but roots of sums and logarithms in one piece.
+    """Multiply out products and powers, but leave roots of sums and logarithms in one piece.
 
-    A root is worth more whole, and the parts of a logarithm may have units.
+    Roots of sums are easier to simplify whole, and the parts of a logarithm may have units.
     """
     powers = {p for p in expression.atoms(sp.Pow) if p.base.is_Add and p.exp.is_Rational and not p.exp.is_Integer}
     whole = {sp.Pow(p.base, sp.Rational(1, p.exp.q)): sp.Dummy(positive=True) for p in powers}

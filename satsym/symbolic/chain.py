@@ -1,4 +1,4 @@
-"""Motions whose equations are a chain of named parts: differentiated and solved along it, and never multiplied out.
+"""Motions whose equations are a chain of named parts; they are differentiated and solved part by part, not expanded.
 
 Written in one piece, the accelerations of bodies in gimbals have some million operations; along the chain, some
 hundreds, and their derivatives some thousands.
@@ -20,7 +20,7 @@ Assignment: TypeAlias = "tuple[sp.Symbol, sp.Expr]"
 
 
 class Chain:
-    """Named parts in an order in which each follows from those before.
+    """Named parts of expressions, in an order in which each part uses only those before it.
 
     Parameters
     ----------
@@ -32,14 +32,14 @@ class Chain:
         self.parts: list[Assignment] = list(parts)
 
     def named(self, name: str, value: sp.Expr) -> sp.Expr:
-        """A value under a name, unless it is a number or has one."""
+        """Give a value a name, unless it is a number or has a name already, and return its symbol."""
         if not value.args:
             return value
         self.parts.append((sp.Symbol(name, real=True), value))
         return self.parts[-1][0]
 
     def derivatives(self, by: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:
-        """Total derivatives of the parts, by the chain rule; those that vanish are left out."""
+        """Return the total derivatives of the parts by a variable, by the chain rule; zero ones are left out."""
         found = {by: sp.Integer(1)}
         for symbol, value in tuple(self.parts):
             slope = along(value, found)
@@ -51,7 +51,7 @@ class Chain:
 def named_parts(
     parts: Iterable[Assignment], values: Iterable[sp.Expr], named: Callable[[int], sp.Symbol]
 ) -> tuple[list[Assignment], list[sp.Expr]]:
-    """Parts without those that are the negative of another symbol and say nothing, numbered anew."""
+    """Return the parts without those that only negate another symbol, numbered anew."""
     said: dict[sp.Symbol, sp.Expr] = {}
     kept: list[Assignment] = []
     for symbol, value in parts:
@@ -65,7 +65,7 @@ def named_parts(
 
 
 def along(value: sp.Expr, slopes: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """The derivative of a value whose symbols have these derivatives."""
+    """Return the derivative of a value whose symbols have the given derivatives."""
     found = sorted((s for s in value.free_symbols if s in slopes), key=lambda s: s.name)
     return sp.Add(*(_partial(value, s) * slopes[s] for s in found))
 
@@ -76,7 +76,7 @@ def _partial(value: sp.Expr, by: sp.Symbol) -> sp.Expr:
 
 
 class Elimination:
-    """A symmetric matrix as L D L', row by row where least is filled in, so that systems can be solved with it."""
+    """A symmetric matrix factored as L D L', with the order of rows that fills in least, for solving systems."""
 
     def __init__(self, chain: Chain, matrix: sp.MatrixBase) -> None:
         rest = sp.Matrix(matrix)
@@ -98,7 +98,7 @@ class Elimination:
                     rest[i, j] = rest[j, i] = value
 
     def solve(self, chain: Chain, right: Sequence[sp.Expr], name: str) -> list[sp.Expr]:
-        """The solution for one right-hand side, under names that begin so."""
+        """Solve the system for one right-hand side; the parts of the solution have names with the given beginning."""
         values = list(right)
         for pivot in self.order:
             if values[pivot] == 0:
@@ -120,7 +120,10 @@ def _solved(parts: tuple[Assignment, ...], mass: sp.ImmutableMatrix, load: sp.Im
 
 
 def parts_of(derivation: Derivation) -> tuple[Assignment, ...]:
-    """The chain behind the first-order form: named functions, parts, and the accelerations; none for a closed form."""
+    """Return the chain behind the first-order form: named functions, parts and accelerations.
+
+    It is empty where the form is closed.
+    """
     if "kane" not in derivation or not any(n.is_solved(e) for e in derivation.rhs("first_order")):
         return ()
     symbols = [e.rhs for e in derivation.step("first_order").equations if n.is_solved(e.rhs)]
@@ -129,9 +132,9 @@ def parts_of(derivation: Derivation) -> tuple[Assignment, ...]:
 
 
 def jacobians(derivation: Derivation) -> tuple[tuple[Assignment, ...], sp.Matrix, sp.Matrix]:
-    """Derivatives of the first-order form by states and controls: the chain that leads to them, and both matrices.
+    """Return the derivatives of the first-order form by states and controls: the chain for them, and both matrices.
 
-    Those of the accelerations solve M w = d(Q - b) - dM a, with the factors of M that gave the accelerations a.
+    The derivatives w of the accelerations a solve M w = d(Q - b) - dM a, with the same factors of M.
     """
     parts, mass, load = _system(derivation)
     elimination, solution, _ = _solved(parts, mass, load)
@@ -153,7 +156,7 @@ def jacobians(derivation: Derivation) -> tuple[tuple[Assignment, ...], sp.Matrix
 
 
 def _system(derivation: Derivation) -> tuple[tuple[Assignment, ...], sp.ImmutableMatrix, sp.ImmutableMatrix]:
-    """Parts, mass matrix and what it has to accelerate."""
+    """Return the named parts, the mass matrix, and the right-hand side of M a = Q - b."""
     named = [(e.lhs, e.rhs) for e in derivation.step("kinematics").equations if e.lhs.name == e.name]
     known = {e.name: e.rhs for e in derivation.step("kane").equations}
     parts = [(e.lhs, e.rhs) for e in derivation.step("kane").equations if e.name.startswith("part_")]

@@ -1,4 +1,4 @@
-"""Numeric confirmation of symbolic results at random points, where equal is what :mod:`satsym.agreement` calls so."""
+"""Numeric checks of symbolic results at random points; :mod:`satsym.agreement` decides when numbers are equal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from satsym.symbolic.functions.roots import Root
 
 POINTS = 5
 TRIES = 60
-"""Random points at most, of which those are looked at where functions have numbers."""
+"""Largest number of random points drawn to find those at which functions have values."""
 
 _TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 
@@ -32,9 +32,10 @@ Point: TypeAlias = dict[sp.Symbol, Any]
 
 @contextmanager
 def drawn_from(variables: Iterable[Variable]) -> Iterator[None]:
-    """Draw random points in here from where these variables typically lie.
+    """Draw random points inside this context from the typical ranges of the given variables.
 
-    As soon as one of them says so, those with a default are drawn about that: what they enter must fit together.
+    If any variable states such a range, variables with a default are drawn near that default, so that the values fit
+    together.
     """
     declared = list(variables)
     ranges = {v.symbol: v.typical for v in declared if v.typical}
@@ -50,7 +51,7 @@ def drawn_from(variables: Iterable[Variable]) -> Iterator[None]:
 
 
 def random_number(symbol: sp.Symbol, rng: random.Random) -> float:
-    """From where the symbol typically lies; else of size one, positive where the symbol is, and away from zero."""
+    """Draw a number from a symbol's typical range, or else of size one, away from zero and positive where declared."""
     size = rng.uniform(0.5, 1.5)
     if symbol.name in (typical := _TYPICAL.get()):
         low, high = typical[symbol.name]
@@ -59,12 +60,12 @@ def random_number(symbol: sp.Symbol, rng: random.Random) -> float:
 
 
 def random_point(symbols: Iterable[sp.Symbol], rng: random.Random) -> Point:
-    """A generic point, a number for each symbol."""
+    """Draw a generic point: a number for each symbol."""
     return {symbol: mp.mpf(random_number(symbol, rng)) for symbol in sorted(symbols, key=lambda s: s.name)}
 
 
 def points(symbols: Iterable[sp.Symbol], seed: str, count: int = POINTS) -> Iterator[Point]:
-    """Reproducible random points, drawn anew for every seed text."""
+    """Return reproducible random points; each seed text gives others."""
     chosen = list(symbols)
     rng = random.Random(seed)
     for _ in range(count):
@@ -72,7 +73,7 @@ def points(symbols: Iterable[sp.Symbol], seed: str, count: int = POINTS) -> Iter
 
 
 def numeric(expressions: Sequence[sp.Expr]) -> Callable[[Mapping[sp.Symbol, Any]], list[Any]]:
-    """A function that evaluates the expressions at a point, in the working precision of mpmath."""
+    """Compile expressions to a function of a point that works in mpmath's precision."""
     symbols, function = _compiled(tuple(expressions))
     return lambda point: function(*(point[s] for s in symbols))
 
@@ -86,7 +87,7 @@ def _compiled(expressions: tuple[sp.Expr, ...]) -> tuple[list[sp.Symbol], Callab
 def numeric_along(
     chain: Iterable[tuple[sp.Symbol, sp.Expr]], expressions: Iterable[sp.Expr]
 ) -> tuple[Callable[[Mapping[sp.Symbol, Any]], list[Any]], list[sp.Symbol]]:
-    """Evaluate expressions in named parts, each of which may use those before it; and name the symbols it needs."""
+    """Compile expressions in named parts, each of which may use those before; also return the symbols needed."""
     parts, values = list(chain), list(expressions)
     free = set().union(*(e.free_symbols for _, e in parts), *(e.free_symbols for e in values)) - {s for s, _ in parts}
     symbols = sorted(free, key=lambda s: s.name)
@@ -101,7 +102,7 @@ def compare(
     symbols: Iterable[sp.Symbol],
     sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]],
 ) -> Check:
-    """Check two routes to the same numbers at random points; without symbols there is one point.
+    """Check that two routes lead to the same numbers at random points, or at one point without symbols.
 
     Points where the other route has no numbers are passed over; the error is NaN where too few are left.
 
@@ -127,13 +128,13 @@ def compare(
 
 
 def _where_finite(at: Callable[[int], Sides]) -> float | None:
-    """The disagreement of two sides; ``None`` where the other one has no numbers."""
+    """Return the disagreement of both sides at a point; ``None`` where the other route has no numbers."""
     first = at(DIGITS)
     return disagreement(lambda digits: first if digits == DIGITS else at(digits)) if finite(first[1]) else None
 
 
 def with_digits(sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]], point: Point) -> Callable[[int], Sides]:
-    """Both sides at a point as a function of the digits; NaN where either divides by zero."""
+    """Return both sides at a point as a function of the number of digits; NaN where either divides by zero."""
 
     def at(digits: int) -> Sides:
         with mp.workdps(digits):
@@ -149,7 +150,7 @@ def with_digits(sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]], p
 def first_order_at_zero(
     claim: str, exact: Sequence[sp.Expr], linear: Sequence[sp.Expr], moving: Sequence[sp.Symbol]
 ) -> Check:
-    """Check linear expressions by the exact ones along a ray through zero, differentiated there."""
+    """Check linear expressions by the exact ones, differentiated at zero along a ray."""
     function, found = numeric(exact), numeric(linear)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
@@ -164,7 +165,7 @@ def first_order_at_zero(
 def never_below(
     claim: str, symbols: Iterable[sp.Symbol], margins: Callable[[Point, random.Random], Iterable[Any]]
 ) -> Check:
-    """Check that margins which must not be negative are not, at random points.
+    """Check at random points that margins are nowhere negative.
 
     Raises
     ------
@@ -194,7 +195,7 @@ def positive(claim: str, symbols: Iterable[sp.Symbol], expressions: Sequence[sp.
 
 
 def _largest(values: Iterable[Any]) -> float:
-    """The largest of some non-negative numbers; NaN if any of them is, which ``max`` alone may pass over."""
+    """Return the largest of some non-negative numbers; NaN if any of them is, which ``max`` may miss."""
     found = list(values)
     return float(max(found, default=0.0)) if all(v == v for v in found) else math.nan
 
@@ -206,9 +207,9 @@ def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
 
 
 def vanishes(claim: str, expression: sp.Expr) -> bool:
-    """Whether an expression is identically zero: multiplied out where that is short, in numbers otherwise.
+    """Tell whether an expression is identically zero: by expansion where that is short, by numbers otherwise.
 
-    Numbers decide as well as simplifying does, which takes sympy up to minutes and may lead to no end.
+    Numbers decide as well as simplification does, for which sympy may need minutes.
     """
     if terms_of(expression) <= PROVABLE and sp.expand(expression) == 0:
         return True
@@ -219,7 +220,7 @@ def vanishes(claim: str, expression: sp.Expr) -> bool:
 def agree(
     seed: str, symbols: Iterable[sp.Symbol], sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]]
 ) -> bool:
-    """Whether two routes lead to the same numbers at random points: a question, which no step claims.
+    """Tell whether two routes lead to the same numbers at random points; no step claims the answer.
 
     Parameters
     ----------

@@ -21,22 +21,22 @@ from satsym.symbolic.model import Convention, Model, Problem
 
 
 def sign(problem: Problem) -> int:
-    """What L is multiplied by in H: one with the minimum convention, minus one with the maximum convention."""
+    """Return the factor of L in H: one with the minimum convention, minus one with the maximum convention."""
     return -1 if problem.convention == "maximum" else 1
 
 
 def worded(key: str, problem: Problem) -> str:
-    """The key of a text that differs between the conventions."""
+    """Return the key of a text that differs between the two conventions."""
     return f"{key}, maximum" if problem.convention == "maximum" else key
 
 
 def in_convention(subject: Problem | Model, convention: Convention | None) -> Problem | Model:
-    """Return a problem with a convention; a model without a cost stays as it is, and so does anything for ``None``."""
+    """Return a problem in another convention; a model without a cost, and ``None``, leave it unchanged."""
     return replace(subject, convention=convention) if convention and isinstance(subject, Problem) else subject
 
 
 def as_cost(problem: Problem) -> Problem:
-    """The problem with L and S as costs, which are minimised, where the author has an objective to maximise."""
+    """Return the problem with L and S as costs to be minimised; an objective to maximise is negated."""
     if not problem.maximise:
         return problem
     return replace(
@@ -45,5 +45,5 @@ def as_cost(problem: Problem) -> Problem:
 
 
 def is_minimum(derivation: Derivation) -> bool:
-    """Whether kernels can be generated from a derivation."""
+    """Tell whether a derivation is in the minimum convention, from which kernels can be generated."""
     return derivation.problem is None or derivation.problem.convention == "minimum"

@@ -1,4 +1,4 @@
-"""Decimals that an author writes, with so many digits that nothing which is done with them rounds what is compared.
+"""Decimal numbers of an author, kept exact so that rounding never decides a comparison.
 
 Sympy keeps 15 digits of a float; multiplied out, and in exponentials and roots, they differ by more than checks allow.
 """
@@ -20,17 +20,17 @@ from satsym.symbolic.model import Model
 T = TypeVar("T")
 
 DIGITS = 2 * MOST_DIGITS
-"""Twice as many as numbers have in checks at most."""
+"""Digits of a decimal: twice the largest number of digits in checks."""
 
 CERTAIN = 400
-"""Digits of a long decimal that are right after a few multiplications."""
+"""Digits of a long decimal that are still right after a few multiplications."""
 
 LARGEST_RATIO_NUMBER = 20
-"""Numbers in the ratio of two decimals that are multiples of one."""
+"""Largest numerator and denominator of the ratio of two decimals that share a symbol."""
 
 
 def lengthened(stated: T) -> T:
-    """A problem or a model whose decimals are what is written, exactly; itself where it has none."""
+    """Return a problem or model with its decimals replaced by exact values; itself where it has none."""
 
     def exact(e: Any) -> Any:
         if isinstance(e, float):
@@ -42,15 +42,16 @@ def lengthened(stated: T) -> T:
 
 
 def as_fractions(expression: sp.Expr) -> sp.Expr:
-    """The expression with fractions for its decimals: sums of decimals hardly ever cancel, and have no factors."""
+    """Replace decimals by fractions: sums of decimals hardly ever cancel, and polynomials in them have no factors."""
     return expression.xreplace({decimal: _fraction(decimal) for decimal in expression.atoms(sp.Float)})
 
 
 @lru_cache(maxsize=1024)
 def _fraction(decimal: sp.Float) -> sp.Rational:
-    """The fraction with the least denominator that has these digits: what was multiplied and divided to get there.
+    """Return the fraction with the smallest denominator that has these decimal digits.
 
-    A third of 0.1 is 1/30, and no number of 400 digits. Where there is none, as for a root, it is the digits.
+    A third of 0.1 becomes 1/30, and no number of 400 digits. Where there is no such fraction, as for a root, the digits
+    are taken.
     """
     exact = Fraction(*map(int, sp.Rational(decimal).as_numer_denom()))
     near = exact.limit_denominator(10 ** (CERTAIN // 3))
@@ -60,7 +61,7 @@ def _fraction(decimal: sp.Float) -> sp.Rational:
 
 
 def as_decimals(expression: sp.Expr) -> sp.Expr:
-    """The expression with decimals for its fractions, apart from exponents, which are roots."""
+    """Replace the fractions of an expression by decimals, except in exponents, where they are roots."""
     if expression.is_Rational and not expression.is_Integer:
         return sp.Float(expression, DIGITS)
     if not expression.args:
@@ -71,16 +72,16 @@ def as_decimals(expression: sp.Expr) -> sp.Expr:
 
 
 def with_letters(function: Callable[[sp.Expr], sp.Expr], expression: sp.Expr) -> sp.Expr:
-    """What a function of sympy makes of an expression, given letters for its decimals.
+    """Apply a function of sympy to an expression whose decimals were replaced by letters.
 
-    Polynomials with decimals have to sympy whole numbers with all their digits, whose factors it may seek for hours.
+    Sympy turns polynomials with decimals into ones with long whole numbers, whose factors it may seek for hours.
     """
     letters, decimals = _lettered(expression.atoms(sp.Float))
     return function(expression.xreplace(letters)).xreplace(decimals)
 
 
 def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], dict[sp.Symbol, sp.Float]]:
-    """Positive symbols in the place of decimals: each decimal by its symbol, and the decimal of each symbol.
+    """Map decimals to positive symbols: return the symbol of each decimal, and the value of each symbol.
 
     Decimals whose ratio is a fraction of small numbers share a symbol.
     """
@@ -98,7 +99,7 @@ def _lettered(decimals: Iterable[sp.Float]) -> tuple[dict[sp.Float, sp.Expr], di
 
 
 def _small_ratio(quotient: sp.Float) -> sp.Rational | None:
-    """The fraction of small numbers that a quotient of decimals is, but for rounding."""
+    """Return the fraction of small whole numbers that a quotient of decimals equals, except for rounding."""
     exact = Fraction(*map(int, sp.Rational(quotient).as_numer_denom()))
     near = exact.limit_denominator(LARGEST_RATIO_NUMBER)
     close = 0 < abs(near.numerator) <= LARGEST_RATIO_NUMBER and abs(exact - near) <= abs(exact) / 10**CERTAIN
@@ -106,7 +107,7 @@ def _small_ratio(quotient: sp.Float) -> sp.Rational | None:
 
 
 def everywhere(stated: T, changing: Callable[[Any], Any]) -> T:
-    """A problem or a model with its expressions and matrices changed; itself where none is.
+    """Apply a change to all expressions and matrices of a problem or model; return itself where none changes.
 
     Parameters
     ----------
@@ -132,7 +133,7 @@ def _everywhere(stated: Any, changing: Callable[[Any], Any]) -> Any:
 
 
 def _parts(stated: Any) -> dict[Any, Any]:
-    """What something declared consists of; a model that another one is derived from is no part of that."""
+    """Return the parts of something declared; the model that another one is derived from is not one of them."""
     if isinstance(stated, Mapping):
         return dict(stated)
     if isinstance(stated, tuple):

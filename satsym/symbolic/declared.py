@@ -1,6 +1,6 @@
-"""What a derivation file may state: misfits, foreign symbols and clashes of names are refused before any step.
+"""Checks of what a derivation file states: misfits, foreign symbols and clashes of names are refused before any step.
 
-Whether two problems state the same, across processes, is told by a digest of everything that is declared.
+Whether two problems state the same, also in different processes, is decided by a digest of all declarations.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
 
 
 def _refuse_inequalities(problem: Problem) -> None:
-    """Refuse inequalities that are stated otherwise than by name, and those at the end that are called like a state."""
+    """Refuse inequalities without names, and inequalities at the end that have the name of a state."""
     for field in ("path_constraints", "terminal_inequalities"):
         stated, what = getattr(problem, field), f"{problem.name}: {field}"
         if not isinstance(stated, Mapping):
@@ -92,7 +92,7 @@ def _refuse_inequalities(problem: Problem) -> None:
 
 
 def _refuse_constraints(problem: Problem) -> None:
-    """Refuse constraints along the way beside what excludes them."""
+    """Refuse path constraints in problems with features that exclude them."""
     constraints, what = problem.path_constraints, f"{problem.name}: path_constraints"
     parts = parts_of(problem) if constraints else ()
     if taken := [b.symbol for part in parts if part.kind == "box" for b in part.limits if b.symbol in constraints]:
@@ -107,7 +107,7 @@ def _refuse_constraints(problem: Problem) -> None:
 
 
 def _refuse_interior(problem: Problem) -> None:
-    """Refuse points on the way that are stated otherwise than by name, or beside what excludes them."""
+    """Refuse points on the way that have no names, or whose problem has features that exclude them."""
     stated, what = problem.interior, f"{problem.name}: interior"
     if not isinstance(stated, Mapping) or not all(isinstance(one, tuple) and one for one in stated.values()):
         raise DerivationError(
@@ -128,7 +128,7 @@ def _refuse_interior(problem: Problem) -> None:
 
 
 def refuse_foreign_symbols(derivation: Derivation) -> None:
-    """Refuse expressions with symbols that were not declared, or that cannot stand there.
+    """Refuse expressions with symbols that were not declared, or that are not allowed in that place.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
-    """What is wrong with foreign symbols: the worst kind of fault among them."""
+    """Describe the worst kind of fault among some foreign symbols."""
     names = {s.name for s in everything}
     if undeclared := sorted(s.name for s in foreign if s.name not in names):
         return f"uses undeclared symbols: {', '.join(undeclared)}"
@@ -198,7 +198,7 @@ def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
 
 
 def begin(model: Model, problem: Problem | None) -> Derivation:
-    """An empty derivation with its notation.
+    """Begin a derivation: no steps yet, with the notation of a model or problem.
 
     Raises
     ------
@@ -213,18 +213,18 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
 
 
 def given_names(model: Model, problem: Problem | None) -> set[str]:
-    """The names that a derivation gives, which no variable of it may have."""
+    """Return the names that a derivation introduces, which none of its variables may have."""
     limits = {v.symbol for v in limits_of(problem)} if problem else set()
     return {*_notation(model, problem), *_entries(model), *limits}
 
 
 def _variables(model: Model, problem: Problem | None) -> list[Variable]:
-    """What is declared, and what an instance gives besides."""
+    """Return the declared variables, and those that an instance gives values besides."""
     return [*variables_of(model), *(limits_of(problem) if problem else ())]
 
 
 def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
-    """Name -> LaTeX of what is derived."""
+    """Map the names of derived quantities to their LaTeX."""
     notation = {s.name: latex for s, latex in n.FIXED.items()}
     for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
         notation[n.rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
@@ -252,7 +252,7 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
 
 
 def _entries(model: Model) -> Iterable[str]:
-    """Names of matrix entries: A = f_x, B = f_u, C = g_x, D = g_u, H_uu."""
+    """Map the names of matrix entries to LaTeX: A = f_x, B = f_u, C = g_x, D = g_u, H_uu."""
     states, controls = ([v.symbol for v in group] for group in (model.states, model.controls))
     outputs = [o.variable.symbol for o in model.outputs]
     dynamic = (("A", states, states), ("B", states, controls), ("H", controls, controls))
@@ -261,7 +261,7 @@ def _entries(model: Model) -> Iterable[str]:
 
 
 def _letters(problem: Problem | None, notation: Mapping[str, str]) -> set[str]:
-    """How every problem has what it derives typeset, and its costs."""
+    """Map the names that every problem introduces, such as H and the costates, to LaTeX, with those of its costs."""
     if problem is None:
         return set()
     costates = map(n.costate_of, symbols_of(problem.model.states))
@@ -270,7 +270,7 @@ def _letters(problem: Problem | None, notation: Mapping[str, str]) -> set[str]:
 
 
 def _bare(latex: str) -> str:
-    """LaTeX as far as it is seen."""
+    """Return LaTeX without what is not visible in print."""
     return re.sub(r"[{}\s]", "", latex)
 
 
@@ -295,11 +295,11 @@ _OURS = ("satsym.", "sympy.")
 
 
 class _Unknown(Exception):
-    """Something whose content does not tell what it does: a function, or a class of the user's own."""
+    """A declared object whose behaviour its content does not tell: a function, or an instance of a user's own class."""
 
 
 def identity(subject: Problem | Model) -> str:
-    """The digest; empty where what is stated holds code of its own, which no digest of values covers."""
+    """Return a digest of what is declared; empty where it contains code of its own, which no digest covers."""
     try:
         parts = "\n".join(_parts(subject))
     except _Unknown:
@@ -308,7 +308,7 @@ def identity(subject: Problem | Model) -> str:
 
 
 def _parts(value: Any) -> Iterator[str]:
-    """A line for each thing that is stated, in order; what is nested lies between brackets."""
+    """Yield a line for each declared thing, in order; nested things are enclosed by brackets."""
     kind = type(value)
     if value is None or kind in (bool, int, float, str):
         yield repr(value)

@@ -1,4 +1,4 @@
-"""A derivation as data: named equations in ordered steps, each with what it follows from and its checks."""
+"""A derivation as data: named equations in ordered steps, each with its sources and its checks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from satsym.symbolic.model import Model, Problem
 
 
 class DerivationError(Exception):
-    """What a derivation file states cannot be derived from, or a machine check failed; one line says why.
+    """A statement from which nothing can be derived, or a failed machine check; one line says why.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class DerivationError(Exception):
 
 @dataclass(frozen=True)
 class Equation:
-    """``lhs = rhs`` under a name that is unique within its step; the right-hand side may be a matrix."""
+    """An equation ``lhs = rhs`` with a name that is unique within its step; the right-hand side may be a matrix."""
 
     name: str
     lhs: sp.Expr
@@ -55,13 +55,13 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the deviation is within the limit (NaN is not)."""
+        """Tell whether the deviation is within the limit; NaN is not."""
         return self.error <= self.limit
 
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What a step comes to, as a sentence.
+    """A conclusion that a step draws in words.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Conclusion:
 
 @dataclass(frozen=True)
 class Step:
-    """One move of the derivation.
+    """One step of a derivation: its equations, the rule and the sources they follow from, and its checks.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Derivation:
-    """Everything derived from a problem (or a model without a cost), in order.
+    """Everything derived from a problem, or from a model without a cost, in order.
 
     ``notation`` maps the name of each symbol that occurs to its LaTeX. ``original`` is the derivation of the motion
     that a linear model linearises, as far as its first-order form.
@@ -125,19 +125,19 @@ class Derivation:
 
     @property
     def name(self) -> str:
-        """Name of what was derived: the first half of every address, and of the generated files."""
+        """Return the name of the problem or model, which begins every address and names the generated files."""
         return self.problem.name if self.problem else self.model.name
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Return the title of the problem or model."""
         return self.problem.title if self.problem else self.model.title
 
     def __contains__(self, step: str) -> bool:
         return any(s.name == step for s in self.steps)
 
     def step(self, name: str) -> Step:
-        """The step of that name.
+        """Return the step of the given name.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class Derivation:
         raise KeyError(f"{self.name}: there is no step {name!r}; available are {', '.join(s.name for s in self.steps)}")
 
     def equation(self, address: str) -> Equation:
-        """The equation at ``step.equation`` or ``model:step.equation``.
+        """Return the equation at the address ``step.equation`` or ``model:step.equation``.
 
         Raises
         ------
@@ -168,11 +168,11 @@ class Derivation:
         raise KeyError(f"{address}: the step has {', '.join(e.name for e in step.equations)}")
 
     def rhs(self, step: str) -> sp.Matrix:
-        """Right-hand sides of a step's equations, stacked as a column."""
+        """Return the right-hand sides of a step's equations as a column."""
         return sp.Matrix([e.rhs for e in self.step(step).equations])
 
     def extended(self, step: Step, *besides: Check) -> Derivation:
-        """This derivation with one more step, and checks that are made of any; those are not all that it has.
+        """Return this derivation with one more step, after the checks that every step has to pass.
 
         Raises
         ------
@@ -196,7 +196,7 @@ class Derivation:
 
 
 def resolved(equations: Sequence[Equation]) -> dict[sp.Symbol, sp.Expr]:
-    """Quantities in terms of states, controls and parameters alone: each may use those before it."""
+    """Return quantities in terms of states, controls and parameters; each may be stated by those before it."""
     found: dict[sp.Symbol, sp.Expr] = {}
     for equation in equations:
         found[equation.lhs] = equation.rhs.xreplace(found)

@@ -1,4 +1,4 @@
-"""Dimensions of expressions: exponents of base dimensions, exactly, and the rules that sums and products obey."""
+"""Dimensions of expressions as exact exponents of base dimensions, and the rules for sums, products and functions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
 
 Known: TypeAlias = Mapping[str, Dimension | None]
-"""Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
+"""Names of symbols with their dimensions; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
 _TOLD = {
@@ -26,7 +26,7 @@ _TOLD = {
 
 
 class Disagreement(Exception):
-    """An expression puts together what has different dimensions; the message goes on from "the expression ..."."""
+    """An expression combines different dimensions; the message continues "the expression ..."."""
 
     def __init__(self, kind: str, *parts: str) -> None:
         super().__init__(_TOLD[kind].format(*parts))
@@ -34,7 +34,7 @@ class Disagreement(Exception):
 
 
 def dimension_of(expression: Any, known: Known) -> Dimension | None:
-    """Dimension of an expression.
+    """Return the dimension of an expression.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
 
 
 def written(dimension: Dimension | None) -> str:
-    """A dimension for people, such as ``[length]/[time]^2``; ``1`` for a plain number."""
+    """Write a dimension for people, such as ``[length]/[time]^2``; ``1`` for a plain number."""
     above: list[str] = []
     below: list[str] = []
     for base, exponent in (dimension or PLAIN).items():
@@ -85,7 +85,7 @@ def _plain(expression: sp.Expr, known: Known, function: str = "") -> None:
 
 
 def _common(expressions: Iterable[sp.Expr], known: Known) -> Dimension | None:
-    """The one dimension of some expressions."""
+    """Return the dimension that all of some expressions have."""
     first, found = None, None
     for expression in expressions:
         dimension = dimension_of(expression, known)
@@ -99,7 +99,7 @@ def _common(expressions: Iterable[sp.Expr], known: Known) -> Dimension | None:
 
 
 def product(dimensions: Iterable[Dimension | None]) -> Dimension | None:
-    """The dimension of a product."""
+    """Return the dimension of a product."""
     total: dict[str, sp.Expr] = {}
     for dimension in dimensions:
         if dimension is None:
@@ -110,7 +110,7 @@ def product(dimensions: Iterable[Dimension | None]) -> Dimension | None:
 
 
 def power_of(dimension: Dimension | None, exponent: sp.Expr) -> Dimension | None:
-    """The dimension of a power."""
+    """Return the dimension of a power."""
     if dimension is None:
         return None
     exact = sp.nsimplify(exponent, rational=True)
@@ -118,7 +118,7 @@ def power_of(dimension: Dimension | None, exponent: sp.Expr) -> Dimension | None
 
 
 def over(dimension: Dimension | None, other: Dimension | None) -> Dimension | None:
-    """The dimension of a quotient."""
+    """Return the dimension of a quotient."""
     return product((dimension, power_of(other, sp.Integer(-1))))
 
 
@@ -149,7 +149,7 @@ def _of_argmin(e: sp.Expr, known: Known) -> Dimension | None:
 
 
 def _ends(e: sp.Expr) -> list[sp.Expr]:
-    """The ends of an interval that are finite: the first two arguments of what is sought in it."""
+    """Return the finite ends of an interval, which are the first two arguments of a minimiser over it."""
     return [end for end in e.args[:2] if not end.is_infinite]
 
 
@@ -165,7 +165,7 @@ def _of_stretch(e: sp.Expr, known: Known) -> Dimension | None:
 
 
 def _of_share(e: sp.Expr, known: Known) -> Dimension | None:
-    """A plain number, of a squared norm beside limits of the norm."""
+    """Check the arguments of a factor that shortens a vector to a norm, and return that it is a plain number."""
     norm_squared, *limits = e.args
     _common((norm_squared, *(limit**2 for limit in limits)), known)
     return PLAIN
@@ -194,4 +194,4 @@ _RULES: tuple[tuple[tuple[type, ...], Callable[[Any, Known], Dimension | None]],
     ((sp.atan2, roots.Bearing), _of_angle),
     ((sp.sign,), lambda _, __: PLAIN),
 )
-"""Classes of expressions, and the rule of each; what is in none of them needs plain numbers, and is one."""
+"""Classes of expressions with the rule for each; any other function takes and returns plain numbers."""

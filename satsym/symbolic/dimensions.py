@@ -1,7 +1,7 @@
 """Dimensional homogeneity: both sides of an equation, and all terms of a sum, have the same dimension.
 
-Units are those of the declared variables. A model whose variables are all plain numbers is taken as normalised,
-so that its time is a plain number, too.
+Dimensions follow from the units of the declared variables. A model whose variables are all plain numbers is taken as
+normalised, so that its time is a plain number, too.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from satsym.symbolic.principle.path import notation as path_notation
 from satsym.symbolic.switching import notation as switching_dimensions
 
 AGREEMENT = "dimensions agree"
-"""The claim of the check that every step gets."""
+"""The claim of the check of dimensions that every step has."""
 
 
 def declared(derivation: Derivation) -> Known:
-    """Dimensions of all symbols, from the units of the declared variables.
+    """Return the dimensions of all declared symbols, from the units of the variables.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def declared(derivation: Derivation) -> Known:
 
 
 def extended(known: Known, step: Step) -> Known:
-    """The dimensions, and those of symbols that a step defines: a new one alone on the left-hand side."""
+    """Return the dimensions with those of symbols that a step defines alone on a left-hand side."""
     found = dict(known)
     for equation in step.equations:
         if equation.lhs.is_Symbol and equation.lhs.name not in found and not equation.rhs.is_Matrix:
@@ -93,7 +93,7 @@ def extended(known: Known, step: Step) -> Known:
 
 
 def agreement(known: Known, step: Step) -> Check:
-    """Check that every equation of a step is homogeneous; its error is the number of those that are not."""
+    """Check that every equation of a step is homogeneous; the error counts the equations that are not."""
     known = extended(known, step)
 
     def agrees(lhs: sp.Expr, rhs: sp.Expr) -> bool:
@@ -150,7 +150,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
 
 
 def _units_dimension(problem: Problem) -> Dimension:
-    """Dimension of the unit that is stated of the objective."""
+    """Return the dimension of the unit that the problem states for its objective."""
     try:
         return of_unit(problem.unit)
     except BadInput as error:
@@ -158,7 +158,7 @@ def _units_dimension(problem: Problem) -> Dimension:
 
 
 def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
-    """Dimensions of declared variables, bounds and time."""
+    """Return the dimensions of declared variables, bounds and time."""
     model, problem = derivation.model, derivation.problem
     variables = list(variables_of(model))
     if problem:
@@ -174,7 +174,7 @@ def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
 
 
 def of_unit(unit: str) -> Dimension:
-    """Dimension of a unit, as pint reads it; ``"1"`` is that of a plain number.
+    """Return the dimension of a unit, as pint reads it; ``"1"`` is the unit of a plain number.
 
     Raises
     ------
@@ -187,12 +187,15 @@ def of_unit(unit: str) -> Dimension:
 
 
 def _right_side(step: Step, rhs: sp.Expr) -> sp.Expr:
-    """The right-hand side; of a conserved quantity, without the constants that the units in logarithms only shift."""
+    """Return the right-hand side of an equation whose dimension is checked.
+
+    From a conserved quantity, constants that only shift with the units inside logarithms are left out.
+    """
     return rhs.replace(sp.log, lambda _: sp.Integer(1)) if step.name == "conserved" else rhs
 
 
 def _words(what: str) -> tuple[str, ...]:
-    """Fields and symbols that a message may be about: "the rate of x" is about the field rates, and x."""
+    """Return the fields and symbols that a message is about, such as the field rates and x for "the rate of x"."""
     words = re.findall(r"\w+", what.partition(": ")[2])
     both = [*words, *(f"{first}_{second}" for first, second in itertools.pairwise(words))]
     return (*both, *(f"{word}s" for word in both))

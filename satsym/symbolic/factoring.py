@@ -1,7 +1,7 @@
-"""Factors of expressions, found by FLINT.
+"""Factorisation of expressions by FLINT.
 
-The result is that of :func:`sympy.factor`. Polynomials in many symbols take sympy up to a hundred times as long, and a
-few take it minutes, depending on the random numbers that it draws for the evaluation points of Wang's algorithm.
+The result is that of :func:`sympy.factor`. For polynomials in many symbols sympy takes up to a hundred times as long,
+and for a few it takes minutes, depending on the random evaluation points of Wang's algorithm.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def factored(expression: sp.Expr, fraction: sp.Expr | None = None) -> sp.Expr:
 
 
 def _roots(base: sp.Expr, exponent: sp.Rational) -> list[sp.Expr]:
-    """Factors of a root of a polynomial: those that are positive have roots of their own."""
+    """Return the factors of a root of a polynomial: positive factors have roots of their own."""
     content, found = factor_list(base)
     alone = [factor ** (times * exponent) for factor, times in found if factor.is_positive]
     rest = [factor**times for factor, times in found if not factor.is_positive]
@@ -69,7 +69,7 @@ def _roots(base: sp.Expr, exponent: sp.Rational) -> list[sp.Expr]:
 
 
 def factor_list(polynomial: sp.Expr) -> tuple[sp.Rational, list[tuple[sp.Expr, int]]]:
-    """Content and irreducible factors with multiplicities; each has a positive leading coefficient, as in sympy."""
+    """Return content and irreducible factors with multiplicities; leading coefficients are positive, as in sympy."""
     from flint import Ordering, fmpz_mpoly_ctx
 
     ring, poly = sring(polynomial)  # sparse: Poly has a place for each product of powers up to the highest ones

@@ -1,4 +1,4 @@
-"""What a derivation file states: physics and a cost. Declaring derives nothing."""
+"""Declarations of a derivation file: models with their physics, and problems with their costs."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from satsym.symbolic.motion.geometry import Picture
 
 MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
-"""A pure function from what has been derived to the next step; ``None`` where it does not apply to the model."""
+"""A pure function from a derivation to its next step; ``None`` where the step does not apply to the model."""
 
 Requirement: TypeAlias = "Callable[..., Dimension | None]"
-"""What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has."""
+"""A function that checks the dimension of a described expression, if it is required, and returns it."""
 
 Convention = Literal["minimum", "maximum"]
 """Form of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
@@ -53,7 +53,7 @@ class Output:
 
 @dataclass(frozen=True)
 class Demand:
-    """What parameters must obey together: the margin, a weighted sum of them, is not negative; or positive."""
+    """A condition on parameters: a weighted sum of them, the margin, must be non-negative or positive."""
 
     margin: sp.Expr
     reason: str
@@ -62,10 +62,10 @@ class Demand:
 
 @dataclass(frozen=True)
 class Line:
-    """One equation of a statement, whose right-hand side may be a vector: a column.
+    """An equation of a statement; its right-hand side may be a vector, that is a column.
 
-    Steps that follow from it call it `thing`; `address` is its name among the declared things where they are not just
-    counted; `left` is a symbol or LaTeX, with a word `index` at its foot.
+    Steps that follow from it call it `thing`; `address` is its name among the declarations, unless they are merely
+    counted; `left` is a symbol or LaTeX, with a word `index` as its subscript.
     """
 
     thing: str
@@ -76,12 +76,12 @@ class Line:
 
     @property
     def components(self) -> tuple[sp.Expr, ...]:
-        """The entries of the right-hand side where it is a vector; none where it is a number or a matrix."""
+        """Return the entries of the right-hand side where it is a vector; none where it is a number or a matrix."""
         return tuple(self.right) if isinstance(self.right, sp.MatrixBase) and self.right.cols == 1 else ()
 
     @property
     def rows(self) -> tuple[tuple[sp.Expr, ...], ...]:
-        """The rows of the right-hand side where it is a matrix; none where it is a number or a vector."""
+        """Return the rows of the right-hand side where it is a matrix; none where it is a number or a vector."""
         if not isinstance(self.right, sp.MatrixBase) or self.right.cols == 1:
             return ()
         return tuple(tuple(self.right.row(i)) for i in range(self.right.rows))
@@ -89,7 +89,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A sentence of a statement, by its key, the model that it names, and the equations it leads to."""
+    """A sentence of a statement: its key, the model that it names, and the equations it introduces."""
 
     sentence: str
     of: Model | None = None
@@ -98,7 +98,7 @@ class Paragraph:
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """What all models declare.
+    """The declarations that all kinds of models have.
 
     Parameters
     ----------
@@ -136,113 +136,119 @@ class Model:
     """Whether time is a plain number even though other variables have units."""
 
     along_chain: ClassVar[bool] = False
-    """Whether it can be derived from a motion whose rates have no closed form, but a chain that leads to them."""
+    """Whether this kind can be derived from a motion whose rates are a chain without closed form."""
 
     # What a kind of model says of itself; each has a default, so that a kind states only what it has.
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """What is derived, in order, up to a linearisation; ``first_order`` and ``linearisation`` must be among it."""
+        """List what is derived, in order, up to a linearisation.
+
+        The steps ``first_order`` and ``linearisation`` must be among them.
+        """
         return ()
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """As far as the first-order form: what models need that are derived from this motion. None: no other can be."""
+        """List the steps up to the first-order form, which models derived from this one need.
+
+        An empty list means that no other model can be derived from this one.
+        """
         return ()
 
     def origin(self) -> Model | None:
-        """The model from whose motion this one is derived."""
+        """Return the model from whose motion this one is derived."""
         return None
 
     def particle(self) -> Particle | None:
-        """The model itself where it states how a particle moves; ``None`` otherwise."""
+        """Return the model itself if it states how a particle moves; ``None`` otherwise."""
         return None
 
     def brings(self) -> tuple[Variable, ...]:
-        """Variables besides the declared ones; such as share a name with one of these are meant to be the same."""
+        """Return variables besides the declared ones; a declared variable with the same name is the same variable."""
         return ()
 
     def replaced_states(self) -> tuple[Variable, ...]:
-        """States of another motion that this model's stand in place of, under names of their own."""
+        """Return the states of another motion which the states of this model replace under other names."""
         return ()
 
     def replaced_controls(self) -> tuple[Variable, ...]:
-        """Likewise for controls."""
+        """Return the controls of another motion which the controls of this model replace under other names."""
         return ()
 
     def measured(self) -> tuple[Variable, ...]:
-        """The moving variables that outputs are functions of."""
+        """Return the moving variables of which outputs are functions."""
         return (*self.states, *self.controls)
 
     def carried(self) -> tuple[Output, ...]:
-        """Quantities derived along the motion, which a running cost may name."""
+        """Return the quantities derived along the motion, which a running cost may name."""
         origin = self.origin()
         return origin.carried() if origin else ()
 
     def demanded(self) -> tuple[Demand, ...]:
-        """What is demanded of the parameters that are here, by this model or by that whose motion it is."""
+        """Return the demands on the parameters of this model, by itself or by the model that it is derived from."""
         origin, own = self.origin(), set(symbols_of(self.parameters))
         of_origin = origin.demanded() if origin else ()
         return (*self.demands, *(d for d in of_origin if d.margin.free_symbols <= own))
 
     def followed(self) -> str:
-        """The parameter over which equilibria of an attitude are followed; empty where it is not one attitude."""
+        """Return the parameter over which equilibria of an attitude are followed; empty for other models."""
         return ""
 
     def direction_cosines(self) -> sp.Matrix | None:
-        """The matrix that direction cosines make, by the names under which steps state them; ``None`` without them."""
+        """Return the matrix of direction cosines, by the names under which steps state them; ``None`` without them."""
         return None
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
-        """What the modes of small motions are called, by the states that have the largest part in them."""
+        """Return the names of the modes of small motions, by the states that have the largest part in them."""
         return ()
 
     def rest(self, derived: Derivation) -> Rest | None:
-        """What turns it where it rests in orbit, by its derivation; ``None`` where it is not one attitude."""
+        """Return the torques on a body at rest in its orbit, from its derivation; ``None`` for other models."""
         return None
 
     def misfits(self) -> Iterable[str]:
-        """Complaints about declarations that do not fit together; the first one is raised."""
+        """Yield complaints about declarations that do not fit together; the first one is raised."""
         return ()
 
     def stated(self) -> Iterable[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """What was stated: a name for it, its expressions, and the symbols that these may have."""
+        """Yield what was stated: its name, its expressions, and the symbols that these may contain."""
         return ()
 
     def motion_stated(self) -> Iterable[Any]:
-        """The expressions that state the motion, by its own states and controls."""
+        """Return the expressions that state the motion, by its own states and controls."""
         return ()
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """Name -> LaTeX of all that the steps of this kind name."""
+        """Map the names of all quantities in the steps of this kind to LaTeX."""
         return {}
 
     def accelerations(self) -> tuple[str, ...]:
-        """Names of second derivatives, which are written before the controls."""
+        """Return the names of second derivatives, which are printed before the controls."""
         return ()
 
     def unit_vectors(self) -> tuple[str, ...]:
-        """Names of unit vectors, which are written last in a product."""
+        """Return the names of unit vectors, which are printed last in a product."""
         return ()
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of what the steps name, and refuse what is stated with others than it needs.
+        """Enter the dimensions of quantities that the steps name, and refuse statements with other dimensions.
 
-        Those of variables, time, rates and initial values are known.
+        The dimensions of variables, time, rates and initial values are known before.
         """
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """What a report states of the motion before anything is derived, besides variables, constants and outputs."""
+        """Return what a report states of the motion, besides variables, constants and outputs."""
         return ()
 
     def picture(self) -> Picture | None:
-        """Its geometry as a picture; ``None`` where it declares none that is known to be drawn."""
+        """Return the declared geometry as a picture; ``None`` where the model declares none that can be drawn."""
         return None
 
     def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
-        """What the address ``model:declared.name`` names, besides constants and costs; vectors as columns."""
+        """Return what ``model:declared.name`` names, besides constants and costs; vectors as columns."""
         return {}
 
     def sentences(self) -> Mapping[str, Mapping[str, Mapping[str, str]]]:
-        """Language -> table -> key -> text, for what this kind says and the texts of reports do not have."""
+        """Map language, table and key to the texts of this kind that the texts of reports do not contain."""
         return {}
 
 
@@ -265,7 +271,7 @@ class Particle(Model):
     forces: Mapping[str, sp.Matrix]
 
     def particle(self) -> Particle:
-        """Itself."""
+        """Return the model itself, which states how a particle moves."""
         return self
 
 
@@ -328,12 +334,12 @@ class Problem:
 
     @property
     def end_conditions(self) -> tuple[sp.Expr, ...]:
-        """All psi that may vanish at the final time, each with a multiplier: constraints, then inequalities."""
+        """Return all psi that may vanish at the final time, each with a multiplier: constraints, then inequalities."""
         return (*self.terminal_constraints, *self.terminal_inequalities.values())
 
 
 def variables_of(model: Model) -> tuple[Variable, ...]:
-    """Everything that a model declares, replaces and brings, each once."""
+    """Return every variable that a model declares, replaces and brings, each once."""
     found = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
     found += [o.variable for o in model.outputs]
     found += [*model.replaced_states(), *model.replaced_controls()]
@@ -343,11 +349,11 @@ def variables_of(model: Model) -> tuple[Variable, ...]:
 
 
 def with_origins(model: Model) -> tuple[Model, ...]:
-    """A model, the one from whose motion it is derived, and so on."""
+    """Yield a model, the one from whose motion it is derived, and so on."""
     origin = model.origin()
     return (model, *(with_origins(origin) if origin else ()))
 
 
 def translated(model: Model, language: str) -> dict[str, str]:
-    """Words of a model in a language, and of those from whose motion it is derived; its own go first."""
+    """Return the words of a model and of its origins in a language; its own words take precedence."""
     return {k: text for one in with_origins(model)[::-1] for k, text in one.translations.get(language, {}).items()}

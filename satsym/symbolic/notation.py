@@ -1,4 +1,4 @@
-"""Which symbols a derivation uses, and how those are typeset that every derivation has."""
+"""Symbols of derivations, and the LaTeX of those that every derivation has."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ AXES = ("x", "y", "z")
 
 
 def named(pattern: str) -> Callable[[sp.Symbol], sp.Symbol]:
-    """A family of symbols, one for each other symbol, by a pattern of names."""
+    """Return a family of symbols, one for each other symbol, with names by a pattern."""
     return lambda of: sp.Symbol(pattern.format(of.name), real=True)
 
 
 def component_of_angular_momentum(axis: str) -> sp.Symbol:
-    """The symbol for the angular momentum about an inertial axis."""
+    """Return the symbol for the angular momentum about an inertial axis."""
     return sp.Symbol(f"angular_momentum_{axis}", real=True)
 
 
@@ -73,19 +73,19 @@ _LETTER_AND_INDEX = re.compile(r"(\\[A-Za-z]+|[A-Za-z])_(?:\{([^{}]*)\}|(\w))")
 
 
 def indexed(latex: str, index: str) -> str:
-    """A symbol with an index, which joins the one that it may have: x_{1,0}."""
+    """Return LaTeX with one more index, which joins an index that is there: x_{1,0}."""
     found = _LETTER_AND_INDEX.fullmatch(latex)
     return rf"{found[1]}_{{{found[2] or found[3]},{index}}}" if found else rf"{{{latex}}}_{index}"
 
 
 def accented(accent: str, latex: str) -> str:
-    """A symbol under an accent, which leaves its index out."""
+    """Return LaTeX with an accent over the letter but not over its index."""
     found = _LETTER_AND_INDEX.fullmatch(latex)
     return rf"\{accent}{{{found[1]}}}_{{{found[2] or found[3]}}}" if found else rf"\{accent}{{{latex}}}"
 
 
 def barred(latex: str) -> str:
-    """A symbol under a bar."""
+    """Return LaTeX with a bar over the letter."""
     return accented("bar", latex)
 
 
@@ -94,13 +94,13 @@ _LETTER = re.compile(r"\\[A-Za-z]+|[A-Za-z]")
 
 
 def letter_of(latex: str) -> str:
-    """The letter of a symbol, without accents and indices."""
+    """Return the letter of a symbol's LaTeX, without accents and indices."""
     found = _LETTER.search(_DRESS.sub(" ", latex))
     return found[0] if found else ""
 
 
 def free_letter(letters: Iterable[str], variables: Iterable[Variable]) -> str:
-    """The first of some letters, in order of preference, that no variable has; the last if each has one."""
+    """Return the first of some letters, in order of preference, that no variable has; else the last."""
     taken, letter = {letter_of(v.latex) for v in variables}, ""
     for letter in letters:
         if letter not in taken:
@@ -109,7 +109,7 @@ def free_letter(letters: Iterable[str], variables: Iterable[Variable]) -> str:
 
 
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
-    """A real symbol, entered into the notation."""
+    """Return a real symbol, and enter it into the notation."""
     notation[name] = latex
     return sp.Symbol(name, real=True)
 
@@ -127,20 +127,20 @@ optimal = named("{}_star")
 unconstrained = named("{}_hat")
 """The symbol for the value of a control at which H_u vanishes."""
 given = named("given_{}")
-"""One where the final value of a state is given, else zero."""
+"""The number that is one where the final value of a state is given, and zero elsewhere."""
 on_reference = named("on_reference_{}")
-"""One where a state ends on its reference, else zero."""
+"""The number that is one where a state ends on its reference, and zero elsewhere."""
 target = named("target_{}")
 """The given final value of a state."""
 
 
 def is_solved(expression: sp.Expr) -> bool:
-    """Whether it is such a symbol as :func:`solved` gives."""
+    """Tell whether an expression is a symbol of the kind that :func:`solved` returns."""
     return bool(expression.is_Symbol) and expression.name.startswith("solved_")
 
 
 def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
-    """The multipliers of terminal constraints and inequalities."""
+    """Return the multipliers of terminal constraints and inequalities."""
     return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.end_conditions) + 1))
 
 

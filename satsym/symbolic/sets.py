@@ -1,4 +1,4 @@
-"""Sets of admissible controls as a derivation file states them; their numbers are those of an instance."""
+"""Sets of admissible controls as a derivation file states them; an instance gives their numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from satsym.control_part import PartKind
 
 @dataclass(frozen=True, init=False)
 class AdmissibleSet:
-    """A set of controls, which are named; the control set is the product of such sets.
+    """A set of admissible values of named controls; the control set is the product of such sets.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Free(AdmissibleSet):
 
 
 class Box(AdmissibleSet):
-    """Each control between its bounds: ``u = [lower, upper]`` in the ``[control]`` of an instance."""
+    """The box of controls, each between its bounds: ``u = [lower, upper]`` in the ``[control]`` of an instance."""
 
     kind = "box"
 

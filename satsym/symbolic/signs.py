@@ -1,8 +1,8 @@
-"""What sympy finds out of itself about the sign of a sum, kept from what takes it hours.
+"""A limit on sympy's search for the sign of a sum, which may take hours.
 
-Wherever zero times something is written, sympy asks whether that is finite, thus whether what it divides by may vanish.
-For a polynomial in one symbol of known sign it then takes all roots of the derivative, by way of the prime factors of
-its coefficients. Those of decimals have hundreds of digits.
+Wherever zero times something is written, sympy asks whether that is finite, thus whether a divisor may vanish. For a
+polynomial in one symbol of known sign it then finds all roots of the derivative, by way of the prime factors of the
+coefficients. Coefficients that were decimals have hundreds of digits.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import sympy as sp
 from sympy.core import exprtools
 
 LARGEST_COEFFICIENT = 2**64
-"""Coefficient of a polynomial, in whole numbers, whose roots are asked for."""
+"""Largest whole coefficient of a polynomial whose roots sympy may seek to find its sign."""
 
 _sign = exprtools._monotonic_sign
 
 
 def keep_short() -> None:
-    """Let sympy answer from now on that it does not know the signs of polynomials with long coefficients.
+    """Make sympy answer that it does not know the signs of polynomials with long coefficients.
 
-    That is an answer it gives to most sums; nothing may rely on more.
+    Sympy gives this answer for most sums, and nothing may rely on more.
     """
     exprtools._monotonic_sign = _sign_or_none
 
@@ -29,7 +29,7 @@ def _sign_or_none(expression: sp.Expr) -> sp.Expr | None:
 
 
 def _has_long_coefficients(expression: sp.Expr) -> bool:
-    """Whether this is a polynomial in one symbol, of degree three or more, with long coefficients."""
+    """Tell whether an expression is a polynomial in one symbol, of degree at least three, with long coefficients."""
     free = expression.free_symbols
     if not expression.is_Add or len(free) != 1 or not expression.is_polynomial(*free):
         return False

@@ -1,4 +1,4 @@
-"""A limit of the time that a derivation takes: algebra may go on for ever, and says so nowhere."""
+"""A time limit for derivations, since algebra may go on for ever without any message."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ SIGNAL_INTERVAL = 0.5
 """Seconds between repetitions of the signal, for code that swallowed it."""
 
 _at: list[tuple[str, str]] = []
-"""What is being derived, and the step it is in."""
+"""The subject that is being derived, and its current step."""
 
 _deadlines: list[float] = []
 
 
 class _TimeUp(BaseException):
-    """Nothing that handles errors of algebra handles it."""
+    """Raised when time is over; not an Exception, so that no handler of algebraic errors catches it."""
 
 
 def entering(subject: str, step: str) -> None:
-    """Note what is being done; where no signal can come, this is where the time is looked at."""
+    """Record the step that begins; where no signal can come, check the time."""
     _at[:] = [(subject, step)]
     if _deadlines and time.monotonic() > _deadlines[-1]:
         raise _TimeUp
@@ -33,7 +33,7 @@ def entering(subject: str, step: str) -> None:
 
 @contextmanager
 def within(seconds: float | None, subject: str) -> Iterator[None]:
-    """Whatever is derived in here ends in time.
+    """Limit the time of every derivation inside this context.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def within(seconds: float | None, subject: str) -> Iterator[None]:
 
 @contextmanager
 def _timer(seconds: float) -> Iterator[None]:
-    """A signal that comes when the time is over, and again until it is heard."""
+    """Send a signal when the time is over, and repeat it until it is handled."""
     alone = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
     if not alone or signal.getsignal(signal.SIGALRM) is not signal.SIG_DFL:
         yield

@@ -1,4 +1,4 @@
-"""What no derivation goes on from: values at other times, unknown functions, integrals, conditions on states."""
+"""Expressions that derivations refuse: values at other times, unknown functions, integrals, conditions on states."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def unknown_functions(e: sp.Basic) -> list[str]:
 
 
 def complaint(e: sp.Basic, moving: Collection[sp.Symbol], magnitudes: Collection[sp.Expr]) -> str:
-    """What is wrong with an expression and what to do about it, or nothing.
+    """Describe what is wrong with an expression and what to do about it; empty if nothing is.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def _first(e: sp.Basic, *kinds: type) -> sp.Basic | None:
 
 
 def _unknown(found: sp.Basic, moving: Collection[str]) -> str:
-    """What is wrong with a function that nobody defined."""
+    """Describe what is wrong with a function that nobody defined."""
     name = found.func.__name__
     if name not in moving:
         return (

@@ -1,4 +1,4 @@
-"""A matrix taken apart: invariant subspaces by factors of its characteristic polynomial, Jordan and companion form.
+"""Decomposition of a matrix into invariant subspaces of its characteristic factors; Jordan form and companion form.
 
 On the subspace of an irreducible factor f, A is the sum of two commuting matrices: S, which obeys f(S) = 0 and has
 no Jordan blocks but single ones, and N, a power of which vanishes (the Jordan-Chevalley decomposition). Projector,
@@ -19,19 +19,22 @@ from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum
 
 @dataclass(frozen=True)
 class Component:
-    """What belongs to one factor; all matrices vanish on the other subspaces."""
+    """The part of a matrix that belongs to one factor of its characteristic polynomial.
+
+    All matrices of a component vanish on the invariant subspaces of the other factors.
+    """
 
     factor: Factor
-    """The factor."""
+    """The factor of the characteristic polynomial."""
     projector: DomainMatrix
-    """The projector onto its subspace."""
+    """The projector onto the component's invariant subspace."""
     semisimple: DomainMatrix
     nilpotent: DomainMatrix
-    """S and N there; their sum is A times the projector."""
+    """The matrices S and N of the component; their sum is A times the projector."""
 
     @property
     def nilpotent_powers(self) -> list[DomainMatrix]:
-        """The projector, N, N^2, ... as far as they do not vanish."""
+        """Return the projector, N, N^2, ... up to the last power of N that does not vanish."""
         found = [self.projector]
         for _ in range(max(self.factor.blocks) - 1):
             found.append(found[-1] * self.nilpotent)
@@ -39,12 +42,12 @@ class Component:
 
 
 def components(of: Spectrum) -> tuple[Component, ...]:
-    """The components of a matrix, factor by factor; their projectors add up to the identity."""
+    """Return the components of a matrix, one for each factor; their projectors add up to the identity."""
     return tuple(_component(of, factor) for factor in of.factors)
 
 
 def images(matrix: DomainMatrix, vector: DomainMatrix, count: int) -> list[DomainMatrix]:
-    """w, M w, M^2 w, ...; ``count`` of them."""
+    """Return the columns w, M w, M^2 w, ... for a vector w and a matrix M, ``count`` of them."""
     found = [vector]
     for _ in range(count - 1):
         found.append(matrix * found[-1])
@@ -54,7 +57,10 @@ def images(matrix: DomainMatrix, vector: DomainMatrix, count: int) -> list[Domai
 def eigenvector(
     field: Field, factor: Factor, root: sp.Expr, matrix: DomainMatrix, vector: DomainMatrix
 ) -> sp.ImmutableMatrix:
-    """An eigenvector to a root of a factor f of a matrix M, from a vector w with f(M) w = 0: f(M)/(M - root) w."""
+    """Return an eigenvector of a matrix M for a root of a factor f, from a vector w with f(M) w = 0.
+
+    It is f(M)/(M - root) w.
+    """
     weights: list[sp.Expr] = []
     for coefficient in factor.coefficients[:-1]:
         weights.append(sp.expand((weights[-1] if weights else 0) * root + coefficient))
@@ -65,13 +71,13 @@ def eigenvector(
 
 
 def whole(field: Field, vector: DomainMatrix) -> DomainMatrix:
-    """A multiple of a column without denominators."""
+    """Multiply a column by its common denominator, so that no entry has a denominator."""
     denominators = [sp.fraction(field.domain.to_sympy(row[0]))[1] for row in vector.to_dense().to_list()]
     return vector * field.domain.from_sympy(sp.lcm([sp.Integer(1), *denominators]))
 
 
 def without_common_factor(vectors: Sequence[sp.MatrixBase]) -> list[sp.ImmutableMatrix]:
-    """Vectors divided by what all their entries have in common; as they are where there are roots of sums."""
+    """Divide vectors by the common factor of all their entries; leave them where entries have roots of sums."""
     entries = [e for vector in vectors for e in vector if e != 0]
     if not entries or any(not e.is_rational_function(*e.free_symbols) for e in entries):
         return [sp.ImmutableMatrix(v) for v in vectors]
@@ -95,7 +101,7 @@ def _component(of: Spectrum, factor: Factor) -> Component:
 
 
 def _newton(f: sp.Poly, power: sp.Poly) -> sp.Poly:
-    """The polynomial that is a root of f modulo a power of f, and s modulo f itself: Newton's method."""
+    """Return, by Newton's method, the polynomial that is a root of f modulo a power of f, and s modulo f itself."""
     root = sp.Poly(LAMBDA, LAMBDA, domain=f.domain).rem(power)
     while not (value := f.compose(root).rem(power)).is_zero:
         slope = f.diff(LAMBDA).compose(root).rem(power)
@@ -105,7 +111,7 @@ def _newton(f: sp.Poly, power: sp.Poly) -> sp.Poly:
 
 @dataclass(frozen=True)
 class JordanBlock:
-    """An eigenvalue and the size of one of its blocks."""
+    """An eigenvalue and the size of one of its Jordan blocks."""
 
     eigenvalue: sp.Expr
     size: int
@@ -113,18 +119,18 @@ class JordanBlock:
 
 @dataclass(frozen=True)
 class JordanForm:
-    """A T = T J."""
+    """The Jordan form J of a matrix A with a basis T, so that A T = T J."""
 
     blocks: tuple[JordanBlock, ...]
     """Jordan blocks in the order in which they stand in J."""
     form: sp.ImmutableMatrix
-    """J, with ones above the diagonal."""
+    """The Jordan matrix J, with ones above the diagonal."""
     basis: sp.ImmutableMatrix
-    """T: eigenvectors and generalised eigenvectors as columns, those of a block from the eigenvector up."""
+    """The matrix T of eigenvectors and generalised eigenvectors; each block begins with its eigenvector."""
 
 
 def jordan_form(of: Spectrum) -> JordanForm | None:
-    """The Jordan form; ``None`` where an eigenvalue has no closed form."""
+    """Return the Jordan form of a matrix; ``None`` where an eigenvalue has no closed form."""
     if not of.closed_form:
         return None
     blocks: list[JordanBlock] = []
@@ -141,9 +147,9 @@ def jordan_form(of: Spectrum) -> JordanForm | None:
 
 
 def _chains(field: Field, component: Component) -> list[list[DomainMatrix]]:
-    """N^(k-1) w, ..., N w, w for each block of size k, the same for all roots of the factor.
+    """Return the Jordan chains N^(k-1) w, ..., N w, w, one for each block of size k of the factor.
 
-    Chains are independent if their first vectors are, together with what S makes of these.
+    Chains are independent if their first vectors are, together with the images of these under S.
     """
     size = component.projector.shape[0]
     outside = DomainMatrix.eye(size, field.domain).to_dense() - component.projector
@@ -166,23 +172,29 @@ def _chains(field: Field, component: Component) -> list[list[DomainMatrix]]:
 
 @dataclass(frozen=True)
 class CompanionForm:
-    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector."""
+    """A basis T in which one input drives a chain of integrators.
+
+    T^-1 A T is ``matrix``, and T^-1 b is the last unit vector.
+    """
 
     matrix: sp.ImmutableMatrix
     """The companion matrix of the characteristic polynomial."""
     basis: sp.ImmutableMatrix
-    """T."""
+    """The matrix T of the change of basis."""
 
 
 def companion_matrix(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-    """The companion matrix of a monic polynomial, given highest power first: ones above the diagonal, then -a_k."""
+    """Return the companion matrix of a monic polynomial: ones above the diagonal, the last row -a_k.
+
+    Coefficients are given highest power first.
+    """
     size = len(coefficients) - 1
     last = [-c for c in reversed(list(coefficients)[1:])]
     return sp.ImmutableMatrix(size, size, lambda i, j: last[j] if i == size - 1 else sp.Integer(int(j == i + 1)))
 
 
 def companion_form(of: Spectrum, b: sp.MatrixBase) -> CompanionForm | None:
-    """The companion form for one input; ``None`` if the input does not reach everything.
+    """Return the companion form for one input; ``None`` if that input does not control all states.
 
     Parameters
     ----------

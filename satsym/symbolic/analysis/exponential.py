@@ -12,9 +12,9 @@ from satsym.symbolic.model import t
 
 
 def matrix_exponential(of: Spectrum) -> sp.ImmutableMatrix | None:
-    """e^(At), real; ``None`` where an eigenvalue has no closed form.
+    """Return e^(At) in real form; ``None`` where an eigenvalue has no closed form.
 
-    Of a pair of eigenvalues that the parameters make real or complex, the hyperbolic functions are taken; their
+    For a pair of eigenvalues that is real or complex depending on parameters, hyperbolic functions are written; their
     values are right in both cases.
     """
     if not of.closed_form:
@@ -27,7 +27,7 @@ def matrix_exponential(of: Spectrum) -> sp.ImmutableMatrix | None:
 
 
 def _part(field: Field, component: Component) -> sp.Matrix:
-    """e^(St) e^(Nt) on the subspace of a factor."""
+    """Return e^(St) e^(Nt) on the invariant subspace of a factor."""
     found = sp.zeros(*component.projector.shape)
     for k, power in enumerate(component.nilpotent_powers):
         growth = t**k / sp.factorial(k)
@@ -37,7 +37,7 @@ def _part(field: Field, component: Component) -> sp.Matrix:
 
 
 def _simple(field: Field, component: Component) -> list[tuple[sp.Expr, sp.MatrixBase]]:
-    """e^(St) as a sum of functions of time times matrices."""
+    """Return e^(St) as a sum of functions of time times matrices."""
     factor, s, one = component.factor, component.semisimple, component.projector
     if factor.degree == 1:
         return [(sp.exp(factor.roots[0] * t), one)]
@@ -52,7 +52,7 @@ def _simple(field: Field, component: Component) -> list[tuple[sp.Expr, sp.Matrix
 
 
 def _pair(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """cosh(d t) and sinh(d t)/d for the root d of ``square``, written for what its sign is."""
+    """Return cosh(d t) and sinh(d t)/d for the root d of ``square``, with sines where the square is negative."""
     if sign_of(square) == -1:
         frequency = sp.sqrt(factored(-square))
         return sp.cos(frequency * t), sp.sin(frequency * t) / frequency
@@ -61,9 +61,9 @@ def _pair(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 
 
 def _biquadratic(field: Field, component: Component) -> list[tuple[sp.Expr, sp.MatrixBase]]:
-    """e^(St) where f(S) = S^4 + p S^2 + q = 0: the sum over the roots r of e^(rt) f(S) / ((S - r) f'(r)).
+    """Return e^(St) where f(S) = S^4 + p S^2 + q = 0, as a sum over the roots r of f.
 
-    The roots r and -r are taken together, so that only y = r^2 matters.
+    The summands are e^(rt) f(S) / ((S - r) f'(r)). The roots r and -r are taken together, so that only y = r^2 matters.
     """
     s, one = component.semisimple, component.projector
     p, q = (field.shown(c) for c in component.factor.polynomial.all_coeffs()[2::2])
@@ -87,7 +87,7 @@ def _biquadratic(field: Field, component: Component) -> list[tuple[sp.Expr, sp.M
 
 
 def _tidied(entry: sp.Expr) -> sp.Expr:
-    """An entry as a sum over the functions of time, each with its shortest coefficient."""
+    """Write an entry as a sum over its functions of time, each with its shortest coefficient."""
     functions = sorted((f for f in entry.atoms(sp.Function, sp.exp) if f.has(t)), key=sp.default_sort_key)
     return sp.Add(
         *(basis * shortest(c) for basis, c in sp.collect(sp.expand(entry), functions, evaluate=False).items())

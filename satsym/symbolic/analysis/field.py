@@ -1,7 +1,7 @@
-"""Exact arithmetic: matrices over the rational functions of the parameters, and what signs are certain.
+"""Exact arithmetic: matrices over the rational functions of the parameters, and signs that are certain.
 
-Everything here is exact. A rank, a factor or a zero over this field holds for all values of the parameters but
-those at which something that was divided by vanishes; :func:`sign_of` says which of these cannot occur.
+A rank, a factor or a zero over this field holds for all values of the parameters, except those at which a divisor
+vanishes; :func:`sign_of` tells which divisors cannot vanish.
 """
 
 from __future__ import annotations
@@ -19,43 +19,43 @@ from satsym.symbolic.factoring import factor_list, factored
 
 
 class NotExact(ValueError):
-    """Entries that exact linear algebra does not reach; the message says which."""
+    """The entries of a matrix are beyond exact linear algebra; the message says which and why."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """The field that the entries of some matrices lie in."""
+    """The field of rational functions that contains the entries of some matrices."""
 
     domain: Any
-    """Its elements, as sympy's polynomials know them."""
+    """The domain of sympy to which the elements belong."""
     restore: dict[sp.Symbol, sp.Expr]
-    """Symbols that stand for roots of parameters -> what they stand for."""
+    """Symbols that replace roots of parameters, with the roots."""
 
     def element(self, expression: sp.Expr) -> Any:
-        """An expression over the field as an element of it."""
+        """Convert an expression to an element of the field."""
         roots = {power.base: symbol ** (1 / power.exp) for symbol, power in self.restore.items()}
         return self.domain.from_sympy(expression.xreplace(roots))
 
     def expression(self, element: Any) -> sp.Expr:
-        """An element as an expression in its shortest form."""
+        """Convert an element of the field to an expression in its shortest form."""
         return self.shown(self.domain.to_sympy(element))
 
     def shown(self, expression: sp.Expr) -> sp.Expr:
-        """An expression over the field, in its shortest form and with the roots of parameters written as such."""
+        """Return an expression in its shortest form, with roots of parameters written as roots."""
         return shortest(expression).xreplace(self.restore)
 
     def matrix(self, found: DomainMatrix) -> sp.ImmutableMatrix:
-        """A matrix over the field as one of expressions."""
+        """Convert a matrix over the field to a matrix of expressions."""
         rows, columns = found.shape
         entries = [[self.expression(e) for e in row] for row in found.to_dense().to_list()]
         return sp.ImmutableMatrix(rows, columns, [e for row in entries for e in row])
 
     def polynomial(self, coefficients: Iterable[Any], symbol: sp.Symbol) -> sp.Poly:
-        """A polynomial over the field, from its coefficients, highest power first."""
+        """Return a polynomial over the field from its coefficients, highest power first."""
         return sp.Poly.from_list(list(coefficients), symbol, domain=self.domain)
 
     def at(self, polynomial: sp.Poly, matrix: DomainMatrix) -> DomainMatrix:
-        """A polynomial of a square matrix, by Horner's rule."""
+        """Evaluate a polynomial at a square matrix by Horner's rule."""
         size = matrix.shape[0]
         one = DomainMatrix.eye(size, self.domain).to_dense()
         value = DomainMatrix.zeros((size, size), self.domain).to_dense()
@@ -65,7 +65,7 @@ class Field:
 
 
 def exact(*matrices: sp.MatrixBase) -> tuple[Field, list[DomainMatrix]]:
-    """The field of some matrices, and the matrices over it. Decimal numbers count as the fractions they are written as.
+    """Return the field of some matrices, and the matrices over it; decimal numbers are read as exact fractions.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def exact(*matrices: sp.MatrixBase) -> tuple[Field, list[DomainMatrix]]:
 
 @lru_cache(maxsize=4096)  # matrices repeat their entries
 def shortest(expression: sp.Expr) -> sp.Expr:
-    """The shortest of the usual ways to write an expression."""
+    """Return the shortest of the usual ways to write an expression."""
     if expression.is_Atom:
         return expression
     whole = sp.cancel(expression) if expression.is_rational_function() else expression
@@ -101,10 +101,10 @@ def shortest(expression: sp.Expr) -> sp.Expr:
 
 
 def sign_of(expression: sp.Expr) -> int | None:
-    """1, -1 or 0 where the sign is the same for all values that the symbols may take; ``None`` where it is not known.
+    """Return 1, -1 or 0 where an expression has that sign for all values of its symbols; ``None`` where unknown.
 
-    A sum whose terms all have the same sign has that sign; products and quotients follow. What is positive because
-    of a difference is not found out, unless sympy knows.
+    A sum whose terms all have the same sign has that sign; products and quotients follow from their factors. An
+    expression that is positive because of a difference is recognised only where sympy knows it.
     """
     e = sp.sympify(expression)
     if e.is_number:
@@ -115,15 +115,15 @@ def sign_of(expression: sp.Expr) -> int | None:
 
 
 def never_zero(expression: sp.Expr) -> bool:
-    """Whether the expression is certainly not zero, whatever values its symbols take."""
+    """Tell whether an expression is certainly not zero, whatever the values of its symbols."""
     content, factors = factor_list(sp.fraction(sp.together(expression))[0])
     return content != 0 and all(bool(sign_of(f)) or f.is_nonzero for f, _ in factors)
 
 
 def certain_rank(matrix: sp.MatrixBase) -> tuple[int, tuple[sp.Expr, ...]]:
-    """The rank of a matrix, and what must not vanish for it to hold: empty where it holds for all parameters.
+    """Return the rank of a matrix, and the expressions that must not vanish for this rank to hold.
 
-    Elimination prefers pivots that cannot vanish.
+    The list is empty where the rank holds for all parameters. Elimination prefers pivots that cannot vanish.
     """
     field, (found,) = exact(matrix)
     rows = [list(row) for row in found.to_list()]
@@ -177,7 +177,7 @@ def _rational_numbers(entry: sp.Expr) -> sp.Expr:
 
 
 def _roots(entries: Sequence[sp.Expr]) -> dict[sp.Symbol, tuple[sp.Symbol, int]]:
-    """Positive symbols of which roots are taken -> a symbol for the root, and which root it is."""
+    """Map positive symbols under roots to a symbol for the root and its degree."""
     found: dict[sp.Symbol, int] = {}
     for entry in entries:
         for power in entry.atoms(sp.Pow):

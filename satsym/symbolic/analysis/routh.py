@@ -27,41 +27,44 @@ ZERO_ELEMENT, ZERO_ROW = "zero in the first column", "row of zeros"
 
 
 def small(k: int) -> sp.Symbol:
-    """The positive number that stands in the k-th vanishing element; smaller than any power of those before it."""
+    """Return the symbol of the positive number that replaces the k-th vanishing element of a Routh array.
+
+    It counts as smaller than any power of those before it.
+    """
     return sp.Symbol(f"epsilon_{k}", positive=True)
 
 
 @dataclass(frozen=True)
 class RouthArray:
-    """The Routh array of a polynomial."""
+    """The Routh array of a polynomial, with the special cases that occurred."""
 
     rows: tuple[tuple[sp.Expr, ...], ...]
-    """One row for each power, the highest first."""
+    """The rows of the array, one for each power of s, the highest first."""
     special_cases: tuple[str, ...]
-    """:data:`ZERO_ELEMENT` and :data:`ZERO_ROW`, as often as they occur and in this order of occurrence."""
+    """The special cases in order of occurrence: :data:`ZERO_ELEMENT` and :data:`ZERO_ROW`."""
     auxiliary: tuple[tuple[sp.Expr, ...], ...]
-    """The polynomials (coefficients, highest power first) whose derivatives took the place of rows of zeros."""
+    """The polynomials (coefficients, highest power first) whose derivatives replaced rows of zeros."""
     signs: tuple[int | None, ...]
     """Signs of the first column as the small numbers tend to zero; ``None`` where the parameters decide."""
     right: int | None
     axis: int | None
     left: int | None
-    """Number of roots with positive, zero and negative real parts, counted with multiplicity; ``None`` where the
-    parameters decide."""
+    """Numbers of roots with positive, zero and negative real parts, counted with multiplicity; ``None`` where they
+    depend on parameters."""
 
     @property
     def column(self) -> tuple[sp.Expr, ...]:
-        """The first column."""
+        """Return the first column of the Routh array."""
         return tuple(row[0] for row in self.rows)
 
     @property
     def sign_changes(self) -> int | None:
-        """Changes of sign down the first column: the number of roots with a positive real part."""
+        """Count changes of sign down the first column: the number of roots with a positive real part."""
         return _changes(self.signs)
 
     @property
     def special_case(self) -> str | None:
-        """The special cases in words, each once; ``None`` where there is none."""
+        """Name the special cases that occurred, each once; ``None`` where there was none."""
         return " and ".join(dict.fromkeys(self.special_cases)) or None
 
 
@@ -104,7 +107,7 @@ def routh(coefficients: Sequence[Any]) -> RouthArray:
 
 
 class _Array:
-    """The array under construction: lines of elements, each for every other power of s.
+    """A Routh array under construction: rows of elements, each for every other power of s.
 
     The elements lie in the field of the coefficients, from the first small number on in its extension by those.
     """
@@ -118,7 +121,7 @@ class _Array:
         self.auxiliary: list[tuple[sp.Expr, ...]] = []
 
     def extend(self, quotient: sp.Poly, divisor: sp.Poly, scale: Any) -> Any:
-        """Add the array of ``scale * quotient * divisor``, but for a first line that is there; its last multiplier."""
+        """Append the rows for ``scale * quotient * divisor`` after the first row; return the last multiplier."""
         whole = quotient.rep.to_list()
         lines = [whole[k::2] for k in (0, 1)] if len(whole) > 1 else [whole]
         while len(lines) < len(whole):
@@ -138,12 +141,12 @@ class _Array:
         self.auxiliary.append(tuple(shown))
 
     def expressions(self, line: Sequence[Any], width: int = 0) -> list[sp.Expr]:
-        """The elements as expressions, filled up with zeros to a width."""
+        """Return the elements of a row as expressions, padded with zeros to a width."""
         found = [self.field.shown(self.domain.to_sympy(self._convert(e))) for e in line]
         return found + [sp.Integer(0)] * (width - len(found))
 
     def _with_small_number(self, lines: list[list[Any]]) -> list[list[Any]]:
-        """The lines, with a small number in the last one's first place if that is zero."""
+        """Return the rows, with a small number in place of a zero at the beginning of the last one."""
         if lines[-1][0]:
             return lines
         self.small.append(small(len(self.small) + 1))
@@ -161,7 +164,7 @@ class _Array:
         return found
 
     def _convert(self, element: Any) -> Any:
-        """An element in the present domain; sympy itself finds no way from a field of fractions into one over it."""
+        """Convert an element to the present domain; sympy cannot convert between fields of fractions itself."""
         base = self.field.domain
         if self.domain is self.extension and base.is_FractionField and getattr(element, "field", None) == base.field:
             return self.extension.field.ground_new(element)
@@ -169,12 +172,12 @@ class _Array:
 
 
 def _symmetric_part(polynomial: sp.Poly) -> sp.Poly:
-    """The monic greatest common divisor of p(s) and p(-s)."""
+    """Return the monic greatest common divisor of p(s) and p(-s)."""
     return sp.gcd(polynomial, polynomial.compose(sp.Poly(-ROOT, ROOT, domain=polynomial.domain))).monic()
 
 
 def _limit_sign(element: sp.Expr, numbers: Sequence[sp.Symbol]) -> int | None:
-    """The sign of an element as the small numbers tend to zero, the last one first."""
+    """Return the sign of an element as the small numbers tend to zero, the last one first."""
     sign: int | None = 1
     for part in sp.fraction(sp.cancel(element)):
         for number in reversed(numbers):
@@ -186,6 +189,6 @@ def _limit_sign(element: sp.Expr, numbers: Sequence[sp.Symbol]) -> int | None:
 
 
 def _changes(signs: Sequence[int | None]) -> int | None:
-    """Changes of sign; ``None`` if any sign is not known."""
+    """Count changes in a list of signs; ``None`` if any sign is unknown."""
     known = [s for s in signs if s is not None]
     return sum(a != b for a, b in pairwise(known)) if len(known) == len(signs) else None

@@ -1,7 +1,7 @@
-"""Eigenvalues in closed form, and the sizes of their Jordan blocks, without leaving the field of the entries.
+"""Eigenvalues in closed form, and the sizes of their Jordan blocks, computed in the field of the entries.
 
-The characteristic polynomial is factored over the rational functions of the parameters. All roots of one
-irreducible factor f have blocks of the same sizes, which the ranks of f(A), f(A)^2, ... tell.
+The characteristic polynomial is factored over the rational functions of the parameters. All roots of one irreducible
+factor f have blocks of the same sizes, which follow from the ranks of f(A), f(A)^2, ...
 """
 
 from __future__ import annotations
@@ -18,30 +18,31 @@ from satsym.symbolic.analysis.routh import routh
 from satsym.symbolic.factoring import factored
 
 LAMBDA = sp.Symbol("eigenvalue")
-"""What characteristic polynomials are polynomials in."""
+"""The variable of characteristic polynomials."""
 
 
 @dataclass(frozen=True)
 class Factor:
-    """An irreducible factor of the characteristic polynomial."""
+    """An irreducible factor of a characteristic polynomial, with its multiplicity and its roots."""
 
     polynomial: sp.Poly
-    """Monic, in :data:`LAMBDA`, over the field of the entries."""
+    """The factor as a monic polynomial in :data:`LAMBDA` over the field of the entries."""
     coefficients: tuple[sp.Expr, ...]
     """Coefficients of the polynomial as expressions, highest power first."""
     blocks: tuple[int, ...]
     """Sizes of the Jordan blocks of each of its roots, the largest first."""
     roots: tuple[sp.Expr, ...]
-    """Its roots: closed forms, or sympy's numbered roots of a polynomial with known coefficients; empty where there is
-    no closed form."""
+    """The roots of the factor in closed form, or sympy's numbered roots of a polynomial with known coefficients; empty
+    where there is no closed form."""
     right: int | None
     axis: int | None
     left: int | None
-    """Number of its roots with positive, zero and negative real parts; ``None`` where the parameters decide."""
+    """Numbers of the factor's roots with positive, zero and negative real parts; ``None`` where they depend on
+    parameters."""
 
     @property
     def degree(self) -> int:
-        """How many roots it has."""
+        """Return the number of roots of this factor."""
         return int(self.polynomial.degree())
 
 
@@ -53,29 +54,29 @@ class Eigenvalue:
     """Eigenvalue in closed form."""
     algebraic: int
     geometric: int
-    """Multiplicity as a root of the characteristic polynomial, and number of independent eigenvectors."""
+    """The multiplicity as a root of the characteristic polynomial, and the number of independent eigenvectors."""
     blocks: tuple[int, ...]
-    """Sizes of its Jordan blocks, the largest first."""
+    """Sizes of the eigenvalue's Jordan blocks, the largest first."""
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """What the characteristic polynomial of a square matrix says."""
+    """The characteristic polynomial of a square matrix, its factors and its eigenvalues."""
 
     field: Field
     matrix: DomainMatrix
-    """The matrix, exactly."""
+    """The matrix in exact arithmetic."""
     coefficients: tuple[sp.Expr, ...]
     """Coefficients of the characteristic polynomial det(s I - A), which is monic, highest power first."""
     factors: tuple[Factor, ...]
-    """Its irreducible factors, by degree and then by name."""
+    """The irreducible factors of the characteristic polynomial, by degree and then by name."""
     assumed: tuple[sp.Expr, ...]
-    """What is taken not to vanish, where that is not certain: the parameters at which eigenvalues of different factors
-    meet, or a factor's own roots."""
+    """Expressions assumed not to vanish: they are zero where eigenvalues of different factors coincide, or roots of one
+    factor."""
 
     @property
     def polynomial(self) -> sp.Expr:
-        """The characteristic polynomial in :data:`LAMBDA`."""
+        """Return the characteristic polynomial in the variable :data:`LAMBDA`."""
         return polynomial_of(self.coefficients, LAMBDA)
 
     @property
@@ -115,7 +116,7 @@ def _spectrum(a: sp.ImmutableMatrix) -> Spectrum:
 
 
 def polynomial_of(coefficients: tuple[sp.Expr, ...], symbol: sp.Symbol) -> sp.Expr:
-    """The polynomial with these coefficients, highest power first."""
+    """Return the polynomial with the given coefficients, highest power first."""
     highest = len(coefficients) - 1
     return sp.Add(*(c * symbol ** (highest - k) for k, c in enumerate(coefficients)))
 
@@ -135,7 +136,10 @@ def _factor(field: Field, matrix: DomainMatrix, polynomial: sp.Poly, multiplicit
 
 
 def _block_sizes(field: Field, matrix: DomainMatrix, polynomial: sp.Poly, multiplicity: int) -> tuple[int, ...]:
-    """Block sizes of one root: f(A)^k has as many blocks of size k and more as its rank falls by, over the degree."""
+    """Return the sizes of the Jordan blocks of one root of a factor f of a matrix A.
+
+    The number of blocks of size k or more is the fall in rank from f(A)^(k-1) to f(A)^k, divided by the degree of f.
+    """
     size, degree = matrix.shape[0], int(polynomial.degree())
     value = field.at(polynomial, matrix)
     ranks, power = [size], value
@@ -148,7 +152,7 @@ def _block_sizes(field: Field, matrix: DomainMatrix, polynomial: sp.Poly, multip
 
 
 def _roots(coefficients: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
-    """Roots of a monic irreducible polynomial; of a pair, the greater or the one above the real axis first."""
+    """Return the roots of a monic irreducible polynomial; of a pair, the greater or the upper one first."""
     if len(coefficients) == 2:
         return (shortest(-coefficients[1]),)
     if len(coefficients) == 3:
@@ -164,13 +168,13 @@ def _roots(coefficients: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
 
 
 def _pair(centre: sp.Expr, square: sp.Expr) -> tuple[sp.Expr, ...]:
-    """``centre`` plus and minus the root of ``square``."""
+    """Return ``centre`` plus and minus the square root of ``square``."""
     half = sp.I * _root(-square) if sign_of(square) == -1 else _root(square)
     return centre + half, centre - half
 
 
 def _biquadratic(p: sp.Expr, q: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Roots of s^4 + p s^2 + q."""
+    """Return the four roots of s^4 + p s^2 + q."""
     square = shortest(p**2 / 4 - q)
     if sign_of(square) == -1:  # then q is positive, and its root greater than half of p
         real, imaginary = (_root(shortest(_root(q) / 2 + sign * p / 4)) for sign in (-1, 1))
@@ -179,7 +183,7 @@ def _biquadratic(p: sp.Expr, q: sp.Expr) -> tuple[sp.Expr, ...]:
 
 
 def _root(square: sp.Expr) -> sp.Expr:
-    """The square root, with squares of what is positive taken out of it."""
+    """Return a square root, with squares of positive factors taken out of it."""
     return sp.sqrt(factored(square))
 
 

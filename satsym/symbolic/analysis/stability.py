@@ -1,4 +1,4 @@
-"""Stability of x' = A x, and why: eigenvalues off the axis first, then the Jordan blocks of those on it."""
+"""Stability of x' = A x, with the reason: eigenvalues off the imaginary axis, then Jordan blocks of those on it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _GROWTH = {2: "linearly", 3: "quadratically", 4: "cubically"}
 
 
 class Cause(Enum):
-    """What decides; texts of a verdict have these names."""
+    """The reason of a verdict on stability; texts of verdicts have these names."""
 
     LEFT = "all left"
     BOUNDED = "bounded on the axis"
@@ -29,23 +29,24 @@ class Cause(Enum):
 
 @dataclass(frozen=True)
 class Stability:
-    """A verdict with its reason."""
+    """A verdict on stability with its reason."""
 
     verdict: Verdict
     cause: Cause
-    """What holds, and which argument shows it."""
+    """The argument that decides the verdict."""
     eigenvalues: tuple[sp.Expr, ...]
     """Eigenvalues that the argument is about; empty where they have no closed form."""
     block: int
     """Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there."""
     conditions: tuple[sp.Expr, ...]
-    """Where the parameters decide: all eigenvalues have negative real parts exactly where all of these are positive."""
+    """Expressions all of which are positive exactly where all eigenvalues have negative real parts; empty unless
+    parameters decide."""
     reason: str
     """One English sentence without its full stop."""
 
 
 def stability(of: Spectrum) -> Stability:
-    """The verdict on the origin of x' = A x, for all values that the parameters may take."""
+    """Decide the stability of the origin of x' = A x for all values that the parameters may take."""
     right = [f for f in of.factors if f.right]
     block = max((f.blocks[0] for f in of.factors if f.axis), default=0)
     if right:
@@ -70,7 +71,7 @@ def stability(of: Spectrum) -> Stability:
 
 
 def _growing(factor: Factor) -> tuple[sp.Expr, ...]:
-    """The roots of a factor whose real parts are positive, as far as that is known."""
+    """Return the roots of a factor whose real parts are known to be positive."""
     if factor.right == factor.degree:
         return factor.roots
     return tuple(r for r in factor.roots if (real := sp.re(r)).is_positive or (real.is_number and real.evalf() > 0))

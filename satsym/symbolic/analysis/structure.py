@@ -1,4 +1,4 @@
-"""What inputs reach and what outputs show: ranks, modes that are out of reach, and Kalman's form.
+"""Controllability and observability: ranks, uncontrollable and unobservable modes, and Kalman's decomposition.
 
 Observability is controllability of the transposed system; only the names change.
 """
@@ -17,52 +17,52 @@ from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum, polynomi
 
 @dataclass(frozen=True)
 class Mode:
-    """A mode that no input reaches, or no output shows."""
+    """A mode of a linear system that is uncontrollable, or unobservable."""
 
     eigenvalue: sp.Expr
     """Eigenvalue of the mode."""
     vector: sp.ImmutableMatrix
-    """Out of reach: w with w'A = eigenvalue w' and w'B = 0, so that w'x goes its own way. Out of sight: v with A v =
-    eigenvalue v and C v = 0, so that no output shows a motion along v."""
+    """For an uncontrollable mode, w with w'A = eigenvalue w' and w'B = 0; for an unobservable one, v with A v =
+    eigenvalue v and C v = 0."""
 
 
 @dataclass(frozen=True)
 class KalmanForm:
-    """A change of basis, x = basis z, that separates what is reached, or shown, from what is not."""
+    """A change of basis, x = basis z, that separates the controllable or observable subspace from the rest."""
 
     basis: sp.ImmutableMatrix
-    """T."""
+    """The matrix T of the change of basis."""
     state: sp.ImmutableMatrix
     port: sp.ImmutableMatrix
-    """T^-1 A T, and T^-1 B or C T. The first ``rank`` coordinates are those reached, or shown."""
+    """The matrices T^-1 A T, and T^-1 B or C T; the first ``rank`` coordinates are controllable, or observable."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """Controllability by some inputs, or observability by some outputs."""
+    """The controllability of a linear system by some inputs, or its observability by some outputs."""
 
     matrix: sp.ImmutableMatrix
-    """[B, AB, A^2 B, ...] or [C; CA; CA^2; ...]."""
+    """The Kalman matrix [B, AB, A^2 B, ...] or [C; CA; CA^2; ...]."""
     rank: int
     """Rank of the matrix."""
     assumed: tuple[sp.Expr, ...]
-    """What must not vanish for the rank to be that, where this is not certain."""
+    """Expressions that must not vanish for the matrix to have this rank, where that is not certain."""
     pbh: tuple[tuple[sp.Expr, int], ...]
-    """For each distinct eigenvalue (or, where it has no closed form, its irreducible polynomial): the rank of [s I - A,
-    B], or of s I - A above C, there (Popov, Belevitch, Hautus)."""
+    """For each distinct eigenvalue (or irreducible polynomial without closed-form roots) the rank of [s I - A, B], or
+    of s I - A above C (Popov, Belevitch, Hautus)."""
     lost: tuple[Mode, ...]
-    """Modes out of reach, or out of sight, as far as their eigenvalues have closed forms."""
+    """Uncontrollable, or unobservable, modes whose eigenvalues have closed forms."""
     kalman: KalmanForm | None
-    """Kalman's form where the rank is not full."""
+    """The Kalman decomposition where the rank is not full."""
 
     @property
     def full(self) -> bool:
-        """Whether the rank is full."""
+        """Tell whether the rank is full."""
         return self.kalman is None
 
 
 def controllability(of: Spectrum, b: sp.MatrixBase) -> Reach:
-    """What the inputs of x' = A x + B u reach.
+    """Analyse the controllability of x' = A x + B u.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def controllability(of: Spectrum, b: sp.MatrixBase) -> Reach:
 
 
 def observability(of: Spectrum, c: sp.MatrixBase) -> Reach:
-    """What the outputs y = C x of x' = A x show.
+    """Analyse the observability of x' = A x from outputs y = C x.
 
     Parameters
     ----------
@@ -108,14 +108,17 @@ def _reach(a: sp.ImmutableMatrix, factors: tuple[Factor, ...], b: sp.ImmutableMa
 
 
 def _krylov(matrix: DomainMatrix, port: DomainMatrix, count: int) -> DomainMatrix:
-    """[B, AB, A^2 B, ...], ``count`` times."""
+    """Return the list [B, AB, A^2 B, ...] of ``count`` matrices."""
     return DomainMatrix.hstack(*images(matrix, port, count))
 
 
 def _pbh(
     field: Field, matrix: DomainMatrix, port: DomainMatrix, factor: Factor, coefficients: DomainMatrix
 ) -> list[tuple[sp.Expr, int]]:
-    """The rank at the roots of a factor f: it falls by the left null vectors of f(A), B, AB, ... over the degree."""
+    """Return the rank of the Popov-Belevitch-Hautus matrix at the roots of a factor f of the characteristic polynomial.
+
+    The rank is smaller than n by the dimension of the left null space of f(A), B, AB, ..., divided by the degree of f.
+    """
     f = field.polynomial(coefficients.to_list()[0], LAMBDA)
     stacked = DomainMatrix.hstack(field.at(f, matrix), _krylov(matrix, port, factor.degree))
     size = matrix.shape[0]
@@ -124,7 +127,7 @@ def _pbh(
 
 
 def _lost(field: Field, matrix: DomainMatrix, columns: DomainMatrix) -> tuple[Mode, ...]:
-    """Eigenvectors of A' to which all columns are perpendicular, for eigenvalues with a closed form."""
+    """Return the eigenvectors of A' that are perpendicular to all columns, for eigenvalues with a closed form."""
     left, pivots = columns.transpose().nullspace().rref()
     everything, dual = list(range(left.shape[0])), matrix.transpose()
     within = (left * matrix).extract(everything, list(pivots))  # A', as it acts on them
@@ -148,7 +151,7 @@ def _lost(field: Field, matrix: DomainMatrix, columns: DomainMatrix) -> tuple[Mo
 
 
 def _kalman(field: Field, matrix: DomainMatrix, port: DomainMatrix, columns: DomainMatrix) -> KalmanForm:
-    """In a basis of independent columns, filled up with unit vectors."""
+    """Transform a system to a basis of the given independent columns, completed by unit vectors."""
     size = matrix.shape[0]
     whole_space = DomainMatrix.hstack(columns, DomainMatrix.eye(size, field.domain).to_dense())
     _, pivots = whole_space.rref()
@@ -159,17 +162,17 @@ def _kalman(field: Field, matrix: DomainMatrix, port: DomainMatrix, columns: Dom
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """x' = A x + B u, y = C x + D u."""
+    """A linear system x' = A x + B u, y = C x + D u, with the names of its variables."""
 
     a: sp.ImmutableMatrix
     b: sp.ImmutableMatrix
     c: sp.ImmutableMatrix
     d: sp.ImmutableMatrix
-    """Shapes (n, n), (n, m), (number of outputs, n), (number of outputs, m)."""
+    """The matrices, shapes (n, n), (n, m), (number of outputs, n) and (number of outputs, m)."""
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    """Names, in order."""
+    """Names of states, inputs and outputs, in order."""
 
     def __post_init__(self) -> None:
         n, m, k = len(self.states), len(self.inputs), len(self.outputs)
@@ -179,7 +182,10 @@ class LinearSystem:
 
 
 def linear_system(a: sp.MatrixBase, b: sp.MatrixBase | None = None, c: sp.MatrixBase | None = None) -> LinearSystem:
-    """A system from its matrices alone, named x1, x2, ..., u1, ... and y1, ...; what is left out is empty."""
+    """Build a linear system from its matrices, with names x1, x2, ..., u1, ... and y1, ...
+
+    Matrices that are left out are empty.
+    """
     a = sp.ImmutableMatrix(a)
     b = sp.ImmutableMatrix(sp.zeros(a.rows, 0) if b is None else b)
     c = sp.ImmutableMatrix(sp.zeros(0, a.rows) if c is None else c)

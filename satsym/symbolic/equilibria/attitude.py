@@ -1,4 +1,4 @@
-"""Attitudes at which bodies rest relative to their orbit, isolated or not, and what holds near them."""
+"""Equilibrium attitudes of bodies relative to their orbit, isolated or not, and their stability."""
 
 from __future__ import annotations
 
@@ -16,24 +16,25 @@ from satsym.symbolic.equilibria.real_roots import Solutions, solve
 from satsym.symbolic.equilibria.rest import Rest
 
 ZERO = 1e-7
-"""Stiffnesses and eigenvalues count as zero below this share of the largest one."""
+"""Stiffnesses and eigenvalues count as zero below this fraction of the largest one."""
 
 
 class Kind(Enum):
-    """What holds near an equilibrium."""
+    """The stability of the motion near an equilibrium attitude."""
 
     STABLE = "stable"
-    """The amended potential has a strict minimum there (Lyapunov)."""
+    """The amended potential has a strict minimum at the equilibrium (Lyapunov)."""
     GYROSCOPIC = "gyroscopically stabilised"
-    """No minimum, but all eigenvalues lie on the imaginary axis: damping makes it unstable."""
+    """The potential has no minimum, but all eigenvalues lie on the imaginary axis: damping makes the equilibrium
+    unstable."""
     UNSTABLE = "unstable"
     DEGENERATE = "degenerate"
-    """A stiffness vanishes."""
+    """A stiffness vanishes, so that linearised motion decides nothing."""
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """One attitude.
+    """One equilibrium attitude of a body in orbit.
 
     Attributes
     ----------
@@ -49,20 +50,20 @@ class Equilibrium:
 
 
 def all_of(rest: Rest) -> tuple[Solutions, tuple[Equilibrium, ...]]:
-    """Every equilibrium of a body with numbers for its letters, where they are finitely many."""
+    """Return every equilibrium of a body with numbers for its letters, where there are finitely many."""
     unknowns = [s for k in rest.axes for s in rest.cosines.row(k)]
     found = solve([*rest.equations, *orthonormal(rest)], unknowns)
     return found, tuple(classified(rest, completed(rest, point)) for point in found.points)
 
 
 def orthonormal(rest: Rest) -> list[sp.Expr]:
-    """What vanishes because the axes that the torques know of are unit vectors at right angles."""
+    """Return expressions that vanish because the axes in the torques are orthonormal unit vectors."""
     rows = [rest.cosines.row(k) for k in rest.axes]
     return [a.dot(b) - int(i == k) for i, a in enumerate(rows) for k, b in enumerate(rows) if k <= i]
 
 
 def completed(rest: Rest, point: Array) -> Array:
-    """All direction cosines from the axes that the torques know of: the third axis completes a right-handed frame."""
+    """Return all direction cosines, with the third axis completing a right-handed frame."""
     matrix = np.zeros((3, 3))
     matrix[rest.axes] = np.reshape(point, (-1, 3))
     if len(rest.axes) == 1:
@@ -77,7 +78,10 @@ def completed(rest: Rest, point: Array) -> Array:
 
 
 def classified(rest: Rest, cosines: Array, *letters: float, neutral: int = 0) -> Equilibrium:
-    """What holds near an attitude, of which so many turns may be neutral because it belongs to a continuum."""
+    """Classify the motion near an equilibrium attitude.
+
+    In a continuum of equilibria, as many turns as ``neutral`` says have no restoring torque.
+    """
     mass, damp, stiff = (np.array(part, float) for part in _near(rest)(*cosines.ravel(), *letters))
     inverse = np.linalg.inv(mass)
     matrix = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse @ stiff, -inverse @ damp]])
@@ -98,7 +102,11 @@ def classified(rest: Rest, cosines: Array, *letters: float, neutral: int = 0) ->
 
 @lru_cache(maxsize=8)
 def _near(rest: Rest) -> Any:
-    """Mass matrix, derivatives of the torques by rate and by turn, of direction cosines and letters left."""
+    """Return the functions of linearised motion near an attitude.
+
+    They are the mass matrix, derivatives of the torques by rates and by turns, of direction cosines and remaining
+    letters.
+    """
     a = rest.cosines
     turn, faster = sp.Matrix(sp.symbols("turn_:3")), sp.Matrix(sp.symbols("faster_:3"))
     moved = {s: s + c for k in range(3) for s, c in zip(a.row(k), -turn.cross(a.row(k).T), strict=True)}
@@ -114,7 +122,7 @@ def _near(rest: Rest) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Continuum:
-    """A set of equilibria that is not finite.
+    """An infinite set of equilibrium attitudes.
 
     Attributes
     ----------
@@ -132,10 +140,9 @@ class Continuum:
 
 
 def continuum(rest: Rest, dimension: int) -> Continuum:
-    """What an infinite set of equilibria consists of.
+    """Describe an infinite set of equilibria of the given dimension.
 
-    On each circle the nadir, or where that lies along the axis the normal of the orbit, can be turned into a plane, in
-    two ways.
+    On each circle the nadir, or where it lies along the axis the orbit normal, can be turned into a plane in two ways.
     """
     axis = next((k for k in range(3) if _same_turned(rest, k)), None)
     if axis is None or len(rest.axes) < 2:
@@ -160,7 +167,7 @@ def continuum(rest: Rest, dimension: int) -> Continuum:
 
 
 def _same_turned(rest: Rest, axis: int) -> bool:
-    """Whether the torques turn with the body where it turns about an axis of its own."""
+    """Tell whether the torques turn with the body when it turns about one of its own axes."""
     e = sp.eye(3)[:, axis]
     rows: Sequence[sp.Matrix] = [rest.cosines.row(k).T for k in range(3)]
     torque = sp.Matrix(rest.equations)

@@ -1,4 +1,4 @@
-"""Equilibria of one attitude: all of them, and followed over a parameter, in brackets counted exactly."""
+"""Equilibria of a body in orbit of which only the attitude moves: all of them, and followed over a parameter."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from satsym.symbolic.equilibria.rest import Rest
 
 SAMPLES = 60
 WIDTH = 1e-6
-"""Width of a bracket, relative to the largest value of the parameter."""
+"""Width of an interval of change, relative to the largest value of the parameter."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """A bracket of the parameter in which number or stability changes.
+    """An interval of the parameter in which the number or the stability of equilibria changes.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Change:
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """Equilibria at samples of the parameter, and the brackets between which nothing changes."""
+    """Equilibria at samples of the parameter, and the intervals in which their number or stability changes."""
 
     values: Array
     equilibria: tuple[tuple[Equilibrium, ...], ...]
@@ -63,9 +63,8 @@ class Followed:
 def follow(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational], beyond: float) -> Followed | None:
     """Follow all equilibria as the varied parameter grows from 0; ``None`` where they are never finitely many.
 
-    It grows to `beyond` times the value at which it outweighs every other torque.
-
-    Changes that undo each other between two samples are not seen.
+    The parameter grows to `beyond` times the value at which its torque exceeds every other torque. Changes that undo
+    each other between two samples are not detected.
     """
     varied = rest.varied
     assert varied is not None
@@ -87,7 +86,7 @@ def follow(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational], beyond: float) 
 
 
 def _outweighing(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational]) -> float:
-    """The value of the parameter at which its torque is as large as the largest of the others."""
+    """Return the value of the parameter at which its torque is as large as the largest of the others."""
     assert rest.varied is not None
     without, alone = [], []
     for equation in rest.at(numbers).equations:
@@ -98,7 +97,7 @@ def _outweighing(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational]) -> float:
 
 
 def _joined(brackets: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Brackets that touch are of one change, in whose middle a sample fell."""
+    """Join adjacent intervals: a sample fell into the middle of one change."""
     found: list[tuple[float, float]] = []
     for low, high in brackets:
         found[-1:] = [(found[-1][0], high)] if found and found[-1][1] == low else [*found[-1:], (low, high)]
@@ -112,7 +111,7 @@ def _kinds(found: tuple[Equilibrium, ...]) -> Mapping[Kind, int]:
 def _bracketed(
     search: Any, low: float, before: Any, high: float, after: Any, width: float
 ) -> list[tuple[float, float]]:
-    """Brackets of the changes between two values, by halving."""
+    """Bisect between two values of the parameter, and return the intervals in which something changes."""
     if _kinds(before) == _kinds(after):
         return []
     if high - low <= width:
@@ -126,7 +125,7 @@ def _bracketed(
 
 
 def _counted(at: Callable[[float], Rest], bracket: tuple[float, float]) -> Change:
-    """The exact counts at both ends."""
+    """Return an interval with the exact counts of equilibria at both ends."""
     ends = [all_of(at(float(f"{value:.9g}"))) for value in bracket]
     counts = tuple(found.real if found.real is not None else -1 for found, _ in ends)
     kinds = tuple(_kinds(equilibria) for _, equilibria in ends)
@@ -134,7 +133,7 @@ def _counted(at: Callable[[float], Rest], bracket: tuple[float, float]) -> Chang
 
 
 def _search(rest: Rest, varied: sp.Symbol) -> Callable[[float], tuple[Equilibrium, ...]] | None:
-    """All equilibria at a value of the parameter, in floats."""
+    """Find all equilibria in floats at one value of the parameter."""
     unknowns = [s for k in rest.axes for s in rest.cosines.row(k)]
     solutions = family([*rest.equations, *orthonormal(rest)], unknowns, varied)
     if solutions is None:
@@ -147,12 +146,12 @@ def _search(rest: Rest, varied: sp.Symbol) -> Callable[[float], tuple[Equilibriu
 
 
 REACH_FACTOR = 2.0
-"""Equilibria are followed up to so many times the parameter at which it outweighs every other torque."""
+"""Largest value of the parameter, relative to the value at which its torque exceeds every other one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Attitudes:
-    """All equilibria of one attitude in orbit.
+    """All equilibria of a body in orbit of which only the attitude moves.
 
     Attributes
     ----------
@@ -177,7 +176,7 @@ class Attitudes:
 
 
 def survey(derivation: Derivation, numbers: Mapping[str, float]) -> Attitudes:
-    """Find and follow all equilibria, the parameters being taken for the decimal numbers that they are written as.
+    """Find and follow all equilibria of an attitude, with the parameters at the decimal numbers given.
 
     Raises
     ------

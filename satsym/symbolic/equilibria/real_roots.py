@@ -22,14 +22,14 @@ from satsym.arrays import Array
 Monomial: TypeAlias = tuple[int, ...]
 
 REAL = 1e-6
-"""Imaginary parts below this are rounding."""
+"""Imaginary parts below this value count as rounding."""
 POLISHING = 8
 ROOT_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Solutions:
-    """Real solutions.
+    """The real solutions of polynomial equations.
 
     Attributes
     ----------
@@ -67,9 +67,10 @@ def solve(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> Soluti
 def family(
     equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol], parameter: sp.Symbol
 ) -> Callable[[float], Array] | None:
-    """Real solutions in floats at any value of a parameter, by one Groebner basis for all but finitely many values.
+    """Return a function that finds the real solutions, in floats, at any value of a parameter.
 
-    ``None`` where there are infinitely many solutions for all values.
+    One Groebner basis serves all but finitely many values. ``None`` where there are infinitely many solutions for all
+    values.
     """
     domain, basis = _basis(equations, unknowns, sp.QQ.frac_field(parameter))
     leading = [g.LM for g in basis]
@@ -89,14 +90,14 @@ def family(
 
 
 def _basis(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol], field: Any) -> tuple[Any, Any]:
-    """A reduced Groebner basis of polynomials with coefficients in a field, and the ring they live in."""
+    """Return a reduced Groebner basis of polynomials over a field, and the ring of the polynomials."""
     domain, *_ = ring(list(unknowns), field, grevlex)
     whole = [sp.expand(e) for e in equations]
     return domain, groebner([domain.from_expr(e) for e in whole if e != 0], domain)
 
 
 def _dimension(leading: Sequence[Monomial], size: int) -> int:
-    """The most unknowns of which no leading monomial is made alone."""
+    """Return the largest number of unknowns of which no leading monomial is made alone."""
     free = [0]
     for chosen in range(1, 2**size):
         if not any(all(chosen >> k & 1 or not e for k, e in enumerate(m)) for m in leading):
@@ -105,7 +106,7 @@ def _dimension(leading: Sequence[Monomial], size: int) -> int:
 
 
 def _below(leading: Sequence[Monomial], size: int) -> list[Monomial]:
-    """The monomials that no leading one divides, by rising degree: a basis of the algebra."""
+    """Return a basis of the algebra: the monomials that no leading monomial divides, by rising degree."""
     found, front = [], [(0,) * size]
     while front:
         front = [m for m in front if not any(all(a >= b for a, b in zip(m, lead, strict=True)) for lead in leading)]
@@ -115,7 +116,7 @@ def _below(leading: Sequence[Monomial], size: int) -> list[Monomial]:
 
 
 def _multiplication(domain: Any, basis: Any, monomials: Sequence[Monomial], by: int) -> Any:
-    """The matrix of multiplication by an unknown, its columns the products with the monomials."""
+    """Return the matrix of multiplication by an unknown, in the basis of monomials."""
     place = {m: k for k, m in enumerate(monomials)}
     zero, one = domain.domain.zero, domain.domain.one
     matrix = np.full((len(monomials), len(monomials)), zero, dtype=object)
@@ -130,7 +131,7 @@ def _multiplication(domain: Any, basis: Any, monomials: Sequence[Monomial], by: 
 
 
 def _trace_form(monomials: Sequence[Monomial], matrices: Sequence[Any]) -> Any:
-    """Traces of multiplication by the products of two monomials."""
+    """Return the traces of multiplication by the products of two monomials."""
     of = {monomials[0]: np.array([[sp.QQ(int(i == k)) for i in range(len(monomials))] for k in range(len(monomials))])}
     for m in monomials[1:]:
         k = next(k for k, e in enumerate(m) if e)
@@ -140,7 +141,7 @@ def _trace_form(monomials: Sequence[Monomial], matrices: Sequence[Any]) -> Any:
 
 
 def _product(left: Any, right: Any) -> Any:
-    """Two matrices multiplied, the second of which is sparse: most products of basis monomials are monomials."""
+    """Multiply two matrices, the second of which is sparse: most products of basis monomials are monomials."""
     found = np.full(left.shape, sp.QQ(0), dtype=object)
     for column, (row, entry) in ((k, pair) for k in range(len(right)) for pair in enumerate(right[:, k]) if pair[1]):
         found[:, column] += left[:, row] if entry == 1 else left[:, row] * entry
@@ -148,7 +149,7 @@ def _product(left: Any, right: Any) -> Any:
 
 
 def _signature(form: Any) -> tuple[int, int]:
-    """Signature and rank of a symmetric matrix, by exact elimination of rows and columns alike."""
+    """Return signature and rank of a symmetric matrix, by exact symmetric elimination."""
     rest, signature, rank = form.copy(), 0, 0
     while len(rest):
         pivot = next((k for k in range(len(rest)) if rest[k, k]), None)
@@ -167,7 +168,7 @@ def _signature(form: Any) -> tuple[int, int]:
 
 
 def _points(matrices: Sequence[Array]) -> Array:
-    """Nearly real solutions, from the eigenvectors of a generic combination."""
+    """Return nearly real solutions from the eigenvectors of a generic combination of multiplication matrices."""
     weights = np.random.default_rng(0).uniform(-1, 1, len(matrices))
     _, vectors = np.linalg.eig(sum(w * m for w, m in zip(weights, matrices, strict=True)).T)
     vectors = vectors / vectors[0]
@@ -176,7 +177,7 @@ def _points(matrices: Sequence[Array]) -> Array:
 
 
 def _newton(equations: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Callable[..., Array]:
-    """Newton's method for some points, of which those that end together are one; the last symbol may be given."""
+    """Refine points by Newton's method and merge those with the same limit; the last symbol may be given."""
     values = sp.lambdify(list(symbols), list(equations), "numpy")
 
     def polished(points: Array, *given: float) -> Array:

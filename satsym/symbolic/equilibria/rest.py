@@ -1,4 +1,4 @@
-"""What turns a body that rests relative to its orbit, as polynomials in direction cosines."""
+"""Torques on a body at rest relative to its orbit, as polynomials in direction cosines."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sympy as sp
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What turns a body that rests relative to its orbit.
+    """The torques on a body that is at rest relative to its orbit.
 
     Attributes
     ----------
@@ -45,11 +45,11 @@ class Rest:
 
     @cached_property
     def equations(self) -> list[sp.Expr]:
-        """Torques at rest, polynomials in direction cosines."""
+        """Return the torques at rest, which are polynomials in direction cosines."""
         return [sp.expand(e.xreplace(dict(self.turns))) for e in self.torque]
 
     @cached_property
     def axes(self) -> list[int]:
-        """The orbital axes that the torques know of."""
+        """Return the orbital axes that occur in the torques."""
         used = set().union(*(e.free_symbols for e in self.equations))
         return [k for k in range(3) if used & set(self.cosines.row(k))]

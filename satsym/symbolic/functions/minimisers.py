@@ -1,6 +1,6 @@
-"""What minimises a Hamiltonian over a control set, as functions that can be differentiated, typeset and evaluated.
+"""Minimisers of a Hamiltonian over a control set, as functions that can be differentiated, typeset and evaluated.
 
-Of ``slope * u + weight * |u|`` on ``lower <= u <= upper`` the minimiser jumps where the slope passes ``weight`` or
+The minimiser of ``slope * u + weight * |u|`` on ``lower <= u <= upper`` jumps where the slope passes ``weight`` or
 ``-weight``. With ``smoothing / 2 * u**2`` added it is the clipped ``-Shrink(slope, weight) / smoothing``.
 """
 
@@ -22,7 +22,7 @@ class Clip(sp.Function):
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the value: one inside, zero outside. The limits are constants."""
+        """Return the derivative by the value, one inside the interval and zero outside; the limits are constants."""
         if argindex != 1:
             raise sp.ArgumentIndexError(self, argindex)
         return Inside(*self.args)
@@ -34,17 +34,17 @@ class Inside(sp.Function):
     nargs = 3
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero, except at the ends, where it has no derivative."""
+        """Return zero: the function has no derivative at the ends, and is constant elsewhere."""
         return sp.Integer(0)
 
 
 class Shorten(sp.Function):
-    """``Shorten(norm_squared, limit)``: the factor that brings a vector into a ball, at most one."""
+    """``Shorten(norm_squared, limit)``: the factor, at most one, that brings a vector into a ball."""
 
     nargs = 2
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the square of the norm. The limit is a constant."""
+        """Return the derivative by the square of the norm; the limit is a constant."""
         if argindex != 1:
             raise sp.ArgumentIndexError(self, argindex)
         return ShortenSlope(*self.args)
@@ -57,15 +57,15 @@ class ShortenSlope(sp.Function):
 
 
 class Stretch(sp.Function):
-    """``Stretch(norm_squared, smoothing, length)``: the factor that gives a vector a length; at most 1 / smoothing.
+    """``Stretch(norm_squared, smoothing, length)``: the factor, at most 1 / smoothing, that gives a vector a length.
 
-    Of ``slope . u + smoothing / 2 * u . u`` on a ball, minus the slope, multiplied by it, is the minimiser.
+    Minus the slope times this factor minimises ``slope . u + smoothing / 2 * u . u`` on a ball.
     """
 
     nargs = 3
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the square of the norm. Smoothing and length are constants."""
+        """Return the derivative by the square of the norm; smoothing and length are constants."""
         if argindex != 1:
             raise sp.ArgumentIndexError(self, argindex)
         return StretchSlope(*self.args)
@@ -83,7 +83,7 @@ class Within(sp.Function):
     nargs = 3
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the square of the norm. The limits are constants."""
+        """Return the derivative by the square of the norm; the limits are constants."""
         if argindex != 1:
             raise sp.ArgumentIndexError(self, argindex)
         return WithinSlope(*self.args)
@@ -98,44 +98,45 @@ class WithinSlope(sp.Function):
 class Switch(sp.Function):
     """``Switch(slope, weight, lower, upper)``: the minimiser of ``slope * u + weight * |u|`` on an interval.
 
-    Where all of an interval minimises, it is the value of least magnitude; without a weight, the midpoint.
+    Where every value of an interval minimises, the function is the value of least magnitude; without a weight, the
+    midpoint.
     """
 
     nargs = 4
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero, except where it jumps, where it has no derivative. The limits are constants."""
+        """Return zero: the function has no derivative where it jumps, and is constant elsewhere."""
         if argindex > 2:
             raise sp.ArgumentIndexError(self, argindex)
         return sp.Integer(0)
 
 
 class Shrink(sp.Function):
-    """``Shrink(value, width)``: the value brought nearer to zero by the width, zero if it is not farther away."""
+    """``Shrink(value, width)``: the value moved towards zero by the width, and zero if it is within the width."""
 
     nargs = 2
     is_real = True
 
     @classmethod
     def eval(cls, value: sp.Expr, width: sp.Expr) -> sp.Expr | None:
-        """The value itself where the width is zero."""
+        """Return the value itself where the width is zero."""
         return value if width.is_zero else None
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """One by the value outside the width, zero inside; by the width the sign of the value, reversed."""
+        """Return the derivative: by the value one or zero, by the width minus the sign of the value or zero."""
         side = Side(*self.args)
         return side**2 if argindex == 1 else -side
 
 
 class Side(sp.Function):
-    """``Side(value, width)``: one above the width, minus one below ``-width``, zero between."""
+    """``Side(value, width)``: one above ``width``, minus one below ``-width``, and zero between."""
 
     nargs = 2
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero, except where it jumps, where it has no derivative."""
+        """Return zero: the function has no derivative where it jumps, and is constant elsewhere."""
         return sp.Integer(0)
 
 
@@ -159,9 +160,9 @@ MINIMISERS: tuple[type[sp.Function], ...] = (
 
 
 def by_signs(expression: sp.Expr) -> sp.Expr:
-    """The expression with signs, minima and maxima in place of switches, as people print laws.
+    """Write switches in an expression by signs, minima and maxima, as control laws are printed.
 
-    Right at a threshold the sign is zero, and a switch with a weight halfway between two of its levels.
+    Exactly at a threshold the sign is zero, and a switch with a weight is halfway between two of its levels.
     """
 
     def switch(slope: sp.Expr, weight: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
@@ -257,30 +258,33 @@ class SignedSwitch(sp.Function):
     is_real = True
 
     def at(self, u: sp.Expr) -> sp.Expr:
-        """What it minimises, at a value of the control."""
+        """Return the function that is minimised, at a value of the control."""
         slope, weight, *_ = self.args
         return _value(slope, weight, sp.Integer(0), u)
 
 
 class SignedClip(sp.Function):
-    """``SignedClip(slope, weight, smoothing, lower, upper)``: the same with ``smoothing / 2 * u**2`` besides."""
+    """``SignedClip(slope, weight, smoothing, lower, upper)``: a minimiser on an interval.
+
+    It minimises ``slope * u + weight * |u| + smoothing / 2 * u**2``.
+    """
 
     nargs = 5
     is_real = True
 
     def at(self, u: sp.Expr) -> sp.Expr:
-        """What it minimises, at a value of the control."""
+        """Return the function that is minimised, at a value of the control."""
         slope, weight, smoothing, *_ = self.args
         return _value(slope, weight, smoothing, u)
 
 
 def compared(expression: sp.Expr) -> sp.Expr:
-    """The expression with these minimisers as the comparisons of values that they are."""
+    """Replace signed switches and clips in an expression by the comparisons of values that define them."""
     return sp.sympify(expression).replace(SignedSwitch, _of_three).replace(SignedClip, _of_two)
 
 
 def _of_three(*given: sp.Expr) -> sp.Expr:
-    """Both bounds are compared, and the better one with the value of least magnitude."""
+    """Compare the function at both bounds, and the better one with its value at the control of least magnitude."""
     value, (lower, upper) = SignedSwitch(*given).at, given[-2:]
     rest, low, high = Clip(sp.Integer(0), lower, upper), value(lower), value(upper)
     end, best = Choice(low - high, lower, upper), Choice(low - high, low, high)
@@ -288,7 +292,7 @@ def _of_three(*given: sp.Expr) -> sp.Expr:
 
 
 def _of_two(*given: sp.Expr) -> sp.Expr:
-    """The least of either sign: on each side of the value of least magnitude it is a parabola that bends upwards."""
+    """Compare the least values for either sign of the control, for each of which the function is a convex parabola."""
     value, (slope, weight, smoothing, lower, upper) = SignedClip(*given).at, given
     rest = Clip(sp.Integer(0), lower, upper)
     above = Clip(-(slope + weight) / smoothing, rest, upper)

@@ -19,7 +19,7 @@ CORNERS = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.Piecewise)
 
 
 class Until(sp.Function):
-    """``Until(excess, one, other)``: the one where the excess is not positive, the other elsewhere.
+    """``Until(excess, one, other)``: ``one`` where the excess is not positive, ``other`` elsewhere.
 
     The excess is a function of time and constants alone, so that no derivative by a state passes through it.
     """
@@ -28,7 +28,7 @@ class Until(sp.Function):
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative is that of the piece at hand; where the excess changes sign there is none."""
+        """Return the derivative of the piece at hand; where the excess changes sign there is none."""
         pair = (0, 0) if argindex == 1 else (1, 0) if argindex == 2 else (0, 1)
         return Until(self.args[0], *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)
 
@@ -38,12 +38,12 @@ class Until(sp.Function):
 
 
 def until(excess: Any, one: Any, other: Any) -> Any:
-    """Its value in mpmath; no number where the excess is none."""
+    """Evaluate :class:`Until` in mpmath; NaN where the excess is NaN."""
     return mp.nan if excess != excess else one if excess <= 0 else other
 
 
 def in_pieces(expression: sp.Expr, time: sp.Symbol, moving: Collection[str]) -> sp.Expr:
-    """The expression with :class:`Until` for what is stated of time alone; what has no such form stays as it is.
+    """Write functions of time that are stated piece by piece as :class:`Until`; leave what has no such form.
 
     Parameters
     ----------
@@ -58,14 +58,14 @@ def in_pieces(expression: sp.Expr, time: sp.Symbol, moving: Collection[str]) -> 
 
 
 def breaks(expressions: Collection[sp.Basic], time: sp.Symbol) -> list[float]:
-    """Where pieces end, as far as that is a number, in order."""
+    """Return the times between pieces that are numbers, in order."""
     excesses = {e.args[0] for expression in expressions for e in expression.atoms(Until)}
     compared = (_compared(excess) for excess in excesses)
     return sorted({float(-rest / factor) for what, factor, rest in filter(None, compared) if what == time})
 
 
 def pieces_of(e: sp.Expr) -> tuple[sp.Expr, list[sp.Expr], list[tuple[sp.Expr, bool]]] | None:
-    """What an :class:`Until` goes by, its pieces in the order of that, and the breaks between them.
+    """Return the variable that an :class:`Until` compares, its pieces in order, and the breaks between them.
 
     Each break goes with whether it belongs to the piece before it. ``None`` where no numbers order them.
     """
@@ -100,14 +100,14 @@ def _converted(e: sp.Expr) -> sp.Expr:
 
 
 def _compared(excess: sp.Expr) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
-    """What is compared with a number, as this: an expression, a factor and a rest that add up to the excess."""
+    """Split an excess into the expression that is compared with a number, a factor, and a rest."""
     rest, moving = sp.sympify(excess).as_coeff_Add()
     factor, what = moving.as_coeff_Mul()
     return None if what == 1 or factor == 0 else (what, factor, rest)
 
 
 def _in_intervals(e: sp.Piecewise) -> sp.Expr | None:
-    """A Piecewise whose breaks are numbers, halved again and again; its ends go on beyond where it is stated."""
+    """Write a Piecewise whose breaks are numbers by repeated halving; its first and last pieces are extended."""
     stated = sorted(set().union(*(condition.atoms(Relational) for _, condition in e.args)), key=str)
     compared = {each: _compared(each.lhs - each.rhs) for each in stated}
     found = [one for one in compared.values() if one is not None]
@@ -115,7 +115,7 @@ def _in_intervals(e: sp.Piecewise) -> sp.Expr | None:
         return None
 
     def at(place: sp.Expr) -> sp.Expr | None:
-        """The piece that holds there."""
+        """Return the piece that holds at a place."""
         holds = {each: each.func(one[1] * place + one[2], 0) for each, one in compared.items() if one is not None}
         return next((value for value, condition in e.args if condition.xreplace(holds) == True), None)  # noqa: E712
 
@@ -143,7 +143,7 @@ def _halved(what: sp.Expr, values: Sequence[Any], ends: Sequence[sp.Expr], there
 
 
 def _one_after_the_other(e: sp.Piecewise) -> sp.Expr | None:
-    """A Piecewise whose breaks are parameters; ``None`` where it does not end with what holds elsewhere."""
+    """Write a Piecewise whose breaks are parameters; ``None`` where it has no final piece for all other times."""
     *first, (found, last) = e.args
     if last != True:  # noqa: E712
         return None
@@ -157,7 +157,7 @@ def _one_after_the_other(e: sp.Piecewise) -> sp.Expr | None:
 
 
 def _excess(condition: sp.Basic) -> sp.Expr | None:
-    """What is not positive where a condition holds."""
+    """Return an expression that is not positive exactly where a condition holds."""
     if isinstance(condition, sp.Lt | sp.Le):
         return condition.lhs - condition.rhs
     if isinstance(condition, sp.Gt | sp.Ge):

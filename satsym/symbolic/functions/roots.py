@@ -1,7 +1,8 @@
-"""Where a monotone function vanishes, as a function that can be differentiated, typeset, evaluated and generated.
+"""Zeros of monotone functions, as functions that can be differentiated, typeset, evaluated and generated.
 
-``Root(lower, upper, *coefficients)`` is the point of an interval at which a convex function is least, of which a slope
-is stated: where the slope vanishes, or the end to which it falls. Each slope has a class of its own.
+``Root(lower, upper, *coefficients)`` is the minimiser of a convex function on an interval, given the slope of the
+function: the point where the slope vanishes, or the end towards which the function falls. Each slope has a class of its
+own.
 """
 
 from __future__ import annotations
@@ -28,16 +29,16 @@ Each stays for as long as anything uses it: of two classes with one slope, expre
 
 
 class Root(sp.Function):
-    """What the classes of all slopes share; see :func:`root_of`."""
+    """The base class of the minimisers for all slopes; see :func:`root_of`."""
 
     is_real = True
     unknown: ClassVar[sp.Symbol]
     slope: ClassVar[sp.Expr]
-    """Derivative of the convex function by its unknown, in terms of unknown and letters."""
+    """Derivative of the convex function by its unknown, as an expression in the unknown and letters."""
     letters: ClassVar[tuple[sp.Symbol, ...]]
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By a coefficient: the implicit function's derivative, zero at an end. The ends are constants."""
+        """Return the derivative by a coefficient: that of the implicit function, or zero at an end."""
         if argindex <= 2:
             return sp.Integer(0)
         by = self.letters[argindex - 3]
@@ -46,64 +47,64 @@ class Root(sp.Function):
         return Interior(self, *self.args[:2]) * ratio.xreplace(values)
 
     def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
-        """The class is made anew where this is read."""
+        """Pickle the arguments of the class, which is made anew where it is read."""
         return _again, (self.unknown, self.slope, self.letters, self.args)
 
     def at(self) -> sp.Expr:
-        """The slope, its coefficients being what they are here."""
+        """Return the slope with the coefficients of this root."""
         return self.slope.xreplace(dict(zip(self.letters, self.args[2:], strict=True)))
 
 
 class Interior(sp.Function):
-    """``Interior(value, lower, upper)``: one between the ends, zero at them and beyond."""
+    """``Interior(value, lower, upper)``: one inside the interval, zero at its ends and outside."""
 
     nargs = 3
 
     @classmethod
     def eval(cls, value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr | None:
-        """One where there are no ends."""
+        """Return one where the interval has no finite ends."""
         return sp.Integer(1) if upper is sp.oo and lower is -sp.oo else None
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero, except at the ends, where it has no derivative."""
+        """Return zero: the function has no derivative at the ends, and is constant elsewhere."""
         return sp.Integer(0)
 
 
 class Convex(sp.Function):
-    """``Convex(value, curvature)``: the value, where the curvature is not negative; no number elsewhere."""
+    """``Convex(value, curvature)``: the value where the curvature is not negative, and NaN elsewhere."""
 
     nargs = 2
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative is one by the value, and zero by what only decides whether there is one."""
+        """Return the derivative, which is one by the value and zero by the curvature."""
         return sp.Integer(int(argindex == 1))
 
 
 class Choice(sp.Function):
-    """``Choice(excess, one, other)``: the one, where its excess over the other is not positive; else the other."""
+    """``Choice(excess, one, other)``: ``one`` where its excess over the other is not positive, else ``other``."""
 
     nargs = 3
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative is that of the chosen argument; where the excess changes sign there is none."""
+        """Return the derivative of the chosen argument; where the excess changes sign there is none."""
         excess, *_ = self.args
         pair = (0, 0) if argindex == 1 else (1, 0) if argindex == 2 else (0, 1)
         return Choice(excess, *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)
 
 
 class Vertex(sp.Function):
-    """``Vertex(curvature, slope, lower, upper)``: where ``curvature/2 u**2 + slope u`` is least on an interval.
+    """``Vertex(curvature, slope, lower, upper)``: the minimiser of ``curvature/2 u**2 + slope u`` on an interval.
 
-    Where the curvature is not positive that is the better end; of two that are equally good, the lower one.
+    Where the curvature is not positive that is the better end, and the lower one if both are equally good.
     """
 
     nargs = 4
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By curvature and slope; where it jumps it has no derivative. The ends are constants."""
+        """Return the derivative by curvature or slope; it does not exist where the minimiser jumps."""
         return (self * Bend(*self.args), Bend(*self.args), sp.Integer(0), sp.Integer(0))[argindex - 1]
 
 
@@ -115,15 +116,15 @@ class Bend(sp.Function):
 
 
 class Argmin(sp.Function):
-    """``Argmin(lower, upper, c1, ..., cd)``: where ``c1 u + ... + cd u**d`` is least on an interval.
+    """``Argmin(lower, upper, c1, ..., cd)``: the minimiser of ``c1 u + ... + cd u**d`` on an interval.
 
-    All places are compared at which its slope vanishes, and both ends; of several that are equally good it is one.
+    Both ends are compared with all points at which the slope vanishes; of several equally good points, one is taken.
     """
 
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By a coefficient: the implicit function's derivative, zero at an end. Where it jumps it has no derivative."""
+        """Return the derivative by a coefficient, of the implicit function or zero at an end; jumps have none."""
         if argindex <= 2:
             return sp.Integer(0)
         lower, upper, *coefficients = self.args
@@ -133,30 +134,30 @@ class Argmin(sp.Function):
 
 
 class Middle(sp.Function):
-    """``Middle(lower, upper)``: the middle of an interval of angles; of one longer than a turn, of a turn of it."""
+    """``Middle(lower, upper)``: the middle of an interval of angles, or of its first turn if it is longer."""
 
     nargs = 2
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero: the limits are constants."""
+        """Return zero, because the limits are constants."""
         return sp.Integer(0)
 
 
 class Bearing(sp.Function):
-    """``Bearing(across, along)``: the angle of a direction, as atan2, for what goes on with it."""
+    """``Bearing(across, along)``: the angle of a direction, as atan2, in a form that can be differentiated."""
 
     nargs = 2
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By either component: the other one over the square of the length."""
+        """Return the derivative by either component: the other one over the square of the length."""
         across, along = self.args
         return (along if argindex == 1 else -across) / (across**2 + along**2)
 
 
 def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
-    """The class of the minimisers of convex functions with this slope."""
+    """Return the class of the minimisers of convex functions with the given slope."""
     plain = {s: sp.Symbol(f"c{k}", real=True) for k, s in enumerate(letters)} | {unknown: sp.Symbol("v", real=True)}
     key = slope.xreplace(plain), tuple(plain[s] for s in letters)
     found = _classes.get(key)
@@ -164,7 +165,7 @@ def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) 
 
 
 def _class_of(slope: sp.Expr, unknown: sp.Symbol, letters: tuple[sp.Symbol, ...]) -> type[Root]:
-    """A class for all slopes that differ by their letters alone: its name is made of the slope."""
+    """Return the class for all slopes that differ only in their letters; its name is made from the slope."""
     mark = hashlib.sha256(sp.srepr(slope).encode()).hexdigest()[:10]
     function = sp.lambdify([unknown, *letters], [slope, sp.diff(slope, unknown)], modules="mpmath")
 
@@ -180,7 +181,7 @@ def _again(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...], a
 
 
 def minimum_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: Any) -> Any:
-    """Where a convex function is least on an interval, in the working precision; no number where it falls for ever.
+    """Return the minimiser of a convex function on an interval in mpmath; NaN where the function falls for ever.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From bodies to their linear equations about rest, of second order and then of first."""
+"""Linear equations of motion of bodies about rest, of second order and then of first."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from satsym.symbolic.motion import steps as motion
 
 @dataclass(frozen=True, kw_only=True)
 class AboutRest(SpecialCase):
-    """Linear equations of bodies about the rest that is their reference, or a part of them that moves by itself.
+    """Linear equations of bodies about the rest that is their reference, or an independent part of these equations.
 
     Parameters
     ----------
@@ -45,11 +45,11 @@ class AboutRest(SpecialCase):
     along_chain: ClassVar[bool] = True
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """Equations of second order, then of first."""
+        """List the steps: equations of second order, then of first."""
         return self.motion_steps()
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """List the steps as far as the first-order form, which are all that there are."""
+        """List the steps as far as the first-order form, which are all steps of this kind."""
         return (second_order, first_order, motion.linearisation)
 
     def picture(self) -> geometry.Picture | None:
@@ -57,7 +57,7 @@ class AboutRest(SpecialCase):
         return self.of.pictured(self.states)
 
     def misfits(self) -> Iterator[str]:
-        """States that are neither coordinates of the bodies nor their rates nor speeds."""
+        """Yield a complaint for each state that is neither a coordinate of the bodies nor its rate nor a speed."""
         kept = set(symbols_of(self.states)) - set(self.velocities.values())
         if not (set(self.velocities) <= set(self.of.coordinates) and kept <= set(symbols_of(self.of.states))):
             yield f"the states must be coordinates of {self.of.name}, their rates, and speeds without a coordinate"
@@ -80,24 +80,24 @@ class AboutRest(SpecialCase):
         return ()
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """Accelerations, and what linear theory finds."""
+        """Map the names of accelerations, and of what linear theory finds, to LaTeX."""
         latex = {v.symbol: v.latex for v in self.states}
         found = {n.rate_of(v).name: n.accented("ddot", latex[q.name]) for q, v in self.velocities.items()}
         return found | ({} if problem else results(self))
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Velocities must be rates of their coordinates."""
+        """Check that velocities have the dimensions of rates of their coordinates."""
         for coordinate, velocity in self.velocities.items():
             require(f"the rate of {coordinate.name}", velocity, over(known[coordinate.name], known[n.TIME.name]))
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State whose motions are considered, and about which rest."""
+        """State which bodies move, and about which rest their equations are linearised."""
         about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.of.reference.items())
         return (Paragraph("about_rest", self.of, tuple(about)),)
 
 
 def second_order(so_far: Derivation) -> Step:
-    """Kane's equations to first order in the coordinates and their rates: what the bodies resist, and the loads."""
+    """Derive Kane's equations to first order in coordinates and rates: inertial terms and loads."""
     model = stated_as(AboutRest, so_far)
     rows = _linear_rows(so_far, model)
     wanted = {n.rate_of(s) for s in (*model.velocities.values(), *_own_speeds(model))}
@@ -116,7 +116,7 @@ def second_order(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The linear equations solved for the accelerations."""
+    """Solve the linear equations for the accelerations."""
     model = stated_as(AboutRest, so_far)
     moving = [n.rate_of(s) for s in (*model.velocities.values(), *_own_speeds(model))]
     law = [e.lhs - e.rhs for e in so_far.step("small_motions").equations]
@@ -136,12 +136,12 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def _own_speeds(model: AboutRest) -> list[sp.Symbol]:
-    """Speeds without a coordinate that are kept."""
+    """Return the speeds among the kept states that belong to no coordinate."""
     return [s for s in symbols_of(model.states) if s not in model.velocities and s not in model.velocities.values()]
 
 
 def _linear_rows(so_far: Derivation, model: AboutRest) -> list[tuple[str, sp.Expr, sp.Expr]]:
-    """Each equation of the bodies to first order: a name, M u' + b, and Q, by coordinates, their rates and speeds."""
+    """Return each equation to first order: its name, and M u' + b and Q by coordinates, rates and speeds."""
     of, original, special = model.of, so_far.original, model.special()
     assert original is not None
     rest = {s: sp.sympify(e) for s, e in of.reference.items()}
@@ -153,7 +153,7 @@ def _linear_rows(so_far: Derivation, model: AboutRest) -> list[tuple[str, sp.Exp
     values, by_all = _first_order_of(chain, moving, rest | dict.fromkeys(symbols_of(of.controls), sp.Integer(0)))
 
     def linear(expression: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
-        """Derivatives at rest by coordinates, speeds and controls."""
+        """Return the derivatives of an expression at rest by coordinates, speeds and controls."""
         return {x: _slope(expression, x, values, by_all) for x in moving}
 
     turning = [linear(sp.sympify(rate)) for rate in of.coordinates.values()]
@@ -189,7 +189,7 @@ def _is_part(equation: Equation) -> bool:
 def _first_order_of(
     chain: list[tuple[sp.Symbol, sp.Expr]], moving: list[sp.Symbol], rest: Mapping[sp.Symbol, sp.Expr]
 ) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, dict[sp.Symbol, sp.Expr]]]:
-    """Values at rest, and derivatives there by all that moves, of what moves and of the parts of a chain."""
+    """Return values at rest, and derivatives there by all that moves, along a chain of named parts."""
     values = {s: sp.sympify(v) for s, v in rest.items()}
     by_all: dict[sp.Symbol, dict[sp.Symbol, sp.Expr]] = {s: {s: sp.Integer(1)} for s in moving}
     for symbol, value in chain:
@@ -210,7 +210,7 @@ def _slope(
 
 
 def _rays(so_far: Derivation, kept: list[tuple[str, sp.Expr, sp.Expr]], chosen: list[int]) -> Check:
-    """The exact equations along a motion that is scaled down to rest, differentiated there by its size."""
+    """Differentiate the exact equations at rest along a motion that is scaled down to rest, by its size."""
     model = stated_as(AboutRest, so_far)
     of, original, special = model.of, so_far.original, model.special()
     assert original is not None
@@ -226,7 +226,7 @@ def _rays(so_far: Derivation, kept: list[tuple[str, sp.Expr, sp.Expr]], chosen: 
     found = numeric([e for _, lhs, rhs in kept for e in (lhs, rhs)])
 
     def speeds(point: Point, places: Mapping[sp.Symbol, Any], wanted: list[Any]) -> list[Any]:
-        """The speeds that give the coordinates these rates: they are linear in them."""
+        """Return the speeds that give the coordinates these rates, which are linear in the speeds."""
 
         def at(values: list[Any]) -> mp.matrix:
             return mp.matrix(rates({**point, **places, **dict(zip(paired, values, strict=True))}))

@@ -15,17 +15,17 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.model import Model, symbols_of
 
 CLOCK = dynamicsymbols._t
-"""Time, as frames know it."""
+"""The symbol of time in frames of sympy.physics.mechanics."""
 
 
 def moving(variables: Iterable[Variable | sp.Symbol]) -> tuple[sp.Expr, ...]:
-    """Variables as functions of time, as sympy.physics.mechanics wants them."""
+    """Return variables as functions of time, in the form that sympy.physics.mechanics uses."""
     return tuple(dynamicsymbols(v.name if isinstance(v, sp.Symbol) else v.symbol) for v in variables)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Bodies(Model):
-    """Rigid bodies, in terms of the objects of sympy.physics.mechanics.
+    """Rigid bodies as objects of sympy.physics.mechanics, in which moving variables are functions of time.
 
     Moving variables stand in these objects as functions of time, see :func:`moving`. A spinning body that is symmetric
     about its axis may have its inertia stated in a frame that does not spin.
@@ -64,7 +64,7 @@ class Bodies(Model):
     modes: tuple[ModeGroup, ...] = ()
 
     def direction_cosines(self) -> sp.Matrix | None:
-        """As stated."""
+        """Return the direction cosines as they were stated."""
         return self.attitude
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
@@ -73,34 +73,34 @@ class Bodies(Model):
 
     @property
     def speeds(self) -> tuple[sp.Symbol, ...]:
-        """The states that are no coordinates."""
+        """Return the states that are not coordinates."""
         return tuple(s for s in symbols_of(self.states) if s not in self.coordinates)
 
     def along(self, vector: Vector, frame: ReferenceFrame) -> list[sp.Expr]:
-        """Components of a vector, in the model's symbols."""
+        """Return the components of a vector along the axes of a frame, in the model's symbols."""
         return [self.static(c) for c in vector.to_matrix(frame)]
 
     def static(self, expression: sp.Expr) -> sp.Expr:
-        """An expression with functions of time as the model's symbols."""
+        """Replace functions of time in an expression by the model's symbols."""
         known, rates = self._static
         return sp.sympify(expression).xreplace(rates).xreplace(known)
 
     @cached_property
     def _static(self) -> tuple[dict[sp.Basic, sp.Basic], dict[sp.Basic, sp.Basic]]:
-        """Functions of time, and their rates, as the model's symbols."""
+        """Map functions of time, and their rates, to the model's symbols."""
         symbols = (*symbols_of(self.states), *self.named)
         known = {dynamicsymbols(s.name): s for s in symbols} | {CLOCK: n.TIME}
         return known, {dynamicsymbols(s.name).diff(CLOCK): n.rate_of(s) for s in self.speeds}
 
     def spin(self, body: RigidBody) -> list[sp.Expr]:
-        """Components of a body's angular velocity along the axes of its inertia."""
+        """Return the components of a body's angular velocity along the axes of its inertia."""
         return self.along(body.frame.ang_vel_in(self.inertial), axes_of(body))
 
     def momentum(self, body: RigidBody) -> list[sp.Expr]:
-        """Likewise of its angular momentum about its centre of mass."""
+        """Return a body's angular momentum about its centre of mass, along the axes of its inertia."""
         return self.along(body.central_inertia.dot(body.frame.ang_vel_in(self.inertial)), axes_of(body))
 
 
 def axes_of(body: RigidBody) -> ReferenceFrame:
-    """The frame in which the central inertia is stated."""
+    """Return the frame in which the central inertia of a body is stated."""
     return body.central_inertia.args[0][1].args[0][1]

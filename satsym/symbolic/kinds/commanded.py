@@ -1,4 +1,4 @@
-"""What may be stated of a linear law that follows a command, and the symbols of its answers to a step."""
+"""Declarations of a linear control law that follows a command, and the symbols of its step responses."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.symbolic.notation import answer_of, initial, named
 
 @dataclass(frozen=True, kw_only=True)
 class Statement(Derived):
-    """What a :class:`~satsym.symbolic.ClosedLoop` states.
+    """The declarations of a :class:`~satsym.symbolic.ClosedLoop`.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ class Statement(Derived):
     where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def brings(self) -> tuple[Variable, ...]:
-        """The control that the law takes the place of, and its gains."""
+        """Return the control that the law replaces, and the gains."""
         return (*self.of.controls, *self.gains)
 
     def misfits(self) -> Iterator[str]:
-        """Other states, controls besides the law, a command that is followed by nothing."""
+        """Yield complaints about other states, controls besides the law, or a command that no state follows."""
         states = symbols_of(self.states)
         if self.states != self.of.states:
             yield f"the states must be those of {self.of.name}"
@@ -67,9 +67,9 @@ class Statement(Derived):
 s = sp.Symbol("s")
 """Differentiation with respect to time, or the variable of Laplace transforms."""
 COMMAND = sp.Symbol("command", real=True)
-"""What a closed loop is to follow."""
+"""The symbol of the command that a closed loop follows."""
 SECONDS = sp.Symbol("t", positive=True)
-"""Time after the step."""
+"""The symbol of the time after the step of the command."""
 POLYNOMIAL = sp.Symbol("closed_loop_polynomial", real=True)
 FIRST_REACHED, HIGHEST_AT = sp.Symbol("first_reached", real=True), sp.Symbol("highest_at", real=True)
 OVERSHOOT, TOTAL_IMPULSE = sp.Symbol("overshoot", real=True), sp.Symbol("total_impulse", real=True)
@@ -89,23 +89,23 @@ _FIXED = {
 transfer_to = named("transfer_{}")
 """The symbol for the transfer function from the command to a state or the control."""
 impulse_of = named("{}_impulse")
-"""The symbol for the time integral of a control at the very moment of the step."""
+"""The symbol for the time integral of a control over the moment of the step."""
 final_of = named("{}_final")
-"""The symbol for what a state tends to."""
+"""The symbol for the limit of a state."""
 
 
 def pole(k: int) -> sp.Symbol:
-    """The symbol for a pole."""
+    """Return the symbol of the k-th pole."""
     return sp.Symbol(f"pole_{k}", real=True)
 
 
 def zero(k: int) -> sp.Symbol:
-    """The symbol for a zero."""
+    """Return the symbol of the k-th zero."""
     return sp.Symbol(f"zero_{k}", real=True)
 
 
 def names(model: Statement) -> dict[str, str]:
-    """Name -> LaTeX of all of them."""
+    """Map the names of all symbols of step responses to LaTeX."""
     found = {symbol.name: latex for symbol, latex in _FIXED.items()}
     found |= {pole(k).name: f"s_{k}" for k in (1, 2)} | {zero(k).name: f"z_{k}" for k in (1, 2)}
     variables = (*model.states, *model.of.controls)
@@ -119,11 +119,11 @@ def names(model: Statement) -> dict[str, str]:
 
 
 def control_of(model: Statement) -> sp.Symbol:
-    """The control that the law takes the place of."""
+    """Return the control that the law replaces."""
     (control,) = symbols_of(model.of.controls)
     return control
 
 
 def loop_of(so_far: Derivation) -> Statement:
-    """What the model states; its class lists the steps."""
+    """Return the declarations of the closed loop of a derivation."""
     return cast(Statement, so_far.model)

@@ -1,4 +1,4 @@
-"""What kinds have in common whose motion is derived from that of another model."""
+"""Common parts of the kinds of models whose motion is derived from that of another model."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Derived(Model):
     of: Model
 
     def origin(self) -> Model:
-        """The model whose motion this is."""
+        """Return the model from whose motion this motion is derived."""
         return self.of
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """The rates of change of the old states."""
+        """Map the names of the rates of the original states to LaTeX."""
         return {f"d_{v.symbol}": rf"\frac{{d {v.latex}}}{{dt}}" for v in self.of.states}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
@@ -52,7 +52,7 @@ class Derived(Model):
 
 @dataclass(frozen=True, kw_only=True)
 class SpecialCase(Derived):
-    """Such a motion in a special case.
+    """A motion that is derived from that of another model in a special case.
 
     Parameters
     ----------
@@ -66,28 +66,28 @@ class SpecialCase(Derived):
     along: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def brings(self) -> tuple[Variable, ...]:
-        """All that the old motion has."""
+        """Return all variables of the original motion."""
         return variables_of(self.of)
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """Special values, by the variables of the motion."""
+        """Return the special values, stated by the variables of the original motion."""
         old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
         yield "a special value", (*self.where.values(), *self.along.values()), old
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of the old states' rates, and refuse special values with others than their variables."""
+        """Enter the dimensions of the old states' rates, and refuse special values of other dimensions."""
         super().enter_dimensions(known, require)
         for symbol, value in {**self.where, **self.along}.items():
             require(f"the special {symbol.name}", value, known[symbol.name])
 
     def special(self) -> dict[sp.Symbol, sp.Expr]:
-        """Special parameters and states, the former put into the latter."""
+        """Return the special values of parameters and states, with the parameters filled into the states."""
         where = {s: sp.sympify(e) for s, e in self.where.items()}
         return {**where, **{s: sp.sympify(e).xreplace(where) for s, e in self.along.items()}}
 
 
 def original_equations(so_far: Derivation) -> Step:
-    """The first-order form of the motion, from its own derivation, with the checks that it passed there."""
+    """Return the first-order form of the original motion, with the checks that it passed."""
     assert so_far.original is not None
     step = so_far.original.step("first_order")
     checks = tuple(_of_original(c) for c in step.checks if c.claim != AGREEMENT)  # every step gets that one anyway
@@ -95,12 +95,12 @@ def original_equations(so_far: Derivation) -> Step:
 
 
 def _of_original(check: Check) -> Check:
-    """A check that is about what only the other derivation states says so."""
+    """Mark a check that is about a statement of the original derivation alone."""
     return replace(check, claim="differentiated twice there") if check.claim == "differentiated twice" else check
 
 
 def there_and_back(stated: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Equation]) -> Check:
-    """Check new variables, stated by old ones, that are solved for these."""
+    """Check that new variables, stated by old ones, are solved correctly for the old ones."""
     values = [sp.sympify(e) for e in stated.values()]
     there, back = numeric(values), numeric([e.rhs for e in solved])
 

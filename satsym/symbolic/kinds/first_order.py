@@ -1,4 +1,4 @@
-"""Equations of motion that are given in first-order form."""
+"""Models whose equations of motion are given in first-order form."""
 
 from __future__ import annotations
 
@@ -30,36 +30,36 @@ class FirstOrder(Model):
     rates: Mapping[sp.Symbol, sp.Expr]
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """What holds for any motion."""
+        """List the steps that follow from any motion."""
         return (*self.motion_steps(), motion.reference, motion.linearisation)
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """There is nothing to derive."""
+        """List the single step that states the given rates."""
         return (given_rates,)
 
     def misfits(self) -> Iterator[str]:
-        """States without a rate, and rates of other things."""
+        """Yield complaints about states without a rate, and rates of other symbols."""
         if set(symbols_of(self.states)) != set(self.rates):
             odd = unlike(symbols_of(self.states), self.rates, "without a rate", "no state")
             yield f"give one rate for each state; {odd or 'take the symbols from symbols_of'}"
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
-        """The rates, by states and controls."""
+        """Return the rates, which are stated by states and controls."""
         for state, rate in self.rates.items():
             yield f"the rate of {state}", [rate], _declared(self)
 
     def motion_stated(self) -> list[sp.Expr]:
-        """The rates."""
+        """Return the rates, which alone state the motion."""
         return list(self.rates.values())
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Nothing new; the rates must have those of the states by time."""
+        """Check that rates have the dimensions of their states over time; no new symbols are entered."""
         for state, rate in self.rates.items():
             require(f"the rate of {state.name}", rate, known[n.rate_of(state).name])
 
 
 def given_rates(so_far: Derivation) -> Step:
-    """The first-order form as the model states it."""
+    """Return the first-order form as the model states it."""
     model = stated_as(FirstOrder, so_far)
     equations = tuple(Equation(s.name, n.rate_of(s), sp.sympify(model.rates[s])) for s in symbols_of(model.states))
     unknown = set().union(*(e.rhs.free_symbols for e in equations)) - _declared(model)

@@ -1,4 +1,4 @@
-"""From bodies that turn about one axis to a first-order system: Euler's equations, and what motors must do."""
+"""Bodies that turn about one common axis: Euler's equations, the torques of motors, and a first-order system."""
 
 from __future__ import annotations
 
@@ -60,19 +60,19 @@ class Gyrostat(Model):
     quantities: tuple[Output, ...] = ()
 
     def brings(self) -> tuple[Variable, ...]:
-        """The torques of the motors, and the derived quantities."""
+        """Return the torques of the motors and the derived quantities."""
         return (*(m.torque for m in self.motors), *(o.variable for o in self.quantities))
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """The motion, its reference and its Jacobians."""
+        """List the steps: the motion, its reference and its Jacobians."""
         return (*self.motion_steps(), motion.reference, motion.linearisation)
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """Euler's equations, what changes from outside alone, and what the motors must do."""
+        """List the steps: Euler's equations, total angular momentum, first-order form and motor torques."""
         return (momenta, euler, first_order, balance, quantities)
 
     def carried(self) -> tuple[Output, ...]:
-        """The derived quantities."""
+        """Return the derived quantities."""
         return self.quantities
 
     def picture(self) -> geometry.Picture | None:
@@ -80,7 +80,7 @@ class Gyrostat(Model):
         return geometry.bodies(self, next(iter(self.angles)), tuple(self.bodies)) if self.angles else None
 
     def misfits(self) -> Iterator[str]:
-        """Angles that are no states, torques on no bodies, drives of other things than the controls."""
+        """Yield complaints about angles that are no states, torques on no bodies, or drives of no controls."""
         if not {*self.angles, *self.angles.values()} <= set(symbols_of(self.states)):
             yield "the angles and their rates must be states"
         named = {*self.torques, *(body for motor in self.motors for body in (motor.drives, motor.against))}
@@ -90,7 +90,7 @@ class Gyrostat(Model):
             yield "drives: every control must be defined, and nothing else"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """Bodies and torques by states, drives by their rates as well, quantities by those before them."""
+        """Return what is stated: bodies and torques, drives with rates, and quantities."""
         known = set(symbols_of((*self.states, *self.parameters))) | {n.TIME}
         for name, pair in self.bodies.items():
             yield f"the body {name!r}", pair, known
@@ -103,7 +103,7 @@ class Gyrostat(Model):
             known = known | set(symbols_of((output.variable,)))
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """The angular momenta."""
+        """Map the names of the angular momenta to LaTeX."""
         found = {_momentum_of(body).name: rf"h_{{\mathrm{{{body}}}}}" for body in self.bodies}
         return found | {n.rate_of(n.ANGULAR_MOMENTUM).name: r"\frac{d\ell}{dt}"}
 
@@ -128,7 +128,7 @@ class Gyrostat(Model):
             require(f"the quantity {output.variable.symbol}", output.value, known[output.variable.symbol])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """Bodies that turn about one axis, and the torques on them."""
+        """State the bodies that turn about the axis, and the torques on them."""
         bodies, torques = [], []
         for name, (inertia, spin) in self.bodies.items():
             bodies.append(Line("bodies", "I", inertia, f"inertia.{name}", name))
@@ -139,7 +139,7 @@ class Gyrostat(Model):
 
 
 def momenta(so_far: Derivation) -> Step:
-    """Angular momentum of each body, and of all together."""
+    """Derive the angular momentum of each body, and the total one."""
     model = stated_as(Gyrostat, so_far)
     of_each = {name: inertia * spin for name, (inertia, spin) in model.bodies.items()}
     equations = [Equation(name, _momentum_of(name), h) for name, h in of_each.items()]
@@ -149,7 +149,7 @@ def momenta(so_far: Derivation) -> Step:
     inertias, spins = (numeric(list(each)) for each in zip(*_bodies(model), strict=True))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The kinetic energy differentiated by a common turn of all bodies."""
+        """Differentiate the kinetic energy by a common turn of all bodies."""
         turning = list(zip(inertias(point), spins(point), strict=True))
 
         def energy(faster: Any) -> Any:
@@ -162,7 +162,7 @@ def momenta(so_far: Derivation) -> Step:
 
 
 def euler(so_far: Derivation) -> Step:
-    """What turns each body, and what the controls are."""
+    """Derive Euler's equation of each body, and state the controls."""
     model = stated_as(Gyrostat, so_far)
     equations = []
     moving = [s for s in symbols_of(model.states) if s not in model.angles]
@@ -176,7 +176,7 @@ def euler(so_far: Derivation) -> Step:
     values = numeric([i * w for i, w in _bodies(model)])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The momenta differentiated as the states move at their rates."""
+        """Differentiate the momenta numerically as the states move at their rates."""
 
         def later(time: Any) -> list[Any]:
             return values({**point, **{s: point[s] + point.get(r, 0) * time for s, r in rates.items()}})
@@ -189,7 +189,7 @@ def euler(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """Euler's equations solved for the rates of change."""
+    """Solve Euler's equations for the rates of change of the states."""
     model = stated_as(Gyrostat, so_far)
     found, _ = _solved(so_far)
     equations = tuple(Equation(s.name, n.rate_of(s), found[s]) for s in symbols_of(model.states))
@@ -202,7 +202,7 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def balance(so_far: Derivation) -> Step:
-    """How the whole angular momentum changes: by torques from outside alone, whatever the controls do."""
+    """Show that the total angular momentum changes by external torques alone, whatever the controls do."""
     model = stated_as(Gyrostat, so_far)
     outside = tidy(sp.Add(*model.torques.values()))
     rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order"), strict=True))
@@ -213,7 +213,7 @@ def balance(so_far: Derivation) -> Step:
 
 
 def quantities(so_far: Derivation) -> Step | None:
-    """The torques that the motors must give, and what else is derived from them."""
+    """Derive the torques that the motors must give, and the other declared quantities."""
     model = stated_as(Gyrostat, so_far)
     if not model.motors:
         return None
@@ -234,7 +234,7 @@ def quantities(so_far: Derivation) -> Step | None:
         found, definition = numeric(list(known.values())), numeric([e.rhs for e in equations])
 
         def sides(point: Point) -> tuple[list[Any], list[Any]]:
-            """Put in all at once, and one after the other with numbers for those before."""
+            """Substitute all quantities at once, and one after the other in numbers."""
             values = dict(point)
             for _ in equations:
                 values |= dict(zip(known, definition(values), strict=True))
@@ -246,7 +246,7 @@ def quantities(so_far: Derivation) -> Step | None:
 
 
 def _solved(so_far: Derivation) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
-    """Rates of change of all states, and the torques of the motors."""
+    """Solve for the rates of change of all states and the torques of the motors."""
     model = stated_as(Gyrostat, so_far)
     states = symbols_of(model.states)
     unknown = [n.rate_of(s) for s in states if s not in model.angles]
@@ -283,5 +283,5 @@ def _symbols(model: Gyrostat) -> set[sp.Symbol]:
 
 
 def _momentum_of(body: str) -> sp.Symbol:
-    """The symbol for the angular momentum of a body."""
+    """Return the symbol for the angular momentum of a body."""
     return sp.Symbol(f"h_{body}", real=True)

@@ -1,4 +1,4 @@
-"""Steps from bodies to a first-order system: kinematics, Kane's equations, and their solution."""
+"""Steps from rigid bodies to a first-order system: kinematics, Kane's equations, and their solution."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from satsym.symbolic.model import symbols_of
 from satsym.symbolic.motion import steps as motion
 
 MOST_OPERATIONS_UNNAMED = 300
-"""Operations above which common parts of the equations get names of their own."""
+"""Operations of the equations above which their common parts get names."""
 
 
 def kinematics(so_far: Derivation) -> Step:
-    """Named functions of the coordinates, and rates of change of the coordinates."""
+    """State the named functions of the coordinates, and derive the rates of change of the coordinates."""
     model = stated_as(Bodies, so_far)
     named = [Equation(s.name, s, sp.sympify(value)) for s, value in model.named.items()]
     rates = [Equation(f"rate_{q.name}", n.rate_of(q), sp.sympify(r)) for q, r in model.coordinates.items()]
@@ -37,7 +37,7 @@ def kinematics(so_far: Derivation) -> Step:
 
 
 def _turning(model: Bodies) -> Check:
-    """Angular velocities of all frames against their matrices, differentiated numerically along a path."""
+    """Check angular velocities of all frames by differentiating their rotation matrices numerically along a path."""
     frames = list(dict.fromkeys(axes_of(body) for body in model.bodies))
     turned = [model.static(e) for frame in frames for e in model.inertial.dcm(frame)]
     rates = [e for frame in frames for e in model.along(frame.ang_vel_in(model.inertial), model.inertial)]
@@ -61,17 +61,17 @@ def _turning(model: Bodies) -> Check:
 
 
 def partial_of(number: int) -> sp.Symbol:
-    """The matrix of the partial angular velocities of a body, by its number."""
+    """Return the matrix of the partial angular velocities of the body with this number."""
     return sp.Symbol(f"partial_rates_{number}")
 
 
 def label_of(body: RigidBody) -> str:
-    """The name of a body, as LaTeX."""
+    """Return the name of a body as LaTeX."""
     return r"\mathrm{" + body.name.replace(" ", r"\ ") + "}"
 
 
 def partial_velocities(so_far: Derivation) -> Step | None:
-    """Derivatives of the bodies' angular velocities by the speeds, where there are several bodies."""
+    """Derive the derivatives of the bodies' angular velocities by the speeds, if there are several bodies."""
     model = stated_as(Bodies, so_far)
     if len(model.bodies) < 2:
         return None
@@ -91,7 +91,7 @@ def partial_velocities(so_far: Derivation) -> Step | None:
 
 
 def _summed(model: Bodies, so_far: Derivation, parts: list[tuple[sp.Symbol, sp.Expr]], mass: sp.Matrix) -> Check:
-    """Check that the inertias, each between the partial velocities of its body, add up to the mass matrix."""
+    """Check that the bodies' inertias, each between the partial velocities of its body, add up to the mass matrix."""
     total = sp.zeros(*mass.shape)
     for body, equation in zip(model.bodies, so_far.step("partial_velocities").equations, strict=True):
         inertia = body.central_inertia.to_matrix(axes_of(body)).applyfunc(model.static)
@@ -102,7 +102,7 @@ def _summed(model: Bodies, so_far: Derivation, parts: list[tuple[sp.Symbol, sp.E
 
 
 def kane(so_far: Derivation) -> Step:
-    """Kane's equations M u' + b = Q, with names for their common parts where they are long."""
+    """Derive Kane's equations M u' + b = Q, with names for common parts where they are long."""
     model = stated_as(Bodies, so_far)
     functions = {s: dynamicsymbols(s.name) for s in (*symbols_of(model.states), *model.named)}
     kinematic = [functions[q].diff(CLOCK) - sp.sympify(r).xreplace(functions) for q, r in model.coordinates.items()]
@@ -150,7 +150,7 @@ def _part(k: int) -> sp.Symbol:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """Kane's equations solved for the rates of the speeds: in closed form where they are short."""
+    """Solve Kane's equations for the rates of the speeds: in closed form where that is short."""
     model = stated_as(Bodies, so_far)
     known = {e.name: e.rhs for e in so_far.step("kane").equations}
     size = len(model.speeds)
@@ -190,7 +190,7 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def reference(so_far: Derivation) -> Step | None:
-    """The reference curve, proved to need no acceleration: by Kane's equations where these are not solved."""
+    """Prove that the reference curve satisfies Kane's equations, also where these are not solved."""
     model = stated_as(Bodies, so_far)
     if not model.reference or not parts_of(so_far):
         return motion.reference(so_far)
@@ -211,7 +211,7 @@ def reference(so_far: Derivation) -> Step | None:
 
 
 def invariant_motions(so_far: Derivation) -> Step | None:
-    """States that stay zero, whatever the others do: no load acts on them, and no inertia couples them."""
+    """Prove that the declared states stay zero: no load acts on them, and no inertia couples them."""
     model = stated_as(Bodies, so_far)
     if not model.vanishing:
         return None
@@ -234,7 +234,7 @@ def invariant_motions(so_far: Derivation) -> Step | None:
 
 
 def linearisation(so_far: Derivation) -> Step | None:
-    """Jacobians, where the rates have a closed form; along a chain they have too many entries to print."""
+    """Derive the Jacobians where the rates have a closed form; those of a chain have too many entries to print."""
     return None if parts_of(so_far) else motion.linearisation(so_far)
 
 
@@ -252,12 +252,12 @@ def _symbols(model: Bodies) -> set[sp.Symbol]:
 
 
 def _values(model: Bodies, expressions: list[sp.Expr]) -> Any:
-    """A function of a point for expressions in named functions."""
+    """Return a function of a point that evaluates expressions in named functions."""
     return numeric_along(model.named.items(), expressions)[0]
 
 
 def _path(model: Bodies, point: Point) -> Any:
-    """Where the states are some time later, to first order: coordinates at their rates, speeds at the point's."""
+    """Return the states a little later, to first order: coordinates at their rates, speeds at given rates."""
     rates = _values(model, [sp.sympify(r) for r in model.coordinates.values()])(point)
     slopes = dict(zip(model.coordinates, rates, strict=True)) | {u: point.get(n.rate_of(u), 0) for u in model.speeds}
     slopes[n.TIME] = 1
@@ -265,7 +265,7 @@ def _path(model: Bodies, point: Point) -> Any:
 
 
 def _newton_euler(model: Bodies, parts: list[tuple[sp.Symbol, sp.Expr]], values: Mapping[str, sp.Expr]) -> Check:
-    """Newton's and Euler's laws body by body in inertial axes, differentiated numerically, along each speed."""
+    """Evaluate the laws of Newton and Euler for each body, differentiated numerically in inertial axes."""
     inertial, speeds = model.inertial, model.speeds
     motions, changing, pushes = [], [], []
     for body in model.bodies:

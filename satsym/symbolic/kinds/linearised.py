@@ -1,4 +1,4 @@
-"""From a motion and a change of variables to the linear model of its deviations.
+"""The linear model of deviations from a motion, derived by a change of variables.
 
 The equations of the motion are derived anew as far as their first-order form; a reference is found to solve them,
 and under which condition; then come the exact equations in the deviations, and their first order at zero.
@@ -54,34 +54,34 @@ class Linearised(Derived):
     deviations: Mapping[sp.Symbol, sp.Expr]
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """The first-order form is the end of it."""
+        """List the steps, which end with the first-order form."""
         return self.motion_steps()
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """The reference, the change of variables, the exact equations and their first order."""
+        """List the steps: the reference, the change of variables, the exact equations and their first order."""
         exact = (original_equations, reference_condition, reference, deviations, original_states, deviation_equations)
         return (*exact, linearisation, first_order)
 
     def replaced_states(self) -> tuple[Variable, ...]:
-        """All states of the motion."""
+        """Return all states of the original motion."""
         return self.of.states
 
     def replaced_controls(self) -> tuple[Variable, ...]:
-        """The controls that have deviations."""
+        """Return the controls of the original motion that have deviations."""
         kept = {v.symbol for v in self.controls}
         return tuple(v for v in self.of.controls if v.symbol not in kept)
 
     def measured(self) -> tuple[Variable, ...]:
-        """The variables of the motion."""
+        """Return the variables of the original motion, of which outputs are functions."""
         return (*self.of.states, *self.of.controls)
 
     def picture(self) -> geometry.Picture | None:
-        """Where its deviations move a particle."""
+        """Draw where the deviations move a particle."""
         particle = self.of.particle()
         return geometry.deviations(self, particle, self.about, self.deviations) if particle else None
 
     def misfits(self) -> Iterator[str]:
-        """Variables that do not replace those of the motion one by one."""
+        """Yield complaints about variables that do not replace those of the original motion one by one."""
         of, old_controls = self.of, symbols_of(self.of.controls)
         states, controls = symbols_of(self.states), symbols_of(self.controls)
         new = [u for u in controls if u not in old_controls]
@@ -97,7 +97,7 @@ class Linearised(Derived):
             yield f"the definitions must be exactly those of {of.name}"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """What it is linearised about, by constants alone; deviations and the motion itself."""
+        """Return the reference, stated by constants and time, the deviations, and the outputs."""
         constants = constants_of(self)
         everything = constants | set(symbols_of(self.measured()))
         yield "the motion it is linearised about", self.about.values(), constants
@@ -105,11 +105,11 @@ class Linearised(Derived):
         yield f"the motion {self.of.name}", self.of.motion_stated(), everything
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """What linear theory finds, which no variable may be called, and the rates of the old states."""
+        """Map the names of what linear theory finds, and of the rates of the original states, to LaTeX."""
         return super().names(problem) | ({} if problem else results(self))
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of the old rates, and refuse a reference or deviations that have others."""
+        """Enter the dimensions of the old rates, and refuse a reference or deviations of other dimensions."""
         super().enter_dimensions(known, require)
         for symbol, curve in self.about.items():
             require(f"the reference of {symbol.name}", curve, known[symbol.name])
@@ -117,13 +117,13 @@ class Linearised(Derived):
             require(f"the deviation {symbol.name}", deviation, known[symbol.name])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """The reference."""
+        """State the reference that the motion is linearised about."""
         about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.about.items())
         return (Paragraph("linearised", self.of, tuple(about)),)
 
 
 def reference_condition(so_far: Derivation) -> Step | None:
-    """The values of named constants with which the reference solves the equations, and no other ones do."""
+    """Derive the values of named constants with which, and only which, the reference solves the equations."""
     model = stated_as(Linearised, so_far)
     constants = definitions_of(model)
     defects = [simplify(d) for d in _defects(so_far)]
@@ -146,7 +146,7 @@ def reference_condition(so_far: Derivation) -> Step | None:
     values, equal = numeric([e.rhs for e in equations]), numeric(defects)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """Newton's method on the defects of the equations, from a random start."""
+        """Solve the defects of the equations by Newton's method from a random start."""
         start = [point[s] for s in unknown]
         square = [k for k, d in enumerate(defects) if d != 0][: len(unknown)]
 
@@ -165,7 +165,7 @@ def reference_condition(so_far: Derivation) -> Step | None:
 
 
 def reference(so_far: Derivation) -> Step:
-    """The motion that is linearised about, proved to satisfy the equations with its controls."""
+    """Prove that the reference satisfies the equations of motion with its controls."""
     model = stated_as(Linearised, so_far)
     defects = [d.xreplace(definitions_of(model)) for d in _defects(so_far)]
     proof = identity("satisfies the equations with its controls", defects)
@@ -180,7 +180,7 @@ def reference(so_far: Derivation) -> Step:
 
 
 def deviations(so_far: Derivation) -> Step:
-    """The new variables, which vanish on the reference."""
+    """State the deviations, which vanish on the reference."""
     model = stated_as(Linearised, so_far)
     stated = _stated(model)
     proof = identity("vanish on the reference", [d.xreplace(_about(model)) for d in stated.values()])
@@ -191,7 +191,7 @@ def deviations(so_far: Derivation) -> Step:
 
 
 def original_states(so_far: Derivation) -> Step:
-    """The old variables in terms of the new ones."""
+    """Solve the deviations for the original variables."""
     model = stated_as(Linearised, so_far)
     stated, old = _stated(model), symbols_of((*model.replaced_states(), *model.replaced_controls()))
     try:
@@ -210,7 +210,7 @@ def original_states(so_far: Derivation) -> Step:
 
 
 def deviation_equations(so_far: Derivation) -> Step:
-    """The exact equations that the deviations obey, by the chain rule."""
+    """Derive the exact equations of the deviations, by the chain rule."""
     model = stated_as(Linearised, so_far)
     old_states, stated = symbols_of(model.of.states), _stated(model)
     motion = dict(zip(old_states, so_far.rhs("original_equations"), strict=True))
@@ -221,7 +221,7 @@ def deviation_equations(so_far: Derivation) -> Step:
     old_rates, found = numeric(list(motion.values())), numeric(rates)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """Rates of the new variables as the old ones move on along their own rates."""
+        """Differentiate the deviations numerically as the original variables move at their own rates."""
         here = {**point, **dict(zip(inverse, back(point), strict=True))}
         slopes = dict(zip(old_states, old_rates(here), strict=True))
 
@@ -237,7 +237,7 @@ def deviation_equations(so_far: Derivation) -> Step:
 
 
 def linearisation(so_far: Derivation) -> Step:
-    """A and B: the exact equations differentiated by the deviations, at zero."""
+    """Derive A and B: the derivatives of the exact equations by the deviations, at zero."""
     model = stated_as(Linearised, so_far)
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     constants = definitions_of(model)
@@ -250,7 +250,7 @@ def linearisation(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The linear equations x' = A x + B u."""
+    """State the linear equations x' = A x + B u."""
     model = stated_as(Linearised, so_far)
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     entries = [e.rhs for e in so_far.step("linearisation").equations]
@@ -265,19 +265,19 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def _about(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
-    """States and controls of the motion along the reference."""
+    """Return states and controls of the original motion along the reference."""
     symbols = (*symbols_of(model.of.states), *symbols_of(model.of.controls))
     return {s: sp.sympify(model.about.get(s, 0)) for s in symbols}
 
 
 def _stated(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
-    """The deviations in the order of states and controls."""
+    """Return the deviations in the order of states and controls."""
     symbols = (*symbols_of(model.states), *symbols_of(model.controls))
     return {s: sp.sympify(model.deviations[s]) for s in symbols if s in model.deviations}
 
 
 def _defects(so_far: Derivation) -> list[sp.Expr]:
-    """What is left of the equations of motion when the reference is put into them, named constants kept."""
+    """Return the residuals of the equations of motion along the reference, with named constants kept."""
     model = stated_as(Linearised, so_far)
     about, states = _about(model), symbols_of(model.of.states)
     rates = so_far.rhs("original_equations").xreplace(about)
@@ -300,5 +300,5 @@ def _transformed(so_far: Derivation, entries: list[sp.Expr]) -> Check:
 
 
 def _shorter(expression: sp.Expr) -> sp.Expr:
-    """The shortest of some ways to write a rate."""
+    """Return the shortest of some ways to write a rate."""
     return min((expression, tidy(expression), factored(expression)), key=sp.count_ops)

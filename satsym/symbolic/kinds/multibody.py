@@ -1,4 +1,4 @@
-"""From bodies, frames and loads of sympy.physics.mechanics to a first-order system, by Kane's equations."""
+"""Rigid bodies with frames and loads of sympy.physics.mechanics: a first-order system by Kane's equations."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ class Multibody(Bodies):
     """Rigid bodies whose equations of motion are Kane's; see :class:`~satsym.symbolic.kinds.bodies.Bodies`."""
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """The motion, its reference and, where it has a closed form, its Jacobians."""
+        """List the steps: the motion, its reference and, where it has a closed form, its Jacobians."""
         return (*self.motion_steps(), kane.reference, kane.invariant_motions, kane.linearisation)
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """Kinematics, partial velocities, Kane's equations, and their solution."""
+        """List the steps: kinematics, partial velocities, Kane's equations, and their solution."""
         return (kane.kinematics, kane.partial_velocities, kane.kane, kane.first_order)
 
     def misfits(self) -> Iterator[str]:
-        """Coordinates that are no states, and modes that are named by what is not here."""
+        """Yield complaints about coordinates that are no states, and modes named by unknown states."""
         if not set(self.coordinates) <= set(symbols_of(self.states)):
             yield "the coordinates must be states"
         known, constants = ({v.symbol for v in each} for each in (self.states, self.parameters))
@@ -44,7 +44,7 @@ class Multibody(Bodies):
                 yield f"the mode {group.name!r}: {group.vanishing} is not a parameter"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """Named functions by coordinates, rates by states as well, what the bodies have by all of these."""
+        """Return what is stated: named functions, rates of coordinates, and properties of the bodies."""
         constants = constants_of(self)
         yield "a named function", self.named.values(), constants | set(self.coordinates)
         known = constants | set(self.named) | set(symbols_of((*self.states, *self.controls)))
@@ -55,7 +55,7 @@ class Multibody(Bodies):
             yield f"the load on {place.name}", self.along(load, self.inertial), known
 
     def picture(self) -> geometry.Picture | None:
-        """Its axes beside those of the orbit."""
+        """Draw the axes of the body beside those of the orbit."""
         return self.pictured(self.states)
 
     def pictured(self, angles: Iterable[Variable]) -> geometry.Picture | None:
@@ -65,11 +65,11 @@ class Multibody(Bodies):
         return geometry.attitude(self.attitude.subs(self.named), angles)
 
     def followed(self) -> str:
-        """The parameter that the model names, if its attitude is all that moves."""
+        """Return the parameter over which equilibria are followed, if only the attitude moves."""
         return self.varied if self.attitude is not None and len(self.states) == 6 else ""
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """Partial velocities, entries of the equations, their common parts, and their solution."""
+        """Map the names of partial velocities, of Kane's equations, and of their solution to LaTeX."""
         numbers = range(1, len(self.speeds) + 1)
         found: dict[str, str] = {}
         for i, speed in zip(numbers, self.speeds, strict=True):
@@ -84,7 +84,7 @@ class Multibody(Bodies):
         return found | {f"part_{k}": f"{part}_{{{k}}}" for k in range(1, 400)}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of named functions and solved rates, and refuse rates of coordinates with others."""
+        """Enter the dimensions of named functions and solved rates, and refuse rates of other dimensions."""
         for symbol, value in self.named.items():
             known[symbol.name] = require(f"the function {symbol.name}", value)
         for coordinate, rate in self.coordinates.items():
@@ -93,7 +93,7 @@ class Multibody(Bodies):
             known[n.solved(speed).name] = over(known[speed.name], known[n.TIME.name])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """The angular velocity and the inertia matrix of each body, along the axes of its inertia."""
+        """State the angular velocity and the inertia matrix of each body, along the axes of its inertia."""
         lines = []
         for body in self.bodies:
             inertia = body.central_inertia.to_matrix(axes_of(body)).applyfunc(self.static)
@@ -105,7 +105,7 @@ class Multibody(Bodies):
         return (Paragraph(sentence, lines=tuple(lines)),)
 
     def rest(self, derived: Derivation) -> Rest | None:
-        """What turns it where its rates vanish, in direction cosines."""
+        """Return the torques on the body where its rates vanish, in direction cosines."""
         if self.attitude is None or not self.followed():
             return None
         known = {e.name: e.rhs for e in derived.step("kane").equations}

@@ -1,4 +1,4 @@
-"""From Newton's law to equations of motion: every step by differentiation and projection, none typed in."""
+"""Equations of motion of a particle from Newton's law, each step by differentiation and projection."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Newton(Particle):
     directions: Mapping[str, sp.Matrix]
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """The motion, what it keeps, and what is special where a centre attracts."""
+        """List the steps: the motion, conserved quantities, and steps for central forces."""
         return (
             *self.motion_steps(),
             central_force.central_force,
@@ -55,7 +55,7 @@ class Newton(Particle):
         return (unit_vectors, position, velocity, acceleration, forces, newton, equations_of_motion, first_order)
 
     def misfits(self) -> Iterator[str]:
-        """States that are no coordinates, vectors of different sizes."""
+        """Yield complaints about states that are no coordinates, and vectors of different sizes."""
         states, moving = symbols_of(self.states), [*self.coordinates, *self.coordinates.values()]
         if len(moving) != len(states) or set(moving) != set(states):
             odd = unlike(symbols_of(self.states), moving, "neither coordinate nor rate", "no state")
@@ -67,7 +67,7 @@ class Newton(Particle):
             yield "a vector must have one component for each direction"
 
     def stated(self) -> Iterator[tuple[str, sp.Matrix, set[sp.Symbol]]]:
-        """Vectors: those that place things by coordinates alone, forces by states and controls."""
+        """Return the stated vectors: positions and directions by coordinates, forces by states and controls."""
         placed = constants_of(self) | set(self.coordinates)
         yield "the position", self.position, placed
         for name, direction in self.directions.items():
@@ -76,11 +76,11 @@ class Newton(Particle):
             yield f"the force {name!r}", force, constants_of(self) | set(symbols_of((*self.states, *self.controls)))
 
     def motion_stated(self) -> list[sp.Expr]:
-        """Position and forces, by components."""
+        """Return the components of position and forces."""
         return [*self.position, *(c for force in self.forces.values() for c in force)]
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """Accelerations, momenta and unit vectors."""
+        """Map the names of accelerations, momenta and unit vectors to LaTeX."""
         latex, found = {v.symbol: v.latex for v in self.states}, {}
         for q in self.coordinates:
             found[f"momentum_{q.name}"] = rf"p_{{{latex[q.name]}}}"
@@ -96,7 +96,7 @@ class Newton(Particle):
         return tuple(n.acceleration_of(q).name for q in self.coordinates)
 
     def unit_vectors(self) -> tuple[str, ...]:
-        """The directions."""
+        """Return the names of the unit vectors."""
         return tuple(self.directions)
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
@@ -129,14 +129,14 @@ class Newton(Particle):
         return geometry.motion(self, self.directions)
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """The vectors along inertial axes."""
+        """State the vectors along inertial axes."""
         lines = [Line("directions", sp.Symbol(name), vector) for name, vector in self.directions.items()]
         lines.append(Line("position", n.POSITION, self.position))
         lines += [Line("forces", n.FORCE, vector, index=name) for name, vector in self.forces.items()]
         return (Paragraph("newton", lines=tuple(lines)),)
 
     def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
-        """The vectors."""
+        """Return the stated vectors by name."""
         return {
             "position": self.position,
             **{f"directions.{name}": vector for name, vector in self.directions.items()},
@@ -145,7 +145,7 @@ class Newton(Particle):
 
 
 def unit_vectors(so_far: Derivation) -> Step:
-    """How the directions turn: their rates of change, resolved along themselves."""
+    """Derive the rates of change of the unit vectors, resolved along these vectors."""
     model = stated_as(Newton, so_far)
     basis = sp.Matrix.hstack(*model.directions.values())
     orthonormal = identity("orthonormal", basis.T * basis - sp.eye(basis.cols))
@@ -168,7 +168,7 @@ def unit_vectors(so_far: Derivation) -> Step:
 
 
 def position(so_far: Derivation) -> Step:
-    """The position vector, resolved along the directions."""
+    """Resolve the position vector along the unit vectors."""
     model = stated_as(Newton, so_far)
     resolved = Equation("vector", n.POSITION, _resolved(model, model.position))
     check = compare(
@@ -180,13 +180,13 @@ def position(so_far: Derivation) -> Step:
 
 
 def velocity(so_far: Derivation) -> Step:
-    """The first time derivative of the position."""
+    """Derive the first time derivative of the position."""
     model = stated_as(Newton, so_far)
     return _kinematics(model, "velocity", n.VELOCITY, model.coordinates, ("position", "unit_vectors"), order=1)
 
 
 def acceleration(so_far: Derivation) -> Step:
-    """The second time derivative of the position."""
+    """Derive the second time derivative of the position."""
     return _kinematics(
         stated_as(Newton, so_far),
         "acceleration",
@@ -198,7 +198,7 @@ def acceleration(so_far: Derivation) -> Step:
 
 
 def forces(so_far: Derivation) -> Step:
-    """The sum of the forces per unit mass, resolved along the directions."""
+    """Resolve the sum of the forces per unit mass along the unit vectors."""
     model = stated_as(Newton, so_far)
     total = sum(model.forces.values(), sp.zeros(len(model.position), 1))
     resolved = Equation("vector", n.FORCE, _resolved(model, *model.forces.values()))
@@ -211,7 +211,7 @@ def forces(so_far: Derivation) -> Step:
 
 
 def newton(so_far: Derivation) -> Step:
-    """Acceleration equals force per unit mass, direction by direction."""
+    """State Newton's law, acceleration equals force per unit mass, along each unit vector."""
     model = stated_as(Newton, so_far)
     a, f = (so_far.equation(f"{step}.vector").rhs for step in ("acceleration", "forces"))
     equations = tuple(Equation(name, a.coeff(sp.Symbol(name)), f.coeff(sp.Symbol(name))) for name in model.directions)
@@ -225,7 +225,7 @@ def newton(so_far: Derivation) -> Step:
 
 
 def equations_of_motion(so_far: Derivation) -> Step:
-    """Newton's law solved for the second derivatives of the coordinates."""
+    """Solve Newton's law for the second derivatives of the coordinates."""
     model = stated_as(Newton, so_far)
     unknown = [n.acceleration_of(q) for q in model.coordinates]
     law = [e.lhs - e.rhs for e in so_far.step("newton").equations]
@@ -242,7 +242,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
     solution = numeric([e.rhs for e in equations])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """Newton's law in inertial components, the motion differentiated numerically."""
+        """Evaluate Newton's law in inertial components, with the motion differentiated numerically."""
         moving = {**point, **dict(zip(unknown, solution(point), strict=True))}
         return _derivative_along_path(model, model.position, moving, 2), numeric(list(total))(point)
 
@@ -251,7 +251,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The equations of motion as dx/dt = f(t, x, u, p)."""
+    """State the equations of motion as dx/dt = f(t, x, u, p)."""
     model = stated_as(Newton, so_far)
     rate = dict(model.coordinates)
     for q, q_dot in model.coordinates.items():
@@ -285,13 +285,13 @@ def _kinematics(
 
 
 def _accelerated(so_far: Derivation) -> dict[sp.Symbol, sp.Symbol]:
-    """Rates of the coordinates and of their rates."""
+    """Map each coordinate and each of its rates to its rate of change."""
     coordinates = stated_as(Newton, so_far).coordinates
     return {**coordinates, **{q_dot: n.acceleration_of(q) for q, q_dot in coordinates.items()}}
 
 
 def _resolved(model: Newton, *vectors: sp.Matrix) -> sp.Expr:
-    """The sum of some vectors, by its components along the directions."""
+    """Return the sum of some vectors, by its components along the unit vectors."""
     components = {
         name: sp.Add(*(tidy(simplified(vector.dot(e))) for vector in vectors)) for name, e in model.directions.items()
     }
@@ -299,7 +299,7 @@ def _resolved(model: Newton, *vectors: sp.Matrix) -> sp.Expr:
 
 
 def _vectors(model: Newton, resolved: Sequence[sp.Expr], point: Point) -> list[Any]:
-    """Inertial components of resolved vectors, at a point."""
+    """Return the inertial components, at a point, of vectors that are resolved along the unit vectors."""
     directions = {name: numeric(list(e))(point) for name, e in model.directions.items()}
     found = []
     for vector in resolved:
@@ -310,14 +310,14 @@ def _vectors(model: Newton, resolved: Sequence[sp.Expr], point: Point) -> list[A
 
 
 def _path_symbols(model: Newton) -> list[sp.Symbol]:
-    """Time, coordinates, their rates and accelerations, and what else places the position and the directions."""
+    """Return time, coordinates, rates and accelerations, with the other symbols that place the position."""
     q = model.coordinates
     others = sp.Matrix.hstack(model.position, *model.directions.values()).free_symbols
     return list({n.TIME, *q, *q.values(), *(n.acceleration_of(c) for c in q)} | others)
 
 
 def _derivative_along_path(model: Newton, vector: sp.Matrix, point: Point, order: int) -> list[Any]:
-    """Numeric time derivative of a vector as time passes and the coordinates follow the point's parabola."""
+    """Differentiate a vector numerically in time, as the coordinates move along a parabola."""
     symbols = list(model.coordinates)
     components = numeric(list(vector))
 

@@ -1,4 +1,4 @@
-"""A motion in fewer states: the others follow from them, on a set of motions that the motion never leaves."""
+"""A motion in fewer states, on a set of motions where the other states follow from the kept ones."""
 
 from __future__ import annotations
 
@@ -22,11 +22,10 @@ from satsym.symbolic.motion import steps as motion
 
 @dataclass(frozen=True, kw_only=True)
 class Reduced(SpecialCase):
-    """A motion in some of its states, where the others follow from them, such as a momentum's from its balance.
+    """A motion in some of its states, of which the others are functions, as a momentum is by its balance.
 
-    States, controls and parameters are those of the motion that are kept.
-
-    Each state that is left out must be among ``along``; that it stays what it is there is proved.
+    States, controls and parameters are those of the original motion that are kept. Each state that is left out must be
+    among ``along``; that it keeps its value there is proved.
     """
 
     def picture(self) -> geometry.Picture | None:
@@ -34,11 +33,11 @@ class Reduced(SpecialCase):
         return self.of.picture()
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """The states that are left out, the motion of the others, and what holds for any motion."""
+        """List the steps: the states that are left out, the motion of the others, and steps for any motion."""
         return (original_equations, special_case, first_order, quantities, motion.reference, motion.linearisation)
 
     def misfits(self) -> Iterator[str]:
-        """States that are neither kept nor left out, or both, and other controls."""
+        """Yield complaints about states that are neither kept nor left out, or both, and about other controls."""
         states, old = set(symbols_of(self.states)), set(symbols_of(self.of.states))
         if states | set(self.along) != old or states & set(self.along):
             yield "each state of the original model must be either a state of this model or a key of `along`"
@@ -47,7 +46,7 @@ class Reduced(SpecialCase):
 
 
 def special_case(so_far: Derivation) -> Step:
-    """The special values, and the states that follow from the others: once they do, they always do."""
+    """State the special values, and prove that states which follow from the others go on doing so."""
     model = stated_as(Reduced, so_far)
     special = model.special()
     where, along = ({s: special[s] for s in part} for part in (model.where, model.along))
@@ -61,7 +60,7 @@ def special_case(so_far: Derivation) -> Step:
 
 
 def first_order(so_far: Derivation) -> Step:
-    """The equations of the states that are kept."""
+    """Derive the equations of the states that are kept."""
     model = stated_as(Reduced, so_far)
     states = symbols_of(model.states)
     rates = dict(zip(symbols_of(model.of.states), so_far.rhs("original_equations"), strict=True))
@@ -77,7 +76,7 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def quantities(so_far: Derivation) -> Step:
-    """The states that were left out, and all that was derived from them."""
+    """Derive the states that were left out, and all quantities of the original motion."""
     model, original = stated_as(Reduced, so_far), so_far.original
     assert original is not None
     special = model.special()
@@ -92,7 +91,7 @@ def quantities(so_far: Derivation) -> Step:
 
 
 def _same_values(model: Reduced, found: list[sp.Expr], general: list[sp.Expr], moving: list[sp.Expr]) -> Check:
-    """Check expressions by general ones at points of the special case, at random values of what moves."""
+    """Check expressions by general ones at points of the special case, with random values of the moving variables."""
     values, exact, special = numeric(found), numeric(general), model.special()
     others = numeric(list(special.values()))
 

@@ -1,4 +1,4 @@
-"""From a motion in units to the same motion in plain numbers: new time, states and controls, each a multiple."""
+"""A motion in nondimensional variables: new time, states and controls, each a multiple of an old one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ORIGINAL_TIME = sp.Symbol("original_t", real=True)
 
 @dataclass(frozen=True, kw_only=True)
 class Scaled(SpecialCase):
-    """A motion in plain numbers: new states, controls and time, each a multiple of an old one.
+    """A motion in nondimensional variables: new states, controls and time, each a multiple of an old one.
 
     States of the old motion that nothing else depends on may be left out.
 
@@ -58,20 +58,20 @@ class Scaled(SpecialCase):
     quantities: tuple[Output, ...] = ()
 
     def brings(self) -> tuple[Variable, ...]:
-        """The units, all that the old motion has, and the derived quantities."""
+        """Return the units, all variables of the original motion, and the derived quantities."""
         return (*self.units, *super().brings(), *(o.variable for o in self.quantities))
 
     def steps(self) -> tuple[MaybeStep, ...]:
-        """New units, the same motion in them, and what holds for any motion."""
+        """List the steps: new units, the motion in them, and steps for any motion."""
         own = (original_equations, scales, original_states, first_order, quantities)
         return (*own, motion.reference, motion.linearisation)
 
     def carried(self) -> tuple[Output, ...]:
-        """Its own quantities and those of the old motion."""
+        """Return the quantities of this model and those of the original motion."""
         return (*self.quantities, *self.of.carried())
 
     def misfits(self) -> Iterator[str]:
-        """Variables without a scale, parameters that are no groups, states that the old motion has not."""
+        """Yield complaints about variables without a scale, parameters without a group, and unknown states."""
         if set(self.scaled) != set(symbols_of((*self.states, *self.controls))):
             yield "give exactly one scale for each state and each control"
         if set(self.groups) != set(symbols_of(self.parameters)):
@@ -80,7 +80,7 @@ class Scaled(SpecialCase):
             yield f"the keys of `along` must be states of {self.of.name}"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
-        """Everything by the old variables."""
+        """Return all scales, groups and quantities, which are stated by the old variables."""
         old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
         constants = set(symbols_of((*self.of.parameters, *self.units)))
         yield from super().stated()
@@ -91,7 +91,7 @@ class Scaled(SpecialCase):
         yield "a quantity", [o.value for o in self.quantities], known
 
     def names(self, problem: Problem | None) -> dict[str, str]:
-        """The new time, whose symbol the old one had, and rates by both."""
+        """Map the names of the new time and of rates by the old and the new time to LaTeX."""
         new = {f"d_{v.symbol}": rf"\frac{{d {v.latex}}}{{d\tau}}" for v in self.states}
         new |= {f"d_lambda_{v.symbol}": rf"\frac{{d \lambda_{{{v.latex}}}}}{{d\tau}}" for v in self.states}
         new |= {"t": r"\tau", "t_f": r"\tau_f", n.RESIDUAL_TIME.name: r"\mathcal{B}_{\tau_f}"}
@@ -99,7 +99,7 @@ class Scaled(SpecialCase):
         return super().names(problem) | new | {ORIGINAL_TIME.name: "t"}
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Enter the dimensions of the old time and the old rates, and refuse what is stated with others."""
+        """Enter the dimensions of the old time and the old rates, and refuse scales of other dimensions."""
         known[ORIGINAL_TIME.name] = SECOND
         require("the unit of time", self.unit_of_time, SECOND)
         super().enter_dimensions(known, require)
@@ -111,7 +111,7 @@ class Scaled(SpecialCase):
 
 
 def scales(so_far: Derivation) -> Step:
-    """The new time, states and controls, and the special case that is meant."""
+    """State the new time, states and controls, and the special case."""
     model = stated_as(Scaled, so_far)
     if any(e.rhs.has(t) for e in so_far.step("original_equations").equations):
         raise DerivationError(
@@ -135,7 +135,7 @@ def scales(so_far: Derivation) -> Step:
 
 
 def original_states(so_far: Derivation) -> Step:
-    """The old variables in terms of the new ones."""
+    """Solve the scales for the old variables."""
     model = stated_as(Scaled, so_far)
     olds = [
         s
@@ -171,7 +171,7 @@ def first_order(so_far: Derivation) -> Step:
     found = numeric([e.rhs for e in equations])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The new states differentiated by the new time as the old ones move at their own rates."""
+        """Differentiate the new states by the new time as the old ones move at their own rates."""
         here = {**point, **dict(zip(inverse, back(point), strict=True))}
         speeds = dict(zip(old_states, old(here), strict=True))
         (second,) = unit(point)
@@ -202,7 +202,7 @@ def first_order(so_far: Derivation) -> Step:
 
 
 def quantities(so_far: Derivation) -> Step | None:
-    """What is carried over besides."""
+    """Derive the declared quantities in the new variables."""
     model = stated_as(Scaled, so_far)
     if not model.quantities:
         return None
@@ -229,7 +229,7 @@ def quantities(so_far: Derivation) -> Step | None:
 
 
 def _carried(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """Quantities of the old motion, in terms of its states and controls."""
+    """Return the quantities of the original motion, in terms of its states and controls."""
     original = so_far.original
     assert original is not None
     if "quantities" not in original:
@@ -238,7 +238,7 @@ def _carried(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 
 def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
-    """An expression of old variables in the new ones, with the groups in place of the parameters they are made of."""
+    """Rewrite an expression in the new variables, with groups in place of the parameters they are made of."""
     model = stated_as(Scaled, so_far)
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
     value = _reduced(expression.xreplace(model.special()).xreplace(inverse))
@@ -256,5 +256,5 @@ def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
 
 
 def _reduced(expression: sp.Expr) -> sp.Expr:
-    """A rational function of the symbols and of their roots, without common factors."""
+    """Cancel common factors in a rational function of symbols and of their roots."""
     return sp.powdenest(factored(sp.cancel(sp.together(sp.expand(expression)))), force=True)

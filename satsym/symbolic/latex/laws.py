@@ -1,4 +1,4 @@
-"""LaTeX of control laws: what minimises H, in words that textbooks have, and the sizes of delimiters around it."""
+"""LaTeX of control laws: minimisers of H in the terms of textbooks, with delimiters of suitable size."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LE, GE = r"\le", r"\ge"
 
 
 class LawPrinter(LatexPrinter):
-    """sympy's printer, with our own functions.
+    """A LaTeX printer of sympy with the functions of control laws.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class LawPrinter(LatexPrinter):
         return rf"\begin{{cases}} {one}, & {left} \le {right} \\ {other}, & {left} > {right} \end{{cases}}"
 
     def _print_Until(self, expr: sp.Expr, exp: str | None = None) -> str:
-        """By cases in the order of time where numbers order them."""
+        """Print the pieces as cases in the order of time, if numbers order them."""
         if (found := pieces_of(expr)) is None:
             text = self._print_Choice(expr)
         else:
@@ -158,14 +158,14 @@ class LawPrinter(LatexPrinter):
 
     @contextmanager
     def _inside(self) -> Iterator[None]:
-        """Within a fraction, root or exponent: the type is small, so fractions are slashed."""
+        """Print within a fraction, root or exponent, where fractions are slashed because the type is small."""
         self._small += 1
         yield
         self._small -= 1
 
 
 def levels(value: str, threshold: str, low: str, high: str, reverse: bool) -> str:
-    """The levels between which a control switches, each with its condition.
+    """Print the levels between which a control switches, each with its condition.
 
     Parameters
     ----------
@@ -185,24 +185,24 @@ def levels(value: str, threshold: str, low: str, high: str, reverse: bool) -> st
 
 
 def nearest(low: str, high: str) -> str:
-    """The value of least magnitude between two bounds."""
+    """Print the value of least magnitude between two bounds."""
     return rf"\max\{{{low},\, \min\{{{high},\, 0\}}\}}"
 
 
 def letter(taken: Collection[str]) -> str:
-    """One that stands for nothing else."""
+    """Return a letter that has no other meaning in the notation."""
     return next(one for one in "vzsyxabcd" if one not in taken)
 
 
 def extreme(operator: str, first: str, second: str) -> str:
-    r"""The lesser or the greater of two things; the operator is ``\min`` or ``\max``."""
+    r"""Print the lesser or the greater of two values; the operator is ``\min`` or ``\max``."""
     bigger = size(first + second)
     left, right = (rf"{bigger}l\{{", rf"{bigger}r\}}") if bigger else (r"\{", r"\}")
     return operator + left + first + r",\, " + second + right
 
 
 def size(content: str) -> str:
-    """Command for delimiters around the content: empty for ordinary ones."""
+    """Return the command for delimiters around some content: empty for ordinary ones."""
     for inner, outer in ((r"\bigg", r"\Bigg"), (r"\Bigg", r"\Bigg"), (r"\Big", r"\bigg"), (r"\frac", r"\Big")):
         if inner in content:
             return outer

@@ -33,14 +33,14 @@ from satsym.symbolic.latex.products import (
 from satsym.symbolic.latex.rewriting import rewritten
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
-"""Functions that a symbol follows without parentheses."""
+"""Functions that are printed without parentheses around a single symbol."""
 
 CHOSEN = frozenset("Shorten Stretch Within Clip Max Min".split())
-"""Functions too tall to stand in a fraction."""
+"""Functions that are printed too tall for a fraction."""
 
 
 class Kind(IntEnum):
-    """What a factor is; products are written in this order."""
+    """The kinds of factors; products are written in the order of this list."""
 
     NUMBER = 0
     CONSTANT = 1
@@ -55,7 +55,7 @@ class Kind(IntEnum):
 
 
 class Printer(LawPrinter):
-    """sympy's printer, with sums, products, powers and our own functions done anew.
+    """A LaTeX printer of sympy that arranges sums, products and powers in the order of declaration.
 
     Parameters
     ----------
@@ -72,19 +72,19 @@ class Printer(LawPrinter):
         self._notation, self._ranks = notation, ranks
 
     def symbol(self, name: str) -> str:
-        """The LaTeX of a name; upright where the notation has none."""
+        """Return the LaTeX of a name; names without an entry in the notation are set upright."""
         known = self._notation.get(name)
         return rf"\mathrm{{{_escaped(name)}}}" if known is None else known
 
     def slashed(self, expression: Any) -> str:
-        """What stands within a sentence, whose lines are too low for fractions."""
+        """Print an expression within a sentence, whose lines are too low for built-up fractions."""
         with self._inside():
             return self.doprint(expression)
 
     # sums
 
     def normalised(self, expression: sp.Expr) -> sp.Expr:
-        """With the first term of a sum below a fraction line, or squared, positive, where it has whole powers."""
+        """Make the first term of a sum positive where the sum is below a fraction line or has an even power."""
         return rewritten(expression, is_power_of_sum, self._turned)
 
     def _turned(self, power: sp.Expr) -> sp.Expr:
@@ -95,7 +95,7 @@ class Printer(LawPrinter):
         return sp.Integer(-1) ** exponent * sp.Pow(-root, exponent)
 
     def terms(self, expression: sp.Expr, *, plus_first: bool = True) -> list[Term]:
-        """The terms of a sum in order."""
+        """Return the terms of a sum in the order of print."""
         parts = (part for summand in sp.Add.make_args(expression) for part in sp.Add.make_args(spread(summand)))
         summands = sorted(parts, key=self._summand_order)
         if plus_first:
@@ -110,7 +110,7 @@ class Printer(LawPrinter):
         return joined(self.terms(expr))
 
     def _backwards(self, factors: Sequence[sp.Expr]) -> list[int]:
-        """Which are sums such as b - a, that begin so only because a plus stands ahead, and behind them any others."""
+        """Return the sums, such as b - a, that begin so only to put a plus first, and the other sums after them."""
         like: list[int] = []
         others: list[int] = []
         for k, factor in enumerate(factors):
@@ -121,11 +121,11 @@ class Printer(LawPrinter):
         return [*like, *others] if like else []
 
     def _form(self, summand: sp.Expr) -> tuple[Any, ...]:
-        """What of its place in a sum does not depend on which symbols of a kind it has."""
+        """Return the properties of a summand that decide its place, whichever symbols of a kind it has."""
         return self._summand_order(summand)[:-2]
 
     def _alike(self, summands: Sequence[sp.Expr]) -> list[list[sp.Expr]]:
-        """Summands over the same whole number together, unless costates tell them apart."""
+        """Group summands over the same whole number, unless their costates differ."""
         groups: dict[Any, list[sp.Expr]] = {}
         for place, summand in enumerate(summands):
             parts = take_apart(summand)
@@ -138,14 +138,14 @@ class Printer(LawPrinter):
         return any(self._rank(s)[0] is Kind.COSTATE for s in expression.free_symbols)
 
     def _halves(self, summands: Sequence[sp.Expr]) -> Term:
-        """Summands over the same whole number as one term."""
+        """Write summands over the same whole number as one term."""
         below = take_apart(summands[0]).number_below
         negative = all(map(is_negative, summands))
         inner = sp.Add(*((-below if negative else below) * s for s in summands))
         return self._with_sum(negative, rf"\tfrac{{1}}{{{below}}}", inner, "")
 
     def _summand_order(self, summand: sp.Expr) -> tuple[Any, ...]:
-        """Fewer costates first, then in the order of costates and directions; controls and fractions last."""
+        """Return the sorting key of a summand: fewer costates first, controls and fractions last."""
         parts = take_apart(summand)
         ranked = [(*self._rank(base(f)), exponent(f)) for f in parts.top]
         inside = {self._rank(s)[0] for s in summand.free_symbols}
@@ -168,7 +168,7 @@ class Printer(LawPrinter):
         return self._term(expr, alone=True).signed(first=True)
 
     def _term(self, expression: sp.Expr, *, alone: bool = False) -> Term:
-        """A product as a term; ``alone`` if it is all that stands there."""
+        """Print a product as a term; ``alone`` if no other term is beside it."""
         if expression.func.__name__ == "Clip":
             return self._bounded(expression)
         parts = take_apart(expression)
@@ -200,14 +200,14 @@ class Printer(LawPrinter):
         return broken
 
     def _bounded(self, expression: sp.Expr) -> Term:
-        """A value between bounds, with a place behind each of them where a line may be broken."""
+        """Print a value between bounds, with possible line breaks after each bound."""
         whole = self._print(expression)
         *bounds, value = whole.split(r",\, ", 2)
         pieces = [*(Piece(f"{bound},", bool(k)) for k, bound in enumerate(bounds)), Piece(value, 2)]
         return Term(False, whole, tuple(pieces))
 
     def _with_sum(self, negative: bool, head: str, inner: sp.Expr, tail: str) -> Term:
-        """``head (sum) tail``, with the places inside the sum where it may be broken."""
+        """Print ``head (sum) tail``, with possible line breaks inside the sum."""
         terms = self.terms(inner)
         whole = joined(terms)
         opening, closing = self._parentheses(whole)
@@ -217,7 +217,7 @@ class Printer(LawPrinter):
         return Term(negative, f"{head} {opening}{whole}{closing} {tail}".strip(), tuple(pieces))
 
     def _over(self, parts: Product, factors: Sequence[sp.Expr], alone: bool = True) -> str:
-        """Number and factors over what is below the line; ``alone`` if no sum in parentheses follows."""
+        """Print number and factors over the denominator; ``alone`` if no sum in parentheses follows."""
         number = "" if parts.number == 1 and (factors or not alone) else self._print(parts.number)
         if parts.bottom:
             with self._inside():
@@ -241,7 +241,7 @@ class Printer(LawPrinter):
             return self._print(factors[0]) if alone else self._product(factors, number)
 
     def _product(self, factors: Sequence[sp.Expr], number: str = "") -> str:
-        """Number and factors side by side, sums in parentheses."""
+        """Print number and factors side by side, with sums in parentheses."""
         written = [number] if number else []
         for factor in factors:
             tex = self._print(factor)

@@ -1,4 +1,4 @@
-"""Products taken apart for print, by what stands above and below the fraction line; sums, as signed terms."""
+"""Products split for print into numerator and denominator, and sums into signed terms."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import sympy as sp
 from satsym.symbolic.factoring import factored
 
 HUNDREDTHS = (100, 1000, 10000)
-"""Whole numbers below a fraction line that are better read as a decimal number."""
+"""Denominators of fractions that are printed as decimal numbers."""
 MOST_TERMS = 12
-"""Terms of a sum below a fraction line that is looked at as a product, at most."""
+"""Largest number of terms of a sum in a denominator that is tried as a product."""
 
 
 @dataclass(frozen=True)
 class Product:
-    """A product: sign * number * top / (number_below * bottom), the numbers positive and without common factors."""
+    """A product as sign * number * top / (number_below * bottom), with coprime positive numbers."""
 
     negative: bool
     number: sp.Expr
@@ -28,14 +28,14 @@ class Product:
 
 
 def decimal(number: sp.Expr) -> sp.Expr:
-    """Hundredths and the like as a decimal number."""
+    """Write a fraction over a power of ten, such as hundredths, as a decimal number."""
     if isinstance(number, sp.Rational) and number.q in HUNDREDTHS:
         return sp.Float(str(number.p / number.q))
     return number
 
 
 def sides(excess: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """The two sides between which it is a difference; anything else beside zero."""
+    """Return the two sides of a difference; for any other expression, the expression and zero."""
     below = [term for term in excess.args if is_negative(term)] if excess.is_Add else []
     if len(below) != 1 or len(excess.args) != 2:
         return excess, sp.Integer(0)
@@ -43,7 +43,7 @@ def sides(excess: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 
 
 def take_apart(expression: sp.Expr) -> Product:
-    """Any expression as a product, with minuses and whole numbers drawn out of its sums."""
+    """Write any expression as a product, with minus signs and whole numbers taken out of its sums."""
     number, below = sp.Integer(1), sp.Integer(1)
     top: list[sp.Expr] = []
     bottom: list[sp.Expr] = []
@@ -80,7 +80,7 @@ def take_apart(expression: sp.Expr) -> Product:
 def _with_roots(
     top: Sequence[sp.Expr], bottom: Sequence[sp.Expr], below: sp.Integer
 ) -> tuple[tuple[sp.Expr, ...], sp.Integer, tuple[sp.Expr, ...]]:
-    """With one root of a product or quotient for several of the same, whose contents are positive, and powers alike."""
+    """Write products and quotients of roots of the same degree as one root, where their contents are positive."""
     powers = {f.exp for f in (*top, *bottom) if _is_root(f)}
     above, under = list(top), list(bottom)
     for power in sorted(powers, key=sp.default_sort_key):
@@ -95,7 +95,7 @@ def _with_roots(
 
 
 def _is_root(factor: sp.Expr) -> bool:
-    """Whether it is a power that is not whole of a positive number or symbol."""
+    """Tell whether a factor is a fractional power of a positive number or symbol."""
     return bool(
         factor.is_Pow
         and factor.exp.is_Rational
@@ -106,7 +106,7 @@ def _is_root(factor: sp.Expr) -> bool:
 
 
 def turned_round(parts: Product, backwards: Sequence[int]) -> Product:
-    """With sums above the fraction line turned round if that leaves fewer minuses, or as many but none in front.
+    """Reverse sums in the numerator where that saves minus signs, or moves one from the front.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _minuses(factors: Iterable[sp.Expr]) -> int:
 
 
 def spread(summand: sp.Expr) -> sp.Expr:
-    """The summand with a sum above its fraction line divided term by term, where that makes it shorter."""
+    """Divide a sum in the numerator of a summand term by term, where the result is shorter."""
     parts = take_apart(summand)
     sums = [f for f in parts.top if f.is_Add]
     if len(sums) != 1 or not parts.bottom:
@@ -140,25 +140,25 @@ def spread(summand: sp.Expr) -> sp.Expr:
 
 
 def _turns_well(factor: sp.Expr) -> bool:
-    """Whether it is a sum with minuses in which no number gets one if the sign is changed."""
+    """Tell whether a factor is a sum with minus signs in which no number gets a minus when it is reversed."""
     minuses = [is_negative(a) for a in factor.args] if factor.is_Add else []
     return any(minuses) and not any(a.is_number and not minus for a, minus in zip(factor.args, minuses, strict=False))
 
 
 def is_negative(summand: sp.Expr) -> bool:
-    """Whether a minus stands before it in print."""
+    """Tell whether an expression is printed with a minus sign in front."""
     return take_apart(summand).negative
 
 
 def is_power_of_sum(expression: sp.Expr) -> bool:
-    """Whether the sign of a sum in it may be turned."""
+    """Tell whether an expression contains a power of a sum whose sign may be reversed."""
     if not (expression.is_Pow and expression.base.is_Add and expression.exp.is_Integer):
         return False
     return bool(expression.exp.is_negative or expression.exp.is_even)
 
 
 def with_plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """In another order if the first has a minus: a number goes to the end, else the first with a plus to the front."""
+    """Reorder summands whose first has a minus: numbers last, or else the first with a plus in front."""
     first, *rest = summands
     plus = next((s for s in rest if not is_negative(s)), None)
     if plus is None or not is_negative(first):
@@ -167,18 +167,18 @@ def with_plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
 
 
 def base(factor: sp.Expr) -> sp.Expr:
-    """The base of a power, or the factor itself."""
+    """Return the base of a power; any other factor is its own base."""
     return factor.base if factor.is_Pow else factor
 
 
 def exponent(factor: sp.Expr) -> sp.Expr:
-    """The exponent of a power with a rational one, else one."""
+    """Return the rational exponent of a power; one for any other factor."""
     return factor.exp if factor.is_Pow and factor.exp.is_Rational else sp.Integer(1)
 
 
 @lru_cache(maxsize=4096)
 def _as_product(total: sp.Expr) -> sp.Expr:
-    """A sum below a fraction line as a product, if that is shorter."""
+    """Write a sum in a denominator as a product, if that is shorter."""
     if len(total.args) > MOST_TERMS or total.has(sp.Float):
         return total
     return min(total, factored(total), key=sp.count_ops)
@@ -196,7 +196,7 @@ def _factors(expression: sp.Expr) -> Iterator[sp.Expr]:
 
 @dataclass(frozen=True)
 class Piece:
-    """Something a line may be broken before, and within how many parentheses that is."""
+    """A piece of a line that may be broken before it, with its depth of parentheses."""
 
     tex: str
     depth: int = 0
@@ -207,34 +207,34 @@ class Term:
     """One signed term of a sum."""
 
     negative: bool
-    """Whether a minus stands before it."""
+    """Whether the term has a minus sign."""
     tex: str
     """The term without its sign."""
     pieces: tuple[Piece, ...]
-    """The term in pieces without its sign, for one that is too long for a line."""
+    """The pieces of a term without its sign, between which a long line may be broken."""
 
     def signed(self, *, first: bool) -> str:
-        """With its sign, as the first term of a sum or a later one."""
+        """Print the term with its sign, as the first term of a sum or a later one."""
         return _signed(self.negative, self.tex, first)
 
     def signed_pieces(self, *, first: bool) -> tuple[Piece, ...]:
-        """Likewise in pieces."""
+        """Return the term with its sign as pieces between which a line may be broken."""
         head, *rest = self.pieces
         return (Piece(_signed(self.negative, head.tex, first), head.depth), *rest)
 
 
 def whole_term(negative: bool, tex: str) -> Term:
-    """A term that is never broken."""
+    """Return a term that is never broken across lines."""
     return Term(negative, tex, (Piece(tex),))
 
 
 def plain(tex: str) -> tuple[Term, ...]:
-    """A sum of one term that is never broken."""
+    """Return a sum that consists of one term and is never broken across lines."""
     return (whole_term(False, tex),)
 
 
 def joined(terms: Sequence[Term]) -> str:
-    """A sum on one line."""
+    """Print a sum on one line."""
     return " ".join(t.signed(first=k == 0) for k, t in enumerate(terms))
 
 

@@ -11,7 +11,7 @@ from satsym.symbolic.factoring import factored
 
 
 def readable(expression: sp.Expr) -> sp.Expr:
-    """The expression with a sin^2 + a cos^2 as a, squares of sums as such, and exponentials multiplied out."""
+    """Simplify an expression for print: a sin^2 + a cos^2 as a, complete squares, and exponentials multiplied out."""
     if expression.has(sp.cos):
         expression = rewritten(expression, lambda e: e.is_Add and e.has(sp.cos), _united)
         expression = rewritten(expression, lambda e: e.is_Mul and e.has(sp.cos), _doubled)
@@ -22,7 +22,7 @@ def readable(expression: sp.Expr) -> sp.Expr:
 
 
 def rewritten(expression: sp.Expr, matches: Callable[[sp.Expr], bool], change: Callable[[sp.Expr], sp.Expr]) -> sp.Expr:
-    """The expression with the parts changed that match, by sympy, which takes long where no part changes."""
+    """Change the matching parts of an expression; sympy's own replacement is slow where nothing changes."""
     seen, left = {expression}, [expression]
     while left:
         part = left.pop()
@@ -35,7 +35,7 @@ def rewritten(expression: sp.Expr, matches: Callable[[sp.Expr], bool], change: C
 
 
 def _united(total: sp.Expr) -> sp.Expr:
-    """Every a sin^2 + a cos^2 in it as a."""
+    """Replace every a sin^2 + a cos^2 in a sum by a."""
     terms = list(total.args)
     for term in total.args:
         for square in (p for p in sp.Mul.make_args(term) if p.is_Pow and p.exp == 2 and isinstance(p.base, sp.cos)):
@@ -46,7 +46,7 @@ def _united(total: sp.Expr) -> sp.Expr:
 
 
 def _doubled(product: sp.Expr) -> sp.Expr:
-    """Every (cos a - sin a) (cos a + sin a) in it as cos 2 a."""
+    """Replace every (cos a - sin a) (cos a + sin a) in a product by cos 2 a."""
     for angle in sorted({c.args[0] for c in product.atoms(sp.cos)}, key=sp.default_sort_key):
         factors, both = list(product.args), sp.cos(angle) + sp.sin(angle)
         for sign in (1, -1):
@@ -58,7 +58,7 @@ def _doubled(product: sp.Expr) -> sp.Expr:
 
 
 def _one_exponential(product: sp.Expr) -> sp.Expr:
-    """Exponentials as one, multiplied into a sum that has such itself if that is shorter."""
+    """Merge the exponentials of a product, into a sum that has exponentials itself if that is shorter."""
     powers = [f for f in product.args if isinstance(f, sp.exp)]
     rest = [f for f in product.args if not isinstance(f, sp.exp)]
     if len(powers) > 1:
@@ -72,7 +72,7 @@ def _one_exponential(product: sp.Expr) -> sp.Expr:
 
 
 def _squared(total: sp.Expr) -> sp.Expr:
-    """Every a x^2 + 2 a x y + a y^2 in it as a (x + y)^2."""
+    """Replace every a x^2 + 2 a x y + a y^2 in a sum by a (x + y)^2."""
     terms = dict.fromkeys(total.args)  # in order, and found by their hash
     for term, one, other in [(t, *pair) for t in total.args for pair in _pairs(t)]:
         for sign in (1, -1):
@@ -84,12 +84,12 @@ def _squared(total: sp.Expr) -> sp.Expr:
 
 
 def _sum(total: sp.Expr, terms: Sequence[sp.Expr]) -> sp.Expr:
-    """The sum of terms; ``total`` itself if it has these, as sympy would multiply numbers into sums within it."""
+    """Return the sum of terms, or ``total`` itself if its terms are these: sympy would expand sums within it."""
     return total if len(terms) == len(total.args) else sp.Add(*terms, evaluate=len(terms) == 1)
 
 
 def _over_one(total: sp.Expr) -> sp.Expr:
-    """Two fractions over the same as one, if that is shorter and nothing else is common to both."""
+    """Write two fractions with the same denominator as one, if that is shorter and they share nothing else."""
     (one, below), (other, also) = map(sp.fraction, total.args)
     if below != also or below.is_number or one.free_symbols & other.free_symbols:
         return total

@@ -1,4 +1,4 @@
-"""LaTeX of what was derived, in the notation and the order of the derivation; matrices from named entries."""
+"""LaTeX of derived expressions in the notation and the order of a derivation; matrices from named entries."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.switching import notation as switching_notation
 
 LAPLACE = "s"
-"""What differentiates what stands after it, unless a variable has that name."""
+"""The variable of Laplace transforms, which differentiates, unless a variable of the model has this name."""
 
 
 @dataclass(frozen=True)
 class NamedMatrix:
-    """A matrix whose entries are equations of a step; ``None`` where a zero entry has no equation."""
+    """A matrix whose entries are equations of a step; a zero entry without an equation is ``None``."""
 
     prefix: str
     entries: tuple[tuple[Equation | None, ...], ...]
 
     @property
     def equations(self) -> tuple[Equation, ...]:
-        """The equations it is made of, row by row."""
+        """Return the equations of the entries, row by row."""
         return tuple(e for row in self.entries for e in row if e is not None)
 
     @property
     def matrix(self) -> sp.Matrix:
-        """The entries alone."""
+        """Return the matrix of the entries' values."""
         return sp.Matrix([[0 if e is None else e.rhs for e in row] for row in self.entries])
 
 
@@ -48,23 +48,23 @@ class Typesetter:
         self._printer = Printer(_notation(derivation, time), _ranks(derivation), comma)
 
     def at(self, time: str) -> Typesetter:
-        """A typesetter that writes states, costates and H as functions of ``t_0`` or ``t_f``, which t is."""
+        """Return a typesetter that prints states, costates and H as functions of ``t_0`` or ``t_f``."""
         return Typesetter(self._derivation, time.replace("t", self.symbol(n.TIME.name)), self._comma)
 
     def tex(self, expression: Any) -> str:
-        """The expression on one line."""
+        """Print an expression on one line."""
         return self._printer.doprint(self._readable(expression))
 
     def inline(self, expression: Any) -> str:
-        """The expression as it stands within a sentence: no fraction parts its lines."""
+        """Print an expression within a sentence, without built-up fractions."""
         return self._printer.slashed(self._readable(expression))
 
     def items(self, value: Any) -> list[str]:
-        """An expression, or each one of a tuple of them, as they stand within a sentence."""
+        """Print an expression, or each one of a tuple of them, within a sentence."""
         return [self.inline(item) for item in (value.args if isinstance(value, sp.Tuple) else (value,))]
 
     def terms(self, expression: Any, *, plus_first: bool = True) -> tuple[Term, ...]:
-        """The expression as a sum of signed terms.
+        """Print an expression as a sum of signed terms.
 
         Parameters
         ----------
@@ -76,16 +76,16 @@ class Typesetter:
         return tuple(self._printer.terms(self._readable(expression), plus_first=plus_first))
 
     def by_powers(self, polynomial: Any) -> list[Term]:
-        """The terms of a polynomial, the highest power first."""
+        """Print the terms of a polynomial, the highest power first."""
         return [term for (k,), c in sp.Poly(polynomial, LAMBDA).terms() for term in self.terms(c * LAMBDA**k)]
 
     def in_laplace(self, polynomial: Any) -> list[Term]:
-        """Likewise of one in the variable of Laplace transforms, with factors drawn out of its coefficients."""
+        """Print the terms of a polynomial in s, the variable of Laplace transforms, with factored coefficients."""
         s = sp.Symbol(LAPLACE)
         return [term for (k,), c in sp.Poly(polynomial, s).terms() for term in self.terms(factored(c) * s**k)]
 
     def ratio_in_laplace(self, ratio: Any) -> tuple[list[Term], list[Term]]:
-        """Numerator and denominator of a ratio of such polynomials, without fractions in them."""
+        """Print numerator and denominator of a ratio of polynomials in s, without fractions in them."""
         above, below = sp.fraction(sp.cancel(sp.together(ratio)))
         return self.in_laplace(above), self.in_laplace(below)
 
@@ -94,20 +94,20 @@ class Typesetter:
         return self._printer.normalised(readable(found)) if isinstance(found, sp.Expr) else found
 
     def symbol(self, name: str) -> str:
-        """How a name is typeset."""
+        """Return the LaTeX of a name."""
         return self._printer.symbol(name)
 
     def costate(self, state: str) -> str:
-        """Name of the costate of a state."""
+        """Return the LaTeX of the costate of a state."""
         return n.costate_of(sp.Symbol(state)).name
 
     def is_zero(self, expression: Any) -> bool:
-        """Whether the expression is plainly zero."""
+        """Tell whether an expression is literally zero."""
         return bool(sp.sympify(expression).is_zero)
 
 
 def matrices(derivation: Derivation, step: Step) -> list[NamedMatrix]:
-    """Matrices whose entries the step names one by one, as ``A_row_column`` for derivatives by states or controls."""
+    """Return the matrices whose entries are named by a step, as ``A_row_column`` is."""
     states = [v.symbol for v in derivation.model.states]
     controls = [v.symbol for v in derivation.model.controls]
     outputs = [o.variable.symbol for o in derivation.model.outputs]
@@ -141,7 +141,7 @@ def _notation(derivation: Derivation, time: str) -> dict[str, str]:
 
 
 def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
-    """Kind of each named thing, and its place in the order of declaration."""
+    """Map each name to its kind and its place in the order of declaration."""
     model = derivation.model
     states = symbols_of(model.states)
     groups = [

@@ -1,4 +1,4 @@
-"""Which models are linear, and their matrices."""
+"""Linear models and their matrices."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Coefficients = Literal["constant", "varying"]
 
 
 def coefficients_of(derivation: Derivation) -> Coefficients | None:
-    """Whether x' = A x + B u with constant or time-varying matrices; ``None`` where the motion is not linear."""
+    """Tell whether x' = A x + B u has constant or time-varying coefficients; ``None`` if it is not linear."""
     if "linearisation" not in derivation:
         return None
     model = derivation.model
@@ -40,7 +40,7 @@ def coefficients_of(derivation: Derivation) -> Coefficients | None:
 
 
 def system_of(derivation: Derivation) -> LinearSystem:
-    """The matrices of a linear model with constant coefficients, named constants filled in.
+    """Return the matrices of a linear model with constant coefficients, with named constants filled in.
 
     Raises
     ------
@@ -70,10 +70,10 @@ def system_of(derivation: Derivation) -> LinearSystem:
 
 
 def analysable(derivation: Derivation) -> bool:
-    """Whether the steps of exact analysis apply.
+    """Tell whether the steps of exact analysis apply to a derivation.
 
-    They do to models without a cost and with constant coefficients, if exact arithmetic reaches the entries, not too
-    many letters are in them, and no variable has the name of a result.
+    They apply to models without a cost and with constant coefficients, if exact arithmetic can represent the entries,
+    these do not have too many letters, and no variable has the name of a result.
     """
     if derivation.problem is not None or coefficients_of(derivation) != "constant":
         return False
@@ -90,12 +90,12 @@ def analysable(derivation: Derivation) -> bool:
 
 
 def too_many_letters(system: LinearSystem) -> bool:
-    """Whether exact analysis would not end, or say nothing."""
+    """Tell whether a system has so many letters that exact analysis would not end, or have no clear result."""
     return system.a.rows * len(system.a.free_symbols) > MOST_LETTERS
 
 
 MOST_ITERATIONS = 100
-"""Iterations of Newton's method at most; it doubles the digits once it is near."""
+"""Largest number of Newton iterations; near the solution each doubles the number of digits."""
 
 
 def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]], Any]:
@@ -112,14 +112,14 @@ def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]],
 
 
 def entries(matrices: Iterable[Any]) -> list[Any]:
-    """All entries of some numeric matrices."""
+    """Return all entries of some numeric matrices as a list."""
     return [m[i, j] for m in matrices for i in range(m.rows) for j in range(m.cols)]
 
 
 def numeric_rank(matrix: Any) -> int:
-    """The rank of a numeric matrix: the number of singular values that are not rounding beside the largest one.
+    """Return the rank of a numeric matrix: the number of singular values above rounding, relative to the largest.
 
-    Two thirds of the working digits decide.
+    The limit of rounding is two thirds of the working digits.
     """
     if not any(entries([matrix])):
         return 0
@@ -131,9 +131,9 @@ def numeric_rank(matrix: Any) -> int:
 
 
 def sign_function(matrix: Any) -> Any:
-    """The sign of a numeric matrix without imaginary eigenvalues, by Newton's method.
+    """Return the sign of a numeric matrix without imaginary eigenvalues, by Newton's method.
 
-    It has the same invariant subspaces, and 1 and -1 for eigenvalues with positive and negative real parts.
+    The result has the same invariant subspaces, with 1 and -1 for eigenvalues with positive and negative real parts.
     """
     sign = matrix
     for _ in range(MOST_ITERATIONS):
@@ -144,7 +144,7 @@ def sign_function(matrix: Any) -> Any:
 
 
 def right_half_plane(coefficients: Sequence[Any]) -> tuple[int, int]:
-    """Number of roots with positive and with zero real parts of a numeric polynomial, highest power first."""
+    """Count the roots with positive and with zero real parts of a numeric polynomial, highest power first."""
     trailing = next(k for k, c in enumerate(reversed(coefficients)) if c != 0)
     kept = list(coefficients)[: len(coefficients) - trailing]
     degree = len(kept) - 1

@@ -1,4 +1,4 @@
-"""Symbols of linear models and of what follows from them, and how they are typeset."""
+"""Symbols of linear models and of the results on them, with their LaTeX."""
 
 from __future__ import annotations
 
@@ -54,28 +54,28 @@ FIXED = {
 
 
 def small(k: int) -> sp.Symbol:
-    """The small positive number in the k-th vanishing element of a Routh array."""
+    """Return the symbol of the positive number in the k-th vanishing element of a Routh array."""
     return sp.Symbol(f"epsilon_{k}", positive=True)
 
 
 def weight(letter: str, a: sp.Symbol, b: sp.Symbol) -> sp.Symbol:
-    """An entry of a symmetric matrix Q, R, P or S; ``a`` is the earlier one of the two."""
+    """Return an entry of a symmetric matrix Q, R, P or S; ``a`` is the earlier one of the two names."""
     return sp.Symbol(f"{letter}_{a.name}_{b.name}", real=True)
 
 
 def symmetric(letter: str, names: tuple[sp.Symbol, ...]) -> sp.ImmutableMatrix:
-    """The symmetric matrix of such entries."""
+    """Return the symmetric matrix of symbols with the given letter and names."""
     size = len(names)
     return sp.ImmutableMatrix(size, size, lambda i, j: weight(letter, names[min(i, j)], names[max(i, j)]))
 
 
 def matrix_symbols(letter: str, rows: int, columns: int) -> sp.ImmutableMatrix:
-    """A matrix of symbols, such as generated code takes row by row."""
+    """Return a matrix of symbols, in the order in which generated code takes them row by row."""
     return sp.ImmutableMatrix(rows, columns, lambda i, j: sp.Symbol(f"{letter}_{i + 1}_{j + 1}", real=True))
 
 
 def results(model: Model) -> dict[str, str]:
-    """Notation of what the steps for linear models find; no variable of a model that is analysed has such a name."""
+    """Map the names of the results on linear models to LaTeX; no variable of an analysed model has such a name."""
     notation = {s.name: latex for s, latex in FIXED.items()}
     states, controls = len(model.states), len(model.controls)
     notation[EIGENVALUES.name] = {1: "s_1", 2: "(s_1, s_2)"}.get(states, rf"(s_1, \dots, s_{{{states}}})")
@@ -98,13 +98,13 @@ def results(model: Model) -> dict[str, str]:
 
 
 def entry_letter(matrix: str, model: Model) -> str:
-    """The letter of entries of a matrix: its own as a small one, unless the model numbers variables by that."""
+    """Return the letter of a matrix's entries: its own in lower case, unless variables are numbered by that."""
     numbered = (v for v in variables_of(model) if re.search(r"_\{?\d", v.latex))
     return n.free_letter((matrix.lower(), matrix), numbered)
 
 
 def weights(model: Model) -> dict[str, str]:
-    """Names of the entries of Q, R, P and S, and how they are typeset."""
+    """Map the names of the entries of Q, R, P and S to LaTeX."""
     notation = {}
     for letter, variables in (("Q", model.states), ("R", model.controls), ("P", model.states), ("S", model.states)):
         for (i, a), (j, b) in combinations_with_replacement(list(enumerate(symbols_of(variables), 1)), 2):
@@ -115,7 +115,7 @@ def weights(model: Model) -> dict[str, str]:
 
 
 CONTROLLABLE, OBSERVABLE = r"\mathcal{C}", r"\mathcal{O}"
-"""The matrices whose columns and rows span what inputs reach and outputs show; C and R are others."""
+"""Letters of the controllability and observability matrices; C and R have other meanings."""
 
 
 def _of_ports(model: Model) -> dict[str, str]:
@@ -130,7 +130,7 @@ def _of_ports(model: Model) -> dict[str, str]:
 
 
 def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
-    """Names for one input or output, or for all together."""
+    """Return the names of results for one input or output, or for all together."""
     suffix = f"_{port.symbol}" if port else ""
     index = f"_{{{port.latex}}}" if port else ""
     matrix, basis = f"{letter}{index}", f"T_{{{letter}{',' if port else ''}{port.latex if port else ''}}}"
@@ -152,11 +152,11 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
 
 
 COST: Dimension = {"[cost]": sp.Integer(1)}
-"""Dimension of a running cost with weights of any unit: what is added to it must have the same."""
+"""Dimension of a running cost whose weights may have any unit."""
 
 
 def declare(known: dict[str, Dimension | None], model: Model, require: Requirement) -> None:
-    """Enter the dimensions of C and D, and refuse outputs that have others than their variables."""
+    """Enter the dimensions of C and D, and refuse outputs whose variables have other dimensions."""
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     for output in model.outputs:
         name = output.variable.symbol

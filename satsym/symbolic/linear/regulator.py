@@ -27,25 +27,25 @@ from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import pontryagin
 
 MOST_INPUTS = 3
-"""With more, the inverse of R is no longer worth writing out."""
+"""Largest number of inputs for which the inverse of R is written out."""
 MOST_STATES = 4
-"""With more, Riccati's equation has more entries than anyone reads: 21 for six states."""
+"""Largest number of states for which the entries of Riccati's equation are written out."""
 
 
 def riccati_operator(
     a: sp.MatrixBase, coupling: sp.MatrixBase, q: sp.MatrixBase, p: sp.MatrixBase
 ) -> sp.ImmutableMatrix:
-    """A'P + P A - P S P + Q with S = B R^-1 B'."""
+    """Return A'P + P A - P S P + Q, where S = B R^-1 B'."""
     return sp.ImmutableMatrix(sp.Matrix(a.T * p + p * a - p * coupling * p + q))
 
 
 def inverse(weights: sp.MatrixBase) -> sp.Matrix:
-    """The inverse of a small matrix of symbols, by its adjugate."""
+    """Invert a small matrix of symbols by its adjugate."""
     return sp.Matrix(weights.adjugate()) / weights.det()
 
 
 def lqr_hamiltonian(so_far: Derivation) -> Step | None:
-    """H for the quadratic cost."""
+    """State H for the quadratic cost."""
     if not _applies(so_far):
         return None
     step = pontryagin.hamiltonian(_with_cost(so_far))
@@ -53,7 +53,7 @@ def lqr_hamiltonian(so_far: Derivation) -> Step | None:
 
 
 def lqr_stationarity(so_far: Derivation) -> Step | None:
-    """H_u = 0, and the control that it gives."""
+    """Derive H_u = 0, and solve it for the control."""
     if not _applies(so_far):
         return None
     return replace(
@@ -62,7 +62,7 @@ def lqr_stationarity(so_far: Derivation) -> Step | None:
 
 
 def lqr_costates(so_far: Derivation) -> Step | None:
-    """The costate equations."""
+    """Derive the costate equations for the quadratic cost."""
     if not _applies(so_far):
         return None
     return replace(
@@ -71,7 +71,7 @@ def lqr_costates(so_far: Derivation) -> Step | None:
 
 
 def lqr_hamiltonian_matrix(so_far: Derivation) -> Step | None:
-    """S = B R^-1 B', and the matrix M of the canonical equations for x and lambda/2."""
+    """Derive S = B R^-1 B' and the Hamiltonian matrix M of the canonical equations for x and lambda/2."""
     if not _applies(so_far):
         return None
     system, states, controls = _parts(so_far)
@@ -95,7 +95,7 @@ def lqr_hamiltonian_matrix(so_far: Derivation) -> Step | None:
 
 
 def lqr_differential_riccati(so_far: Derivation) -> Step | None:
-    """The equation that P(t) obeys where lambda = 2 P x."""
+    """Derive the differential equation of P(t) from lambda = 2 P x."""
     if not _applies(so_far):
         return None
     rate = _operator(so_far)
@@ -109,7 +109,7 @@ def lqr_differential_riccati(so_far: Derivation) -> Step | None:
 
 
 def lqr(so_far: Derivation) -> Step | None:
-    """The algebraic Riccati equation of an infinite horizon, and the gain, where the controls can stabilise."""
+    """Derive the algebraic Riccati equation and the gain for an infinite horizon, if the system is stabilisable."""
     if not _applies(so_far):
         return None
     system, states, controls = _parts(so_far)
@@ -128,7 +128,7 @@ def lqr(so_far: Derivation) -> Step | None:
 
 
 def stabilisable(system: LinearSystem) -> bool:
-    """Whether all modes that the inputs do not reach certainly decay by themselves."""
+    """Tell whether all uncontrollable modes certainly decay."""
     reach = controllability(spectrum(system.a), system.b)
     out_of_reach = system.a.rows - reach.rank
     return len(reach.lost) >= out_of_reach and all(sign_of(sp.re(m.eigenvalue)) == -1 for m in reach.lost)
@@ -145,7 +145,7 @@ def _parts(so_far: Derivation) -> tuple[LinearSystem, tuple[sp.Symbol, ...], tup
 
 
 def _with_cost(so_far: Derivation) -> Derivation:
-    """The derivation as one of a problem with the quadratic cost, for the steps of the minimum principle."""
+    """Return the derivation with the quadratic cost as its problem, for the steps of the minimum principle."""
     _, states, controls = _parts(so_far)
     x, u = sp.Matrix(states), sp.Matrix(controls)
     cost = (x.T * ln.symmetric("Q", states) * x + u.T * ln.symmetric("R", controls) * u)[0]
@@ -155,7 +155,7 @@ def _with_cost(so_far: Derivation) -> Derivation:
 
 
 def _coupling(so_far: Derivation) -> sp.ImmutableMatrix:
-    """S = B R^-1 B'."""
+    """Return S = B R^-1 B'."""
     system, _, controls = _parts(so_far)
     return _coupled(system.b, ln.symmetric("R", controls))
 
@@ -166,28 +166,28 @@ def _coupled(b: sp.ImmutableMatrix, r: sp.ImmutableMatrix) -> sp.ImmutableMatrix
 
 
 def _named_coupling(so_far: Derivation) -> sp.ImmutableMatrix:
-    """S by the names of its entries, zero where they are zero."""
+    """Return S with symbols for its entries, and zero where an entry is zero."""
     coupling, names = _coupling(so_far), ln.symmetric("S", symbols_of(so_far.model.states))
     size = coupling.rows
     return sp.ImmutableMatrix(size, size, lambda i, j: names[i, j] if coupling[i, j] != 0 else sp.Integer(0))
 
 
 def _values_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """Names of the entries of S -> their values."""
+    """Map the symbols of the entries of S to their values."""
     return {
         name: value for name, value in zip(_named_coupling(so_far), _coupling(so_far), strict=True) if name.is_Symbol
     }
 
 
 def _operator(so_far: Derivation) -> sp.ImmutableMatrix:
-    """Riccati's operator with the entries of S by name."""
+    """Return the Riccati operator with symbols for the entries of S."""
     system, states, _ = _parts(so_far)
     q, p = ln.symmetric("Q", states), ln.symmetric("P", states)
     return sp.ImmutableMatrix(riccati_operator(system.a, _named_coupling(so_far), q, p).applyfunc(sp.expand))
 
 
 def _along_costates(so_far: Derivation, rate: sp.ImmutableMatrix) -> Check:
-    """d/dt (2 P x) against the costate equations."""
+    """Check d/dt (2 P x) against the costate equations."""
     _, states, controls = _parts(so_far)
     p, x = ln.symmetric("P", states), sp.Matrix(states)
     lam = dict(zip([n.costate_of(s) for s in states], 2 * p * x, strict=True))
@@ -200,7 +200,10 @@ def _along_costates(so_far: Derivation, rate: sp.ImmutableMatrix) -> Check:
 
 
 def _completed_square(so_far: Derivation, rate: sp.ImmutableMatrix) -> Check:
-    """x'Qx + u'Ru + d/dt (x'Px) is (u + Kx)'R(u + Kx) for any control: the equation of Hamilton, Jacobi and Bellman."""
+    """Check that x'Qx + u'Ru + d/dt (x'Px) is (u + Kx)'R(u + Kx) for any control.
+
+    This is the Hamilton-Jacobi-Bellman equation.
+    """
     system, states, controls = _parts(so_far)
     q, r, p = ln.symmetric("Q", states), ln.symmetric("R", controls), ln.symmetric("P", states)
     functions = [numeric_matrix(m) for m in (system.a, system.b, q, r, p, rate.xreplace(_values_of(so_far)))]
@@ -219,9 +222,9 @@ def _completed_square(so_far: Derivation, rate: sp.ImmutableMatrix) -> Check:
 
 
 def _invariant_subspace(so_far: Derivation, equation: sp.ImmutableMatrix, gain: sp.ImmutableMatrix) -> Check:
-    """The equation and the gain, at the solution that the stable invariant subspace of the matrix M gives.
+    """Check equation and gain at the solution given by the stable invariant subspace of the matrix M.
 
-    Weights are drawn positive definite. That solution must be symmetric and make A - B K stable, too.
+    Weights are drawn positive definite. The solution must also be symmetric and make A - B K stable.
     """
     system, states, controls = _parts(so_far)
     coupling, named, size = _values_of(so_far), ln.symmetric("P", states), len(states)
@@ -245,7 +248,7 @@ def _invariant_subspace(so_far: Derivation, equation: sp.ImmutableMatrix, gain: 
 
 
 def _stationary_gain(so_far: Derivation, gain: sp.ImmutableMatrix) -> Check:
-    """-K x against the stationary control at lambda = 2 P x."""
+    """Check -K x against the stationary control at lambda = 2 P x."""
     _, states, controls = _parts(so_far)
     x = sp.Matrix(states)
     lam = dict(zip([n.costate_of(s) for s in states], 2 * ln.symmetric("P", states) * x, strict=True))
@@ -257,7 +260,7 @@ def _stationary_gain(so_far: Derivation, gain: sp.ImmutableMatrix) -> Check:
 
 
 def _positive_definite(letter: str, symbols: tuple[sp.Symbol, ...], rng: random.Random) -> Point:
-    """Entries of a random positive definite matrix."""
+    """Draw the entries of a random positive definite matrix."""
     size = len(symbols)
     root = mp.matrix([[rng.uniform(-1, 1) for _ in range(size)] for _ in range(size)])
     drawn, named = root * root.T + mp.eye(size), ln.symmetric(letter, symbols)

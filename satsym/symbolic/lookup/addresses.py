@@ -1,4 +1,4 @@
-"""What an address names: an equation, a family of entries as a matrix, or something declared."""
+"""Addresses of derived expressions: equations, matrices made of a family of equations, and declarations."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Family:
 
     @property
     def matrix(self) -> sp.Matrix:
-        """The entries without their names."""
+        """Return the matrix of the entries."""
         return sp.Matrix(self.entries)
 
 
@@ -37,7 +37,7 @@ Found: TypeAlias = Equation | Family | sp.Expr
 
 
 def resolve(derivation: Derivation, address: str) -> Found:
-    """The thing at ``model:step.equation``, ``model:step.A`` or ``model:declared.name``.
+    """Return what stands at ``model:step.equation``, ``model:step.A`` or ``model:declared.name``.
 
     Raises
     ------
@@ -62,14 +62,14 @@ def resolve(derivation: Derivation, address: str) -> Found:
 
 
 def addresses(derivation: Derivation) -> list[str]:
-    """Every equation that can be named."""
+    """Return the address of every equation of a derivation."""
     return [
         f"{derivation.name}:{step.name}.{equation.name}" for step in derivation.steps for equation in step.equations
     ]
 
 
 def _family(derivation: Derivation, step: Step, prefix: str) -> Family | None:
-    """Entries named ``prefix_row_column`` where rows and columns are declared variables, in their order."""
+    """Return the entries named ``prefix_row_column``, with declared variables as rows and columns."""
     model = derivation.model
     groups: list[tuple[str, ...]] = [names(model.states), names(model.controls)]
     groups.append(tuple(output.variable.symbol for output in model.outputs))
@@ -95,7 +95,7 @@ def _by_names(family: Mapping[str, sp.Expr], prefix: str, groups: Sequence[tuple
 
 
 def _by_numbers(family: Mapping[str, sp.Expr], prefix: str) -> Family | None:
-    """Entries named ``prefix_1_2``."""
+    """Return the entries named ``prefix_1_2`` of a family."""
     places = [tuple(name.removeprefix(f"{prefix}_").split("_")) for name in family]
     if any(len(place) != 2 or not all(part.isdigit() for part in place) for place in places):
         return None

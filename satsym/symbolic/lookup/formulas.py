@@ -1,4 +1,4 @@
-"""Between our trees and sympy; and whether a difference is zero."""
+"""Conversion between formula trees and sympy, and tests whether an expression is zero."""
 
 from __future__ import annotations
 
@@ -41,27 +41,27 @@ _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 _NAMES = {function: name for name, function in _FUNCTIONS.items() if name != "sqrt"}
 _DIGITS = 40
 _OF_CASES = 100
-"""Points for what has cases."""
+"""Number of random points at which an expression with cases is evaluated."""
 _NOT_ZERO = 1e-12
 _MOST_COEFFICIENTS = 200_000
-"""Coefficients at most of a dense polynomial that is factored only to be shown shorter."""
+"""Largest number of coefficients of a dense polynomial that is factored only to be printed shorter."""
 _PER_COEFFICIENT = 20
-"""Calls that a coefficient of a dense polynomial is charged as."""
+"""Calls that are counted for each coefficient of a dense polynomial."""
 
 
 class NotAFormula(Exception):
-    """An expression has parts that printed formulas do not have."""
+    """An expression has parts that printed formulas do not have; the message names them."""
 
 
 def function(name: str, arguments: list[sp.Expr]) -> sp.Expr:
-    """An elementary function of expressions."""
+    """Apply an elementary function to expressions."""
     if name not in _FUNCTIONS:
         raise NotAFormula(f"{name}(...) is not an elementary function")
     return _FUNCTIONS[name](*arguments)
 
 
 def from_tree(tree: Node, symbols: Callable[[str], sp.Expr]) -> sp.Expr:
-    """A tree as an expression of sympy's."""
+    """Convert a tree to an expression of sympy."""
     if isinstance(tree, Num):
         return sp.Rational(tree.value.numerator, tree.value.denominator)
     if isinstance(tree, Sym):
@@ -82,7 +82,7 @@ def from_tree(tree: Node, symbols: Callable[[str], sp.Expr]) -> sp.Expr:
 
 
 def to_tree(expression: Any) -> Node:
-    """An expression of sympy's as a tree, written as people write it: one quotient, minus signs in front.
+    """Convert an expression of sympy to a tree in usual form: one quotient, minus signs in front.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def rational(value: Fraction) -> sp.Rational:
 
 
 def plain(expression: sp.Expr) -> sp.Expr:
-    """The expression with what control sets need written by minima, as people print it."""
+    """Write functions of control sets by minima, as they are printed."""
     return (
         by_signs(expression)
         .replace(Clip, lambda value, lower, upper: sp.Min(upper, sp.Max(lower, value)))
@@ -155,10 +155,10 @@ def plain(expression: sp.Expr) -> sp.Expr:
 
 
 def is_zero(expression: sp.Expr) -> bool:
-    """Whether an expression is identically zero, by rewriting.
+    """Tell whether an expression is identically zero, by rewriting it.
 
-    A rational function is multiplied out; sines and cosines of sums are taken apart and reduced by
-    ``sin^2 + cos^2 = 1``; roots are taken as symbols with a known power. Only what is left is simplified.
+    A rational function is multiplied out; sines and cosines of sums are expanded and reduced by ``sin^2 + cos^2 = 1``;
+    roots are taken as symbols with a known power. Only what is left is simplified by sympy.
     """
     e = sp.sympify(expression)
     if e == 0:
@@ -182,16 +182,16 @@ def is_zero(expression: sp.Expr) -> bool:
 
 
 def _box(expression: sp.Expr) -> int:
-    """Coefficients of an expression as a dense polynomial in all that has powers in it, zeros included.
+    """Count the coefficients of an expression as a dense polynomial in all bases of powers, zeros included.
 
-    That many lists sympy makes of it, and so many digits has the number at which it is evaluated to find a common
-    divisor.
+    Sympy makes so many lists of the expression, and to find a common divisor evaluates it at a number with so many
+    digits.
     """
     return math.prod(1 + degree for degree in _degrees(expression).values())
 
 
 def _degrees(e: sp.Expr) -> dict[sp.Expr, int]:
-    """Degree in each thing that has powers, once multiplied out; exp(5*x) is the fifth power of exp(x)."""
+    """Return the degree of an expanded expression in each base of powers; exp(5*x) is the fifth power of exp(x)."""
     found: dict[sp.Expr, int] = {}
     if e.is_number:
         return found
@@ -212,14 +212,14 @@ def _degrees(e: sp.Expr) -> dict[sp.Expr, int]:
 
 
 def _multiple(expression: sp.Expr) -> int:
-    """The largest whole multiple of something that a sine or a cosine is taken of: a polynomial of that degree."""
+    """Return the largest whole multiple in an argument of a sine or cosine: the degree of its polynomial."""
     arguments = [call.args[0] for call in expression.atoms(TrigonometricFunction, HyperbolicFunction)]
     factors = [abs(term.as_coeff_Mul()[0]) for a in arguments for term in sp.Add.make_args(sp.expand(a))]
     return max((int(factor) for factor in factors if factor.is_Integer), default=0)
 
 
 def _squares(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
-    """Powers of sines -> cosines, so that sines are left to the first power."""
+    """Replace even powers of sines by cosines, so that sines occur to the first power only."""
     found = {}
     for power in expression.atoms(sp.Pow):
         if isinstance(power.base, sp.sin) and power.exp.is_Integer and power.exp >= 2:
@@ -229,9 +229,9 @@ def _squares(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
 
 
 def differs_somewhere(expression: sp.Expr) -> bool:
-    """Whether an expression has a value other than zero at a random point, with 40 digits.
+    """Tell whether an expression differs from zero at a random point, computed with 40 digits.
 
-    Where it has cases, points are many, and of many sizes: bounds differ only beyond the smaller one.
+    An expression with cases is evaluated at many points of many sizes: two bounds differ only beyond the smaller one.
     """
     symbols = sorted(expression.free_symbols, key=lambda s: s.name)
     shown = plain(expression)
@@ -252,26 +252,27 @@ ZERO = sp.Integer(0)
 
 
 def symbol(name: str) -> sp.Symbol:
-    """A real symbol."""
+    """Return the real symbol with this name."""
     return sp.Symbol(name, real=True)
 
 
 def product(factors: Iterable[sp.Expr]) -> sp.Expr:
-    """A product."""
+    """Return the product of some factors."""
     return sp.Mul(*factors)
 
 
 def roots(polynomial: sp.Expr, by: sp.Symbol) -> list[sp.Expr]:
-    """Roots, as often as they occur, in sympy's order; empty where they have no closed form."""
+    """Return the roots of a polynomial with multiplicity, in sympy's order; empty where they have no closed form."""
     found = sp.roots(sp.Poly(sp.expand(polynomial), by))
     ordered = sorted(found, key=sp.default_sort_key)
     return [root for root in ordered for _ in range(found[root])] if sum(found.values()) else []
 
 
 def nonvanishing_quotient(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
-    """The quotient of two expressions, if it is made of positive symbols and has one sign.
+    """Return the quotient of two expressions if its symbols are positive and it has one sign.
 
-    A sum of squares of other symbols has one sign, too, but equations that differ by it differ for complex numbers.
+    A sum of squares of other symbols has one sign, too, but equations that differ by such a factor differ for complex
+    numbers.
     """
     if is_zero(other) or is_zero(one):
         return None
@@ -282,18 +283,18 @@ def nonvanishing_quotient(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
 
 
 def as_number(expression: sp.Expr) -> Fraction | None:
-    """The value of an expression that is a rational number."""
+    """Return the value of an expression that is a rational number."""
     value = sp.nsimplify(sp.simplify(expression)) if expression.is_number else expression
     return Fraction(int(value.p), int(value.q)) if value.is_Rational else None
 
 
 def text(expression: sp.Expr) -> str:
-    """The expression as sympy writes it, for messages."""
+    """Return an expression as sympy writes it, for messages."""
     return str(expression)
 
 
 def short(expression: sp.Expr) -> sp.Expr:
-    """The shortest of a few ways to write an expression."""
+    """Return the shortest of several ways to write an expression."""
     expanded = sp.expand(expression)
     ways = [expanded, sp.together(expanded)]
     if max(map(_box, sp.fraction(ways[-1]))) <= _MOST_COEFFICIENTS:
@@ -302,36 +303,36 @@ def short(expression: sp.Expr) -> sp.Expr:
 
 
 def has_a_value(expression: sp.Expr) -> bool:
-    """Whether an expression is free of infinities, as those of a division by zero."""
+    """Tell whether an expression is free of infinities, as a division by zero has them."""
     return not expression.has(sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 
 def nullspace(rows: Sequence[Sequence[sp.Expr]]) -> list[list[sp.Expr]]:
-    """Columns that span what a matrix maps to zero."""
+    """Return columns that span the null space of a matrix."""
     return [list(column) for column in sp.Matrix(rows).nullspace(simplify=True)]
 
 
 def exact_matrix(rows: Sequence[Sequence[str]]) -> sp.ImmutableMatrix:
-    """A matrix of rational numbers, each written as a text such as ``"-1/2"``."""
+    """Return a matrix of rational numbers, each given as a text such as ``"-1/2"``."""
     return sp.ImmutableMatrix([[sp.Rational(entry) for entry in row] for row in rows])
 
 
 def exact(value: Any) -> Any:
-    """A number as sympy has it, or an expression or a matrix as it stands."""
+    """Convert a number to sympy's exact number; leave an expression or a matrix unchanged."""
     return sp.sympify(value)
 
 
 def solutions(expression: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
-    """For which real values of a symbol an expression is zero; what may be real counts."""
+    """Return the values of a symbol, possibly real, for which an expression is zero."""
     return [found for found in sp.solve(expression, symbol) if found.is_real is not False]
 
 
 def compiled(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Callable[..., list[float]]:
-    """A function of plain numbers that gives the values of expressions."""
+    """Compile expressions to a function of plain numbers."""
     found: Callable[..., list[float]] = sp.lambdify(list(symbols), list(expressions), modules="math")
     return found
 
 
 def matrix_of(rows: Sequence[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
-    """A matrix of expressions."""
+    """Return a matrix of sympy from rows of expressions."""
     return sp.ImmutableMatrix([list(row) for row in rows])

@@ -1,7 +1,7 @@
-"""Derivations by the names that addresses begin with, and their things in the notation of one document.
+"""Shipped derivations by the names that addresses begin with, and their expressions in the notation of one document.
 
-Each is derived once. Symbols of several derivations that have the same name are one symbol; it is positive only if
-all of them say so.
+Each model is derived once. Symbols of several derivations with the same name are one symbol, which is positive only if
+every derivation declares it so.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from satsym.symbolic.pipeline import derive
 from satsym.wording import shown, suggestion
 
 Order: TypeAlias = Callable[[tuple[str, ...]], tuple[int, ...]]
-"""Names of rows or columns -> their places in the order of a document."""
+"""Functions from names of rows or columns to their places in the order of a document."""
 
 
 @cache
 def derivation(name: str) -> Derivation:
-    """The derivation of a shipped problem or model.
+    """Return the derivation of a shipped problem or model.
 
     Raises
     ------
@@ -56,20 +56,20 @@ def derivation(name: str) -> Derivation:
 
 @dataclass(frozen=True)
 class Names:
-    """The names that some derivations, and a ledger, have."""
+    """The names that some derivations and a ledger define."""
 
     symbols: Mapping[str, sp.Symbol]
-    """Name -> symbol, with what is assumed of it."""
+    """Symbols by name, with their assumptions."""
     definitions: Mapping[str, sp.Expr]
-    """Named constants -> their values, which are put in wherever they occur."""
+    """Named constants with their values, which replace them wherever they occur."""
 
     @cached_property
     def positive(self) -> frozenset[str]:
-        """Names of positive symbols."""
+        """Return the names of positive symbols."""
         return frozenset(name for name, symbol in self.symbols.items() if symbol.is_positive)
 
     def expression(self, name: str) -> sp.Expr:
-        """What a name stands for."""
+        """Return the expression that a name stands for."""
         if name in ("I", "pi"):
             return sp.I if name == "I" else sp.pi
         return self.definitions[name] if name in self.definitions else self.symbols[name]
@@ -80,7 +80,7 @@ class Names:
 
 
 def names(models: Iterable[str], own: Mapping[str, bool]) -> Names:
-    """The names of some derivations and those of a ledger's own, each with whether it is positive."""
+    """Return the names of some derivations and of a ledger, each with whether it is positive."""
     positive: dict[str, bool] = {}
     definitions: dict[str, Node] = {}
     for model in models:
@@ -97,7 +97,7 @@ def names(models: Iterable[str], own: Mapping[str, bool]) -> Names:
 
 
 def named(name: str, shared: Names) -> sp.Expr:
-    """A name as a symbol, defined or not.
+    """Return a name as a symbol, whether or not it is defined by an expression.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def named(name: str, shared: Names) -> sp.Expr:
 
 
 def at(address: str, shared: Names, order: Order) -> Value:
-    """The thing at an address, in shared symbols, a matrix in the order of the document.
+    """Return the expression at an address in shared symbols, a matrix in the order of the document.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def _expression(name: str, shared: Names) -> sp.Expr:
 
 
 def in_trees(value: Value) -> Value:
-    """A derived thing as trees.
+    """Convert a derived expression or matrix to trees.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def in_trees(value: Value) -> Value:
 
 
 def rates(model: str) -> list[sp.Expr]:
-    """The rates of the states of a model, in which definitions keep their names."""
+    """Return the rates of the states of a model, in which definitions keep their names."""
     found, shared = shelf.find(model), names((model,), {})
     step = next((step for step in found.steps if step.name == "first_order"), None)
     if step is None:
@@ -175,7 +175,7 @@ def rates(model: str) -> list[sp.Expr]:
 
 
 def linear_system(model: str) -> LinearSystem:
-    """The matrices of a linear model with constant coefficients, named constants filled in.
+    """Return the matrices of a linear model with constant coefficients, with named constants filled in.
 
     Raises
     ------
@@ -208,7 +208,7 @@ def linear_system(model: str) -> LinearSystem:
 
 
 def dimensions_of(models: Iterable[str], own: Mapping[str, str]) -> Known:
-    """Dimensions of the names of some derivations, and of those that a ledger gives a unit."""
+    """Return the dimensions of the names of some derivations, and of those to which a ledger gives a unit."""
     known: dict[str, dimensions.Dimension | None] = {}
     for model in models:
         for name, powers in record.dimensions(shelf.find(model)).items():
@@ -222,9 +222,9 @@ def dimensions_of(models: Iterable[str], own: Mapping[str, str]) -> Known:
 
 
 def inhomogeneity(sides: Iterable[sp.Expr], known: Known) -> tuple[str, ...]:
-    """Why expressions that ought to be equal cannot be, by their dimensions; empty where they can, or nobody knows.
+    """Explain why expressions cannot be equal because of their dimensions; empty where they can be.
 
-    Otherwise it is the kind of fault, and what it puts together.
+    The explanation is the kind of fault and the expressions that it combines.
     """
     found: list[dimensions.Dimension] = []
     for side in sides:
@@ -242,7 +242,7 @@ def inhomogeneity(sides: Iterable[sp.Expr], known: Known) -> tuple[str, ...]:
 
 
 def dimension(expression: sp.Expr, known: Known) -> dict[str, Fraction] | None:
-    """Dimension of an expression; ``None`` for zero.
+    """Return the dimension of an expression; ``None`` for zero.
 
     Raises
     ------
@@ -257,7 +257,7 @@ def dimension(expression: sp.Expr, known: Known) -> dict[str, Fraction] | None:
 
 
 def written_dimension(exponents: Mapping[str, Fraction]) -> str:
-    """A dimension for people."""
+    """Write a dimension for people."""
     return dimensions.written({base: sp.Rational(str(power)) for base, power in exponents.items()})
 
 
@@ -280,7 +280,7 @@ __all__ = [
 
 
 class Sympy(Engine[sp.Expr]):
-    """Evaluates formulas over expressions of sympy's."""
+    """Evaluates formulas as expressions of sympy."""
 
     operations = OPERATIONS
 
@@ -319,5 +319,5 @@ class Sympy(Engine[sp.Expr]):
 
 
 def _symbol(expression: sp.Expr, name: str) -> sp.Symbol:
-    """The symbol of that name in an expression; another, which does not occur, if there is none."""
+    """Return the symbol of the given name in an expression, or a new one if the expression has none."""
     return next((s for s in expression.free_symbols if s.name == name), sp.Symbol(name, real=True))

@@ -1,4 +1,4 @@
-"""What a derivation holds as plain data, for :mod:`satsym.records.record`."""
+"""Conversion of a derivation to plain data, as :mod:`satsym.records.record` defines it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from satsym.symbolic.principle.path import interior
 
 
 def recorded(derivation: Derivation, source: str) -> Record:
-    """Everything that a derivation establishes, as data.
+    """Convert everything that a derivation establishes to data.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def recorded(derivation: Derivation, source: str) -> Record:
 
 
 def known_dimensions(derivation: Derivation) -> Known:
-    """Dimensions of all names of a derivation."""
+    """Return the dimensions of all names of a derivation."""
     known = dimensions.declared(begin(derivation.model, derivation.problem))
     for step in derivation.steps:
         known = dimensions.extended(known, step)
@@ -65,7 +65,7 @@ def _kinds(derivation: Derivation) -> Iterator[tuple[str, Variable]]:
 
 
 def _names(derivation: Derivation, known: Known) -> dict[str, Name]:
-    """Every name that occurs, declared ones first."""
+    """Return every name that occurs in a derivation, declared ones first."""
     variables: dict[str, tuple[str, Variable]] = {}
     for kind, variable in _kinds(derivation):
         variables.setdefault(variable.symbol, (kind, variable))
@@ -95,7 +95,7 @@ def _dimension(known: Known, name: str) -> dict[str, str] | None:
 
 
 def _declared(derivation: Derivation) -> dict[str, object]:
-    """What ``model:declared.name`` names: costs, constraints, what the kind of model declares, and all variables."""
+    """Return what ``model:declared.name`` names: costs, constraints, declarations of the kind, and all variables."""
     model, problem = derivation.model, derivation.problem
     found: dict[str, object] = {v.symbol: sp.Symbol(v.symbol) for v in variables_of(model)}
     found |= {o.variable.symbol: o.value for o in model.outputs}
@@ -119,7 +119,7 @@ def _value(value: object) -> Written | list[list[Written]]:
 
 
 def _text(expression: object) -> Written:
-    """A formula as text, if it can be read again."""
+    """Write a formula as text, if the text can be read again."""
     try:
         text = written(to_tree(plain(sp.sympify(expression))))
         reading.expression(text)

@@ -1,7 +1,7 @@
-"""Attraction by a fixed centre, recognised in what was derived: Kepler's law, and the gradient of gravity.
+"""Central forces, recognised in a derived motion: Kepler's law, and the gradient of gravity.
 
-Nothing here is told which force gravity is. The sum of the forces without control is compared with the position, and
-what is found must hold identically.
+No declaration names gravity. The sum of the forces without control is compared with the position, and the law that is
+found must hold identically.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from satsym.symbolic.model import Particle, symbols_of
 
 @dataclass(frozen=True)
 class CentralForce:
-    """An uncontrolled acceleration -k r / |r|^3."""
+    """An uncontrolled acceleration -k r / |r|^3 towards a fixed centre."""
 
     strength: sp.Expr
-    """k: a positive function of parameters and named constants."""
+    """The strength k: a positive function of parameters and named constants."""
     distance: sp.Expr
-    """|r|, by the coordinates."""
+    """The distance |r|, as a function of the coordinates."""
 
 
 def uncontrolled_force(model: Particle) -> sp.Matrix:
-    """The sum of the forces per unit mass where every control is zero, by inertial components."""
+    """Return the inertial components of the sum of the forces per unit mass with all controls zero."""
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
     return sum(model.forces.values(), sp.zeros(len(model.position), 1)).xreplace(coast)
 
 
 def inertial_velocity(model: Particle) -> sp.Matrix:
-    """The rate of change of the position vector, by inertial components."""
+    """Return the inertial components of the rate of change of the position vector."""
     return model.position.applyfunc(lambda c: total_derivative(c, model.coordinates))
 
 
@@ -54,7 +54,7 @@ def central_force(so_far: Derivation) -> Step | None:
     accelerations, strength, components = map(numeric, (derived, [found.strength], list(place)))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The equations of motion carry the position along: its second derivative, against the law."""
+        """Differentiate the position twice along the equations of motion, beside the law."""
         (k,), (distance,) = strength(point), size(point)
         return accelerations(point), [-k * c / distance**3 for c in components(point)]
 
@@ -110,7 +110,7 @@ def gravity_gradient(so_far: Derivation) -> Step | None:
 
 
 def jacobian_blocks(so_far: Derivation) -> list[sp.Matrix]:
-    """Without control: the rates of coordinates and of velocities, each by coordinates and by velocities."""
+    """Return the uncontrolled Jacobian in blocks: rates of coordinates and of velocities, by either."""
     model = so_far.model.particle()
     assert model is not None
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
@@ -124,7 +124,7 @@ def jacobian_blocks(so_far: Derivation) -> list[sp.Matrix]:
 
 
 def strength_of(so_far: Derivation) -> sp.Expr | None:
-    """k of the law that was derived; ``None`` where the uncontrolled motion is not Kepler's."""
+    """Return k of the derived law; ``None`` where the uncontrolled motion is not Kepler's."""
     if "central_attraction" not in so_far:
         return None
     law = so_far.equation("central_attraction.law").rhs
@@ -132,13 +132,13 @@ def strength_of(so_far: Derivation) -> sp.Expr | None:
 
 
 def inertial_state(model: Particle, strength: sp.Expr) -> sp.Matrix:
-    """Position, velocity and k as one column of seven; components that a plane or a line has not are zero."""
+    """Return position, velocity and k as a column of seven, with zeros for components outside a plane or a line."""
     missing = sp.zeros(len(n.AXES) - len(model.position), 1)
     return sp.Matrix.vstack(model.position, missing, inertial_velocity(model), missing, sp.Matrix([strength]))
 
 
 def recognised(model: Particle) -> CentralForce | None:
-    """The attraction, if the force is one; that it is so identically is for the step to prove."""
+    """Return the central force of a model, if it appears to have one; the step then proves it."""
     place, force = model.position, uncontrolled_force(model)
     moving = {n.TIME, *symbols_of(model.states)}
     if not _looks_central(place, force, moving):
@@ -152,14 +152,14 @@ def recognised(model: Particle) -> CentralForce | None:
 
 
 def _looks_central(place: sp.Matrix, force: sp.Matrix, moving: set[sp.Symbol]) -> bool:
-    """Whether F = -k r / |r|^3 with one k for all states and times, in numbers.
+    """Tell, by numbers, whether F = -k r / |r|^3 with one k for all states and times.
 
-    Simplifying other forces, to find that they are no attraction, takes sympy up to minutes.
+    For other forces sympy would take up to minutes to simplify the difference.
     """
     values, size = numeric([*place, *force]), len(place)
 
     def factor(point: Point) -> tuple[Any, list[Any], list[Any]]:
-        """k, the position and the force."""
+        """Return k, the position and the force at a point."""
         found = values(point)
         r, f = found[:size], found[size:]
         product = sum(a * b for a, b in zip(r, f, strict=True))
@@ -175,7 +175,7 @@ def _looks_central(place: sp.Matrix, force: sp.Matrix, moving: set[sp.Symbol]) -
 
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
-    """The second derivative of the position along the first-order equations without control."""
+    """Return the second derivative of the position along the uncontrolled first-order equations."""
     model = so_far.model.particle()
     assert model is not None
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))

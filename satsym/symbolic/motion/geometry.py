@@ -1,8 +1,8 @@
-"""The geometry that a model declares, as points and arrows of a picture: nothing in it is assumed.
+"""The geometry that a model declares, as the points and arrows of a picture.
 
-A particle has its position, unit vectors and forces; deviations from its reference are arrows along which
-they move it; bodies that turn about one axis have their angle and the sense of their turns; a body that turns in space
-has its axes, turned from those of the orbit, and the sense of each angle.
+A particle has its position, unit vectors and forces; deviations from a reference are arrows along which they move the
+particle; bodies that turn about one axis have their angle and the sense of their turns; a body that turns in space has
+its axes, turned from those of the orbit, and the sense of each angle.
 """
 
 from __future__ import annotations
@@ -18,29 +18,30 @@ from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
 
 TIME, ANGLE, FACTOR_OFF_REFERENCE = 0.6, 0.75, 1.3
-"""When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
+"""Drawn time of the reference, drawn value of an angle, and factor by which positive states differ from the reference.
+"""
 CURVE = tuple(2 * pi * k / 48 for k in range(49))
-"""Times at which the path of the reference is drawn."""
+"""Times of the points on the drawn reference."""
 TURNED = 0.25
-"""What each angle of a body in space is drawn as."""
+"""Drawn value of each angle of a body in space, in rad."""
 OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))
-"""Where axes that are forward, towards the reader and down lie on the page."""
+"""Directions on the page of axes that point forward, towards the reader and down."""
 AXES_ON_PAGE = ((-0.35, -0.5), (1.0, 0.0), (0.0, 1.0))
-"""Where inertial axes lie on the page: towards the reader, to the right and up."""
+"""Directions on the page of inertial axes: towards the reader, to the right and up."""
 SPREAD = (0.7, 1.7, 1.3)
-"""What components of a position in space are drawn as, where they are coordinates."""
+"""Drawn values of the components of a position in space, where they are coordinates."""
 ROUND = tuple(-2.1 + 0.2 * k for k in range(22))
-"""Angles of an arrow about an axis."""
+"""Angles of the points of an arrow about an axis, in rad."""
 
 
 def bodies(model: Model, angle: sp.Symbol, names: tuple[str, ...]) -> Picture:
-    """Bodies about one axis, and one angle of them."""
+    """Draw bodies about a common axis, and one of their angles."""
     latex = next(v.latex for v in model.states if v.symbol == angle.name)
     return Picture("bodies", angle=(ANGLE, latex), bodies=names)
 
 
 def attitude(matrix: sp.Matrix, angles: Iterable[Variable]) -> Picture | None:
-    """Axes of the orbit and of a body, by the components of the former (rows) along the latter, in terms of angles."""
+    """Draw the axes of the orbit and of a body, whose matrix of direction cosines has orbital axes as rows."""
     turned = {s: v for v in angles for s in symbols_of((v,)) if s in matrix.free_symbols}
     rest = dict.fromkeys(matrix.free_symbols, sp.Integer(0))
     if matrix.subs(rest) != sp.eye(3):
@@ -58,7 +59,7 @@ def attitude(matrix: sp.Matrix, angles: Iterable[Variable]) -> Picture | None:
 
 
 def _about(axis: tuple[float, float, float]) -> tuple[Place, ...]:
-    """An arrow about an axis, in the positive sense, near the axis's end."""
+    """Return an arrow that turns about an axis in the positive sense, near the end of the axis."""
     k = next(k for k, part in enumerate(axis) if part)
     one, other = (k + 1) % 3, (k + 2) % 3
     points = []
@@ -76,7 +77,7 @@ def _on_page(vector: Any) -> Place:
 
 
 def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | None:
-    """A particle in a plane or in space, with unit vectors and forces."""
+    """Draw a particle in a plane or in space, with unit vectors and forces."""
     if len(model.position) not in (2, 3):
         return None
     values = _values(model)
@@ -105,7 +106,7 @@ def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | No
 
 
 def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[tuple[Any, str]]:
-    """Unit vectors; forces, those of one control by its name."""
+    """Return unit vectors and forces with labels; a force of a single control has the name of the control."""
     latex = {v.symbol: v.latex for v in model.controls}
     for name, direction in directions.items():
         yield direction, model.names(None)[name]
@@ -116,7 +117,7 @@ def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[
 
 
 def _distance(model: Particle, values: Mapping[sp.Symbol, Any]) -> str:
-    """The coordinate that is the distance from the centre, or else the position vector."""
+    """Return the coordinate that is the distance from the centre, or else the position vector."""
     far = hypot(*(float(part) for part in model.position.subs(values)))
     lengths = [v for v in model.states if isclose(float(values[symbols_of((v,))[0]]), far, rel_tol=1e-9)]
     return lengths[0].latex if len(lengths) == 1 else r"\mathbf{r}"
@@ -131,7 +132,7 @@ def _angle(model: Particle, values: Mapping[sp.Symbol, Any], place: Place) -> tu
 def deviations(
     model: Model, of: Particle, about: Mapping[sp.Symbol, Any], changed: Mapping[sp.Symbol, Any]
 ) -> Picture | None:
-    """Where each deviation alone moves the body, to first order, from a point of the reference."""
+    """Draw where each deviation alone moves the body, to first order, from a point of the reference."""
     old, new = symbols_of(of.states), symbols_of(model.states)
     values = _values(of) | {s: sp.sympify(about[s]).subs(_numbers(of)).subs(t, TIME) for s in old}
     changes = sp.Matrix([changed[s] for s in new]).jacobian(old).subs(values)
@@ -151,7 +152,7 @@ def deviations(
 
 
 def _path(model: Particle, about: Mapping[sp.Symbol, Any] | None = None) -> tuple[Place, ...]:
-    """The reference, at even steps of time."""
+    """Return points of the reference at equal steps of time."""
     curve = about or model.reference
     if not curve:
         return ()
@@ -160,7 +161,7 @@ def _path(model: Particle, about: Mapping[sp.Symbol, Any] | None = None) -> tupl
 
 
 def _numbers(model: Model) -> dict[sp.Symbol, Any]:
-    """What parameters are by default, one where they have none, and the constants that follow."""
+    """Return the default values of parameters, one where there is none, and the constants that follow."""
     numbers: dict[sp.Symbol, Any] = {
         s: 1 if v.default is None else v.default
         for s, v in zip(symbols_of(model.parameters), model.parameters, strict=True)
@@ -169,7 +170,7 @@ def _numbers(model: Model) -> dict[sp.Symbol, Any]:
 
 
 def _values(model: Model) -> dict[sp.Symbol, Any]:
-    """Numbers for all that moves: those of the reference where there is one."""
+    """Return numbers for all moving variables: those of the reference where there is one."""
     numbers = _numbers(model) | {t: TIME}
     everything = variables_of(model)
     values = {s: ANGLE if v.kind == "angle" else 1 for s, v in zip(symbols_of(everything), everything, strict=True)}
@@ -177,7 +178,7 @@ def _values(model: Model) -> dict[sp.Symbol, Any]:
 
 
 def _at(vector: Any, values: Mapping[sp.Symbol, Any]) -> Place:
-    """Where it is on the page; what is in space, as it is seen from aside."""
+    """Return the place of a vector on the page; vectors in space are projected obliquely."""
     parts = [float(part) for part in sp.Matrix(vector).subs(values)]
     return (parts[0], parts[1]) if len(parts) == 2 else _from_aside(parts)
 
@@ -192,7 +193,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Arrow:
-    """From where and where to, with the names of what points there, as LaTeX."""
+    """An arrow with its ends and the names, as LaTeX, of what it shows."""
 
     start: Place
     end: Place
@@ -201,7 +202,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn, in a unit of length that suits it.
+    """The parts of a drawing, in a unit of length that suits it.
 
     Attributes
     ----------

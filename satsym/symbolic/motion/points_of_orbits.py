@@ -1,8 +1,8 @@
-"""What the Jacobian at a single point of an orbit says, exactly: for models without a cost that a centre attracts.
+"""The Jacobian at a single point of an orbit, analysed exactly, for models without a cost in a central force.
 
-The eigenvalues there are often taken for a verdict on the orbit. They follow in closed form, with what they depend on;
-and no point of an orbit is an equilibrium, which such a verdict would need. What the path is follows from the
-eccentricity vector, which the motion keeps: a conic.
+The eigenvalues there are often mistaken for a verdict on the orbit. They follow in closed form, with the quantities
+that they depend on; but no point of an orbit is an equilibrium, as such a verdict would need. The path is a conic, by
+the eccentricity vector, which the motion conserves.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from satsym.symbolic.motion.central_force import inertial_accelerations, inertia
 
 
 def conic(so_far: Derivation) -> Step | None:
-    """The eccentricity vector, its length by energy and angular momentum, and the conic that follows."""
+    """Derive the eccentricity vector, its length by energy and angular momentum, and the conic of the orbit."""
     model, k = so_far.model.particle(), strength_of(so_far)
     if k is None or so_far.problem is not None or model is None or "conserved" not in so_far:
         return None
@@ -46,7 +46,7 @@ def conic(so_far: Derivation) -> Step | None:
     vectors = [numeric(list(v)) for v in (place, velocity, vector)]
 
     def predicted(point: Point) -> tuple[list[Any], list[Any]]:
-        """Length of the vector and its part along the position, against energy and angular momentum."""
+        """Return the length of the vector and its part along the position, by energy and angular momentum."""
         r, v, e = (function(point) for function in vectors)
         momentum = mp.sqrt(mp.fdot(r, r) * mp.fdot(v, v) - mp.fdot(r, v) ** 2)
         known = {n.ENERGY: energy(point)[0], n.MOMENTUM: momentum, **{s: point[s] for s in k.free_symbols}}
@@ -102,7 +102,7 @@ def no_equilibrium(so_far: Derivation) -> Step | None:
 
 
 def point_spectrum(so_far: Derivation) -> Step | None:
-    """Eigenvalues of the Jacobian at any point, what they depend on, and what a rule about their signs can tell."""
+    """Derive the eigenvalues of the Jacobian at any point, what they depend on, and what their signs can tell."""
     model = so_far.model.particle()
     if "gravity_gradient" not in so_far or so_far.problem is not None or model is None:
         return None
@@ -136,19 +136,19 @@ def point_spectrum(so_far: Derivation) -> Step | None:
 
 
 def _whole(so_far: Derivation) -> sp.Matrix:
-    """The Jacobian without control, coordinates first, then velocities."""
+    """Return the uncontrolled Jacobian, with coordinates first and velocities second."""
     blocks = jacobian_blocks(so_far)
     return sp.Matrix(sp.BlockMatrix([blocks[:2], blocks[2:]]))
 
 
 def _constants(so_far: Derivation) -> set[sp.Symbol]:
-    """Parameters and named constants."""
+    """Return the symbols of parameters and named constants."""
     model = so_far.model
     return set(symbols_of((*model.parameters, *(d.variable for d in model.definitions))))
 
 
 def _on_a_sphere(a: sp.Matrix, model: Particle) -> sp.Matrix:
-    """A matrix at all points of a distance, by stereographic coordinates: rational functions of these."""
+    """Return a matrix at all points of equal distance, as rational functions of stereographic coordinates."""
     place = list(model.position)
     chart = [sp.Dummy(f"s{k}", real=True) for k in range(len(place) - 1)]
     square = sum(s**2 for s in chart)
@@ -158,7 +158,7 @@ def _on_a_sphere(a: sp.Matrix, model: Particle) -> sp.Matrix:
 
 
 def _checks(so_far: Derivation, a: sp.Matrix, of: Spectrum) -> list[Check]:
-    """Polynomial and product over the eigenvalues against determinants; eigenvectors against singular values."""
+    """Check polynomial and eigenvalues against determinants, and eigenvectors against singular values."""
     distance = {n.DISTANCE: so_far.equation("central_attraction.distance").rhs}
     product = sp.Mul(*((ln.LAMBDA - e.value) ** e.algebraic for e in of.eigenvalues))
     forms = numeric([of.polynomial.xreplace(distance), product.xreplace(distance)])
@@ -181,7 +181,7 @@ def _checks(so_far: Derivation, a: sp.Matrix, of: Spectrum) -> list[Check]:
 
 
 def _conclusions(of: Spectrum) -> list[Conclusion]:
-    """What the eigenvalues depend on, and that a rule about the signs of their real parts tells no orbits apart."""
+    """Return what the eigenvalues depend on, and that the signs of their real parts distinguish no orbits."""
     depends = sorted(of.polynomial.free_symbols - {ln.LAMBDA}, key=lambda s: s.name)
     found = [Conclusion("same at a distance", {"quantities": sp.Tuple(*depends)})]
     growing = [root for f in of.factors if f.right for root in f.roots if sp.re(root).is_positive]

@@ -1,4 +1,4 @@
-"""What holds for any first-order form: the reference, conserved quantities, linearisation."""
+"""Steps for any first-order form: its reference, conserved quantities, linearisation and outputs."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ _PLANES = {
     2: {n.ANGULAR_MOMENTUM.name: (0, 1)},
     3: {n.component_of_angular_momentum(n.AXES[k]).name: ((k + 1) % 3, (k + 2) % 3) for k in range(3)},
 }
-"""Number of inertial components -> each angular momentum with the two components that a turn about its axis mixes."""
+"""For each number of inertial components, the angular momenta with the two components that a turn about the axis mixes.
+"""
 
 
 def reference(so_far: Derivation) -> Step | None:
-    """The reference curve, proved to satisfy the equations without control."""
+    """Prove that the reference curve satisfies the equations without control."""
     model = so_far.model
     if not model.reference:
         return None
@@ -41,7 +42,7 @@ def reference(so_far: Derivation) -> Step | None:
 
 
 def conserved(so_far: Derivation) -> Step | None:
-    """Energy and momenta that the uncontrolled motion keeps (Noether), where the forces have a potential.
+    """Derive the energy and momenta that the uncontrolled motion conserves (Noether), if forces have a potential.
 
     A coordinate that the Lagrangian does not contain has a constant momentum; a Lagrangian that no turn about an
     inertial axis changes has a constant angular momentum about it; one without explicit time has a constant energy,
@@ -84,7 +85,7 @@ def conserved(so_far: Derivation) -> Step | None:
 
 
 def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> dict[str, sp.Expr]:
-    """r x v about each inertial axis about which the forces have no torque, in a plane about its normal."""
+    """Return r x v about each inertial axis about which the forces have no torque; in a plane, about its normal."""
     place = model.position
     planes = _PLANES.get(len(place), {})
     return {
@@ -95,7 +96,7 @@ def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> 
 
 
 def linearisation(so_far: Derivation) -> Step:
-    """Jacobians A = f_x and B = f_u along any motion."""
+    """Derive the Jacobians A = f_x and B = f_u along any motion."""
     model = so_far.model
     states, controls, rates = symbols_of(model.states), symbols_of(model.controls), list(so_far.rhs("first_order"))
     equations, check = jacobians(rates, states, {"A": states, "B": controls}, tidy, {})
@@ -123,9 +124,10 @@ def jacobians(
     written: Callable[[sp.Expr], sp.Expr],
     at: Mapping[sp.Symbol, sp.Expr],
 ) -> tuple[tuple[Equation, ...], Check]:
-    """Differentiate values, which the rows are named after, by the columns of each letter: ``A_row_column``.
+    """Differentiate values by the columns of each letter, with entries named ``A_row_column``.
 
-    ``at`` is the point where that is done, as far as it is a special one; ``written`` simplifies an entry.
+    The rows have the names of the values. ``at`` is the special point where the derivatives are taken, if any;
+    ``written`` simplifies an entry.
     """
     equations, pairs = [], []
     for letter, symbols in columns.items():
@@ -147,7 +149,7 @@ def jacobians(
 
 
 def output_matrix(so_far: Derivation) -> Step | None:
-    """C and D: the outputs differentiated by states and controls."""
+    """Derive C and D, the derivatives of the outputs by states and controls."""
     model = so_far.model
     if not model.outputs:
         return None
@@ -163,7 +165,7 @@ def output_matrix(so_far: Derivation) -> Step | None:
 
 
 def output_equations(so_far: Derivation) -> Step | None:
-    """The linear outputs y = C x + D u of a linear model."""
+    """State the linear outputs y = C x + D u of a linear model."""
     model = so_far.model
     if "deviations" not in so_far or not model.outputs:
         return None
@@ -180,7 +182,7 @@ def output_equations(so_far: Derivation) -> Step | None:
 
 
 def _outputs(so_far: Derivation) -> list[sp.Expr]:
-    """What is measured, as functions of the model's own states and controls."""
+    """Return the outputs as functions of the model's own states and controls."""
     values = [sp.sympify(o.value) for o in so_far.model.outputs]
     if "original_states" not in so_far:
         return values
@@ -189,7 +191,7 @@ def _outputs(so_far: Derivation) -> list[sp.Expr]:
 
 
 def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
-    """The function of the coordinates whose negative gradient the generalised forces are, proved by differentiation.
+    """Return the potential of generalised forces, proved by differentiation.
 
     A general integrator may search for minutes, and splits cases that do not matter here. Forces of physics are mostly
     powers of a distance: one substitution, read off the expression itself, integrates them at once.
@@ -219,7 +221,7 @@ def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | 
 
 
 def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
-    """The potential of one generalised force."""
+    """Return the potential of one generalised force."""
     crossed = [(sp.diff(generalised[p], q), sp.diff(generalised[q], p)) for p, q in combinations(generalised, 2)]
     one, other = (numeric([pair[k] for pair in crossed]) for k in range(2))
     moving = set(generalised).union(*(f.free_symbols for f in generalised.values()))

@@ -1,9 +1,9 @@
-"""How H is minimised over one set of controls: which branch applies, and what the minimiser is made of.
+"""The minimiser of H over one set of controls: the branch that applies, and the parts of the minimiser.
 
-H must be a sum of functions of the controls of one set each. One that is quadratic in its controls has its minimum
-where its derivative vanishes, or nearest to that within the set; one that is linear in them has it in the direction
-against the slope, as far as the set goes; of ``a cos u + b sin u`` it is at the angle of ``(-a, -b)``. What else
-depends on one control alone has its minimum where its slope vanishes, see :mod:`satsym.symbolic.principle.stationary`.
+H must be a sum of functions of the controls of one set each. A function that is quadratic in its controls has its
+minimum where its derivative vanishes, or at the nearest point of the set; a linear one has it in the direction against
+the slope, on the boundary of the set; ``a cos u + b sin u`` has it at the angle of ``(-a, -b)``. Any other function of
+one control has its minimum where its slope vanishes, see :mod:`satsym.symbolic.principle.stationary`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from satsym.symbolic.principle.stationary import indefinite, minimiser, nearest_
 
 @dataclass(frozen=True)
 class Minimum:
-    """What the minimiser of H over one set is made of.
+    """The parts of the minimiser of H over one set of controls.
 
     Attributes
     ----------
@@ -51,20 +51,20 @@ class Minimum:
     hessian: sp.Matrix | None = None
     weight: sp.Expr = sp.Integer(0)
     laws: tuple[sp.Expr, ...] = ()
-    """Minimisers within the bounds of an H that is neither linear nor quadratic."""
+    """Minimisers within the bounds, where H is neither linear nor quadratic in the controls."""
     turned_by: sp.Symbol | None = None
-    """The angle that turns what a magnitude, such as a thrust, multiplies."""
+    """The angle that turns the quantity which a magnitude, such as a thrust, multiplies."""
     turned_to: sp.Expr | None = None
-    """The minimiser of that angle, where it has bounds."""
+    """The minimising value of that angle, where it has bounds."""
 
     @property
     def directed(self) -> bool:
-        """Whether it is a direction."""
+        """Tell whether the minimiser is a direction."""
         return self.branch in DIRECTED
 
     @property
     def remarks(self) -> set[str]:
-        """Keys of what is said of such a law."""
+        """Return the keys of remarks on such a control law."""
         said = {Choice: "least of two minimisers", Middle: "nearer end of the angles", Convex: "only where convex"}
         said |= {Vertex: "ends compared where not convex", Argmin: "least of all minimisers"}
         return {key for kind, key in said.items() for law in self.laws if law.has(kind)}
@@ -72,7 +72,7 @@ class Minimum:
 
 @lru_cache(maxsize=64)  # every step asks again
 def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tuple[Minimum, ...]:
-    """The branch of each set.
+    """Find the branch of the minimiser over each set.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
 
 
 def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[str, Minimum]:
-    """The branches of an angle and of a control beside it that H has products of, by the names of their sets."""
+    """Find the branches of an angle and of a control that multiplies functions of it in H, by names of sets."""
     found: dict[str, Minimum] = {}
     for turned, beside in product(parts, repeat=2):
         if turned.kind not in ("angle", "box") or beside.kind not in ("free", "box"):
@@ -149,7 +149,7 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
 def _turned(
     name: str, circle: tuple[sp.Expr, sp.Expr, sp.Expr], turned: Part, beside: Part, side: int
 ) -> dict[str, Minimum]:
-    """A magnitude and the angle of what it multiplies: the best angle, and a magnitude that switches."""
+    """Find the minimiser over a magnitude and the angle that turns it: the best angle, and a switching magnitude."""
     (angle,), (u,) = turned.symbols, beside.symbols
     rest, *pair = circle
     alone = not all(vanishes(e.xreplace({u: sp.Integer(0)})) for e in pair)
@@ -174,7 +174,7 @@ def _turned(
 
 
 def ends_of(part: Part, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
-    """The bounds of one control of a box, or none."""
+    """Return the bounds of one control of a box; infinite for other sets."""
     if part.kind != "box":
         return -sp.oo, sp.oo
     at, half = part.symbols.index(u), len(part.bounds) // 2
@@ -194,12 +194,12 @@ def _of_angle(name: str, h: sp.Expr, part: Part) -> Minimum:
 
 
 def norm_of(part: Part) -> sp.Symbol:
-    """The symbol for the norm of the controls of a set."""
+    """Return the symbol for the norm of the controls of a set."""
     return sp.Symbol(f"norm_of_{part.name}", nonnegative=True)
 
 
 def with_norms(expression: sp.Expr, parts: Sequence[Part]) -> sp.Expr:
-    """An expression with symbols for the norms of controls of sets that limit these."""
+    """Replace norms of controls by symbols, for the sets that limit these norms."""
     found = sp.sympify(expression)
     for part in parts:
         if part.kind not in ("ball", "annulus"):
@@ -247,12 +247,12 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
 
 
 def _falls(name: str, curvature: sp.Expr) -> bool:
-    """Whether H bends downwards, always or in places."""
+    """Tell whether H is concave in a control, everywhere or in places."""
     return bool(simplify(curvature).is_negative) or indefinite(name, curvature)
 
 
 def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimum:
-    """Controls on which H depends neither linearly nor quadratically, each by itself."""
+    """Find minimisers, one by one, of controls on which H depends neither linearly nor quadratically."""
     controls = ", ".join(u.name for u in part.symbols)
     if part.kind not in ("free", "box"):
         raise DerivationError(

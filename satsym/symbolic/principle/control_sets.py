@@ -1,7 +1,7 @@
-"""No bounds, a box and a ball as the set of all controls: projection onto it, and where that minimises H.
+"""Control sets of a single kind (free, box, ball): projection of the unconstrained minimiser of H onto the set.
 
-H is quadratic in the controls. On a box its minimiser is the clipped unconstrained one only if H_uu is
-diagonal; on a ball it is the shortened one only if H_uu is a multiple of the identity.
+H is quadratic in the controls. On a box its minimiser is the clipped unconstrained one only if H_uu is diagonal; on a
+ball it is the shortened one only if H_uu is a multiple of the identity.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from satsym.symbolic.functions.minimisers import Clip, Shorten
 
 
 def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[Variable, ...]:
-    """The variables that hold an instance's numbers, in the order of the ``bounds`` argument of kernels."""
+    """Return the variables of an instance's numbers, in the order of the ``bounds`` argument of kernels."""
     if control_set == "box":
         lower = tuple(Variable(f"{c.symbol}_min", rf"{c.latex}^{{\min}}", c.unit) for c in controls)
         upper = tuple(Variable(f"{c.symbol}_max", rf"{c.latex}^{{\max}}", c.unit) for c in controls)
@@ -32,7 +32,7 @@ def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[V
 
 
 def letter_of(controls: Sequence[Variable]) -> str:
-    """The letter of a vector of controls: the one that they share, as in T_r and T_t, or else u."""
+    """Return the letter of a vector of controls: the one they share, as T_r and T_t do, or else u."""
     letters = {c.latex.partition("_")[0] for c in controls}
     return letters.pop() if len(letters) == 1 and len(controls) > 1 else "u"
 
@@ -40,7 +40,7 @@ def letter_of(controls: Sequence[Variable]) -> str:
 def project(
     control_set: ControlSetKind, unconstrained: Sequence[sp.Expr], limits: Sequence[sp.Symbol], hessian: sp.Matrix
 ) -> list[sp.Expr]:
-    """The minimiser of H over the control set, from the one over all controls.
+    """Return the minimiser of H over the control set, from the minimiser over all controls.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def refuse_unequal(hessian: sp.Matrix) -> None:
 
 
 def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], hessian: sp.Matrix) -> None:
-    """Refuse controls of one set of which H_u = 0 does not determine every one.
+    """Refuse a set of controls that H_u = 0 does not determine.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], he
 
 
 def ordered(control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:
-    """The point with lower bounds below upper ones."""
+    """Return the point with lower bounds below upper ones."""
     if control_set != "box":
         return point
     m = len(limits) // 2
@@ -118,7 +118,7 @@ def ordered(control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence
 def slacks(
     control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol], controls: Sequence[Any]
 ) -> list[Any]:
-    """How far numeric controls stay within the control set; a negative entry is a violated bound."""
+    """Return how far numeric controls are inside the control set; a negative entry is a violated bound."""
     m = len(controls)
     if control_set == "box":
         below = [u - point[limits[i]] for i, u in enumerate(controls)]
@@ -136,7 +136,7 @@ def admissible(
     rng: random.Random,
     count: int,
 ) -> list[list[Any]]:
-    """Random controls from the control set, corners and boundary included."""
+    """Draw random controls from the control set, its corners and boundary included."""
     found = []
     for _ in range(count):
         if control_set == "box":
@@ -153,7 +153,7 @@ def admissible(
 
 
 def by_circle(expression: sp.Expr, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
-    """c, a and b of c + a cos(angle) + b sin(angle); ``None`` where an expression is no such sum."""
+    """Return c, a and b of c + a cos(angle) + b sin(angle); ``None`` where an expression is no such sum."""
     along, across = sp.Dummy("along", real=True), sp.Dummy("across", real=True)
 
     def apart(e: sp.Expr) -> sp.Expr:

@@ -1,7 +1,7 @@
-"""Costs that are a control's effort and, perhaps, a change of some function of the state; closed forms for chains.
+"""Costs that consist of control effort and, perhaps, the rate of change of a function of the state.
 
-What a running cost has beside the effort may be the rate of change of a function V of the state. Its integral then
-depends on the ends alone: it changes the costates and not the control.
+The integral of such a rate depends on the ends alone: it changes the costates and not the control. For chains of
+integrators the minimum effort has a closed form.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def exact_differential(so_far: Derivation) -> Step | None:
-    """The part of the running cost that is the rate of change of a quadratic function of the state, if it has one."""
+    """Find the part of the running cost that is the rate of change of a quadratic function of the state."""
     problem = so_far.problem
     assert problem is not None
     states, cost = symbols_of(so_far.model.states), sp.sympify(problem.running_cost)
@@ -72,7 +72,7 @@ def exact_differential(so_far: Derivation) -> Step | None:
 
 
 def minimum_effort(so_far: Derivation) -> Step | None:
-    """The control without bounds, to rest at zero in a given time, of a chain of integrators; and what it costs."""
+    """Derive the unbounded control to rest at zero in a given time, and its cost, for a chain of integrators."""
     found = _chain(so_far)
     if found is None:
         return None
@@ -115,7 +115,7 @@ def minimum_effort(so_far: Derivation) -> Step | None:
     optimal = identity("costates of such a control", adjoint)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The cost by quadrature."""
+        """Compute the cost by numeric quadrature, beside the closed form."""
         here = {**point, n.FINAL_TIME: abs(point[n.FINAL_TIME])}
         found_cost = numeric([spent])(here)
         scale = numeric([weight])(here)[0]
@@ -137,7 +137,7 @@ def minimum_effort(so_far: Derivation) -> Step | None:
 
 
 def _potential(so_far: Derivation) -> sp.Expr | None:
-    """A quadratic function of the state whose rate of change takes the states out of the running cost."""
+    """Return a quadratic function of the state whose rate of change removes the states from the running cost."""
     problem, model = so_far.problem, so_far.model
     assert problem is not None
     states, controls = symbols_of(model.states), symbols_of(model.controls)
@@ -164,7 +164,7 @@ def _potential(so_far: Derivation) -> sp.Expr | None:
 
 
 def _chain(so_far: Derivation) -> tuple[sp.Matrix, sp.Matrix, sp.Expr] | None:
-    """A, B and the weight of u^2, where the motion is a chain of integrators under one control and only that costs."""
+    """Return A, B and the weight of u^2 of a chain of integrators with one control, if only u^2 costs something."""
     problem, model = so_far.problem, so_far.model
     assert problem is not None
     if len(model.controls) != 1 or problem.terminal_cost != 0 or problem.interior:
@@ -187,7 +187,7 @@ def _chain(so_far: Derivation) -> tuple[sp.Matrix, sp.Matrix, sp.Expr] | None:
 
 
 def _flow(a: sp.Matrix, time: sp.Expr) -> sp.Matrix:
-    """e^(A t) of a nilpotent matrix: a finite series."""
+    """Return e^(A t) of a nilpotent matrix as a finite series."""
     return sum((a**k * time**k / sp.factorial(k) for k in range(1, a.rows)), sp.eye(a.rows))
 
 
@@ -206,12 +206,12 @@ peak_of = named("{}_peak")
 
 
 def cost_letter(model: Model) -> str:
-    """The letter of the cost functional: J, unless a variable has it, as moments of inertia do."""
+    """Return the letter of the cost functional: J, unless a variable such as a moment of inertia has it."""
     return free_letter(("J", r"\mathcal{C}"), variables_of(model))
 
 
 def names(model: Model, time: str) -> dict[str, str]:
-    """Name -> LaTeX of all of them, with the letter for time."""
+    """Map the names of all symbols of such costs to LaTeX, with the given letter for time."""
     found = {
         POTENTIAL.name: r"\mathcal{V}",
         REDUCED_COST.name: "L_0",
@@ -226,50 +226,50 @@ def names(model: Model, time: str) -> dict[str, str]:
 
 
 REGULARISED_H = sp.Symbol("H_regularised", real=True)
-"""H of the regularised problem of directions."""
+"""The Hamiltonian of the regularised problem with directions."""
 
 slope_by = named("slope_by_{}")
 """H_u of a control on which H depends neither linearly nor quadratically."""
 MOST_PARTS = 200
-"""Named parts of laws, at most."""
+"""Largest number of named parts of control laws."""
 
 
 def part_of_law(number: int) -> sp.Symbol:
-    """The symbol for a part of laws."""
+    """Return the symbol for the part of a control law with this number."""
     return sp.Symbol(f"law_part_{number}", real=True)
 
 
 def letter_of_parts(problem: Problem) -> str:
-    """The letter of these: one that no variable has."""
+    """Return the letter for parts of control laws, one that no variable has."""
     return free_letter("qkdgs", variables_of(problem.model))
 
 
 primer_of = named("primer_{}")
 """The slope of H by a control on which it depends linearly, in a ball."""
 weight_of = named("norm_weight_{}")
-"""What multiplies the norm of a vector in H, by the first of its controls."""
+"""The factor of a vector's norm in H, named after the first control of the vector."""
 cosine_of, sine_of = named("cosine_of_{}"), named("sine_of_{}")
-"""What multiplies the cosine and the sine of an angle in H."""
+"""The factors of the cosine and the sine of an angle in H."""
 along_of, across_of = named("along_{}"), named("across_{}")
-"""What takes the place of cosine and sine in the regularised problem."""
+"""The components that replace cosine and sine in the regularised problem."""
 
 
 def slopes_of(one: Minimum) -> tuple[sp.Symbol, ...]:
-    """Symbols for the slope of H where it is linear in a vector."""
+    """Return symbols for the slope of H where it is linear in a vector."""
     if one.part.kind == "angle" or one.turned_by:
         return cosine_of(one.part.symbols[0]), sine_of(one.part.symbols[0])
     return tuple(map(primer_of, one.part.symbols))
 
 
 def components_of(part: Part) -> tuple[sp.Symbol, ...]:
-    """The vector in which H is linear: the controls, or what takes the place of cosine and sine of an angle."""
+    """Return the vector in which H is linear: controls, or the components that replace cosine and sine."""
     if part.kind == "angle":
         return along_of(part.symbols[0]), across_of(part.symbols[0])
     return part.symbols
 
 
 def product_names(problem: Problem) -> dict[str, str]:
-    """Name -> LaTeX of what the law over a product of sets introduces."""
+    """Map the names of all symbols in the law over a product of sets to LaTeX."""
     found = {REGULARISED_H.name: r"H_\varepsilon"}
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
     if problem.control_sets or problem.control_set == "box":
@@ -289,7 +289,7 @@ def product_names(problem: Problem) -> dict[str, str]:
 
 
 def declare_product(known: dict[str, Dimension | None], problem: Problem, running: Dimension | None) -> None:
-    """Enter the dimensions of these."""
+    """Enter the dimensions of all symbols in the law over a product of sets."""
     known[REGULARISED_H.name], known[parts.FRACTION.symbol] = running, PLAIN
     efforts = []
     for part in parts.parts_of(problem):

@@ -1,4 +1,4 @@
-"""The sets whose product a control set is: what was stated, set by set, with the symbols of their numbers."""
+"""The control sets of a problem whose control set is their product, with the symbols of their numbers."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from satsym.symbolic.principle import control_sets
 from satsym.symbolic.sets import AdmissibleSet, Angle, Annulus, Ball, Box, Free
 
 SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
-"""What follows the bounds in the ``bounds`` argument of kernels where controls are directions."""
+"""The number after the bounds in the ``bounds`` argument of kernels whose controls are directions."""
 
 FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
-"""What follows that where H depends on norms of such vectors."""
+"""The number after the smoothing where H depends on norms of such directions."""
 
 
 def minimum_norm_of(part: Part) -> Variable:
-    """What follows these for each ball in which a vector may be none: the norm that it has at least, which is none.
+    """Return the variable of the minimum norm of a ball in which a vector may vanish; its default is zero.
 
-    With that and the largest norm the same, the law gives a vector of this norm.
+    With equal minimum and maximum norms, the law gives a vector of this norm.
     """
     latex = rf"{control_sets.letter_of(part.controls)}_{{\mathrm{{{part.name}}}}}^{{\min}}"
     return Variable(f"{part.name}_least", latex, part.controls[0].unit, positive=True)
@@ -34,12 +34,12 @@ def minimum_norm_of(part: Part) -> Variable:
 STATED: Mapping[PartKind, type[AdmissibleSet]] = {one.kind: one for one in (Free, Box, Ball, Annulus, Angle)}
 
 SINGLE = "control"
-"""The name of the one set of a problem that was stated in short."""
+"""The name of the single control set of a problem that is stated in the short form."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """One of the sets.
+    """One control set of a product.
 
     Attributes
     ----------
@@ -58,17 +58,17 @@ class Part:
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of the controls in this set."""
+        """Return the symbols of the controls in this set."""
         return symbols_of(self.controls)
 
     @property
     def bounds(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of the numbers that limit this set."""
+        """Return the symbols of the numbers that limit this set."""
         return symbols_of(self.limits)
 
 
 def parts_of(problem: Problem) -> tuple[Part, ...]:
-    """The sets of a problem, in the order in which they are stated.
+    """Return the control sets of a problem, in the order in which they are stated.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def parts_of(problem: Problem) -> tuple[Part, ...]:
 
 
 def as_one(problem: Problem) -> Problem:
-    """Return the problem with one control set where its sets are all boxes, or all free: a product of boxes is a box.
+    """Return the problem with a single control set where its sets are all boxes, or all free.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def as_one(problem: Problem) -> Problem:
 
 
 def boxes_apart(problem: Problem, switched: Collection[str]) -> Problem:
-    """Return the problem with a box for each of these controls that shares one with others; itself where none does.
+    """Return the problem with a box of its own for each given control that shares a box with others.
 
     Raises
     ------
@@ -144,13 +144,13 @@ def boxes_apart(problem: Problem, switched: Collection[str]) -> Problem:
 
 
 def _free_name(wanted: str, taken: Collection[str]) -> str:
-    """The name, with a number after it where it is taken."""
+    """Return a name, with a number appended where it is taken."""
     numbered = (f"{wanted}{k}" for k in itertools.count(2))
     return next(name for name in itertools.chain([wanted], numbered) if name not in taken)
 
 
 def limits_of(problem: Problem) -> tuple[Variable, ...]:
-    """The variables that hold an instance's numbers, in the order of the ``bounds`` argument of kernels."""
+    """Return the variables of an instance's numbers, in the order of the ``bounds`` argument of kernels."""
     return tuple(limit for part in parts_of(problem) for limit in part.limits)
 
 
@@ -182,7 +182,7 @@ def _example(kind: PartKind) -> str:
 
 
 def weighed(weight: sp.Symbol, symbols: Sequence[sp.Symbol], controls: Sequence[Variable]) -> sp.Expr:
-    """Half the squares of controls times a weight; one by one where their units differ, so that no sum is of several.
+    """Return half the squares of controls times a weight, separately where the units of controls differ.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def weighed(weight: sp.Symbol, symbols: Sequence[sp.Symbol], controls: Sequence[
 
 
 def unsigned(problem: Problem, curvatures: sp.Matrix) -> str:
-    """What to do where H is not known to bend the right way: parameters of which no sign is known may be the reason."""
+    """Advise what to do where H is not known to be convex, because parameters have no known sign."""
     declared = problem.model.parameters
     symbols = zip(declared, symbols_of(declared), strict=True)
     found = [v.symbol for v, symbol in symbols if curvatures.has(symbol) and not symbol.is_positive]

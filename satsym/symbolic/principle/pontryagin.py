@@ -1,4 +1,4 @@
-"""From equations of motion and a cost to the necessary conditions of the minimum principle."""
+"""The necessary conditions of the minimum principle, from equations of motion and a cost."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle.parts import unsigned
 
 COMPETITORS = 50
-"""Admissible controls that the control law is held against at each random point."""
+"""Number of admissible controls with which the control law is compared at each random point."""
 
 
 def costates(so_far: Derivation) -> tuple[sp.Symbol, ...]:
-    """The costates, in the order of the states."""
+    """Return the symbols of the costates, in the order of the states."""
     return tuple(n.costate_of(s) for s in symbols_of(so_far.model.states))
 
 
 def hamiltonian(so_far: Derivation) -> Step:
-    """H = lambda' f + L, or lambda' f - L with the maximum convention."""
+    """State H = lambda' f + L, or lambda' f - L with the maximum convention."""
     problem, lam = _problem(so_far), sp.Matrix(costates(so_far))
     f = so_far.rhs("first_order")
     h = sign(problem) * tidy(problem.running_cost) + (lam.T * f)[0]
@@ -46,7 +46,7 @@ def hamiltonian(so_far: Derivation) -> Step:
 
 
 def stationarity(so_far: Derivation) -> Step:
-    """H_u, which vanishes at an unconstrained minimum, and the controls at which it does."""
+    """Derive H_u, which vanishes at an unconstrained minimum, and the controls at which it vanishes."""
     controls = symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     h_u = [tidy(g, controls) for g in gradient(h, controls)]
@@ -67,7 +67,7 @@ def stationarity(so_far: Derivation) -> Step:
 
 
 def second_derivative(so_far: Derivation) -> Step:
-    """H_uu, and that it is positive definite (the strict Legendre-Clebsch condition)."""
+    """Derive H_uu, and check that it is positive definite (the strict Legendre-Clebsch condition)."""
     problem, controls = _problem(so_far), symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     hessian = _hessian(so_far)
@@ -98,7 +98,7 @@ def second_derivative(so_far: Derivation) -> Step:
 
 
 def control_law(so_far: Derivation) -> Step:
-    """The control that minimises H over the control set: the unconstrained one, projected."""
+    """Derive the control that minimises H over the control set by projecting the unconstrained one."""
     model, problem = so_far.model, _problem(so_far)
     controls = symbols_of(model.controls)
     limits = symbols_of(control_sets.bounds(problem.control_set, model.controls))
@@ -109,7 +109,7 @@ def control_law(so_far: Derivation) -> Step:
     value, chosen = numeric([h]), numeric(laws)
 
     def margins(point: Point, rng: random.Random) -> list[Any]:
-        """How far the law keeps within its bounds, and by how much random admissible controls exceed it, in H."""
+        """Return how far the law is inside its bounds, and how much random admissible controls exceed it in H."""
         point = control_sets.ordered(problem.control_set, point, limits)
         law = chosen(point)
         best = value({**point, **dict(zip(controls, law, strict=True))})[0]
@@ -125,7 +125,7 @@ def control_law(so_far: Derivation) -> Step:
 
 
 def minimised_hamiltonian(so_far: Derivation) -> Step:
-    """H* = H at the unconstrained minimiser (the arcs on which no bound is active), or the maximiser."""
+    """Derive H* = H at the unconstrained minimiser or maximiser, as on arcs without active bounds."""
     problem = _problem(so_far)
     controls = symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
@@ -144,7 +144,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
 
 
 def state_equations(so_far: Derivation) -> Step:
-    """dx/dt = H_lambda."""
+    """Derive dx/dt = H_lambda."""
     h = so_far.equation("hamiltonian.H").rhs
     lam, states = costates(so_far), symbols_of(so_far.model.states)
     rates, f = gradient(h, lam), so_far.rhs("first_order")
@@ -159,7 +159,7 @@ def state_equations(so_far: Derivation) -> Step:
 
 
 def costate_equations(so_far: Derivation) -> Step:
-    """d lambda/dt = -H_x."""
+    """Derive d lambda/dt = -H_x."""
     h = so_far.equation("hamiltonian.H").rhs
     lam, states = costates(so_far), symbols_of(so_far.model.states)
     rates = [tidy(-g, lam) for g in gradient(h, states)]
@@ -178,9 +178,9 @@ def costate_equations(so_far: Derivation) -> Step:
 
 
 def boundary_conditions(so_far: Derivation) -> Step:
-    """Given initial state; transversality at the final time, component by component.
+    """State the initial state, and derive transversality at the final time, component by component.
 
-    ``lambda_x`` holds for each state whose final value is free, ``final_time`` if the final time is.
+    The equation ``lambda_x`` holds for each state whose final value is free, ``final_time`` if the final time is free.
     """
     problem = _problem(so_far)
     states, lam = symbols_of(so_far.model.states), costates(so_far)
@@ -216,7 +216,7 @@ def _hessian(so_far: Derivation) -> sp.Matrix:
 def _linear_system(
     so_far: Derivation, h_u: list[sp.Expr], controls: tuple[sp.Symbol, ...]
 ) -> tuple[sp.Matrix, sp.Matrix]:
-    """H_u = 0 as a linear system in the controls."""
+    """Write H_u = 0 as a linear system in the controls."""
     try:
         rows, load = sp.linear_eq_to_matrix(h_u, controls)
     except NonlinearError:
@@ -226,12 +226,12 @@ def _linear_system(
 
 
 def numeric_gradient(function: sp.Expr, symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Check:
-    """Check derivatives of a function by numeric ones."""
+    """Check derived derivatives of a function by numeric ones."""
     return _numeric_gradient_of([function], symbols, derived)
 
 
 def _numeric_gradient_of(functions: list[sp.Expr], symbols: Iterable[sp.Symbol], derived: list[sp.Expr]) -> Check:
-    """Compare derived partial derivatives (symbol by symbol, then function by function) with numeric ones."""
+    """Compare derived partial derivatives of functions, symbol by symbol, with numeric ones."""
     values, slopes, by = numeric(functions), numeric(derived), list(symbols)
     everything = set(by).union(*(f.free_symbols for f in functions))
     return compare(

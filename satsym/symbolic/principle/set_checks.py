@@ -1,4 +1,4 @@
-"""Checks of the law over a product of sets: H is a sum over the sets, and no admissible control is cheaper."""
+"""Checks of the law over a product of sets: H is a sum over the sets, and no admissible control has a lower H."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point."""
 
 NEARBY_CONTROLS = 4
-"""Admissible controls beside the law of each set that it is held against."""
+"""Number of admissible controls close to the law of each set with which it is compared."""
 
 TRIES = 60
-"""Costates at most that are tried until H has a minimum."""
+"""Largest number of costates that are tried until H has a minimum."""
 
 
 def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Check:
@@ -48,7 +48,7 @@ def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Check:
 
 
 def _changes(one: Minimum, other: Mapping[sp.Symbol, sp.Symbol]) -> list[sp.Expr]:
-    """By how much H changes with the controls of one set, in parts; with a magnitude what turns it changes as well."""
+    """Return the change of H by the controls of one set; with a magnitude, also by the angle that turns it."""
     symbols, angle = one.part.symbols, one.turned_by or one.part.symbols[0]
     if one.turned_by or one.part.kind == "angle":
         sizes = (symbols[0], other[symbols[0]]) if one.turned_by else (sp.Integer(1), sp.Integer(1))
@@ -78,7 +78,7 @@ def convex(so_far: Derivation, one: Minimum) -> Any:
 
 
 def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
-    """Check that no admissible control makes H better, set by set and all together."""
+    """Check that no admissible control has a lower H, set by set and for all sets together."""
     problem, every = problem_of(so_far), found(so_far)
     controls = symbols_of(problem.model.controls)
     value, chosen, limits = numeric([h]), numeric(list(laws)), symbols_of(limits_of(problem))
@@ -107,9 +107,9 @@ def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
 
 
 def _beside(so_far: Derivation, value: Any, chosen: Any, here: Point, rng: random.Random) -> list[Any]:
-    """How much worse H becomes towards admissible controls so near to the law that a slip in it makes one better.
+    """Return the increase of H for admissible controls close to the law, where a slip in the law shows.
 
-    Farther away H grows with the square of the distance, which hides that of a law from the minimiser.
+    Farther away H grows with the square of the distance, which hides a small distance of the law from the minimiser.
     """
     problem, margin, step = problem_of(so_far), list[Any](), mp.mpf(10) ** -mp.mp.dps
     with mp.workdps(3 * mp.mp.dps):
@@ -125,9 +125,9 @@ def _beside(so_far: Derivation, value: Any, chosen: Any, here: Point, rng: rando
 def near(
     one: Minimum, point: Point, law: Mapping[sp.Symbol, Any], step: Any, rng: random.Random
 ) -> dict[sp.Symbol, Any]:
-    """The law over one set moved by a step within the set, so that it is admissible still.
+    """Return the law over one set, moved by a step within the set.
 
-    One control alone where it may move alone, so that none hides another.
+    Where a single control may move alone, it does, so that no control hides another.
     """
     symbols, limits, kind = one.part.symbols, one.part.bounds, bare(one.part.kind)
     if kind == "box":
@@ -149,7 +149,7 @@ def near(
 def _decided(
     chosen: Any, here: Point, moved: Sequence[sp.Symbol], rng: random.Random
 ) -> tuple[Point, list[Any]] | None:
-    """The point, or one with other costates, at which there is a minimiser, and that."""
+    """Return the point, or one with other costates, at which a minimiser exists, with that minimiser."""
     there = here
     for _ in range(TRIES):
         law = chosen(there)
@@ -160,7 +160,7 @@ def _decided(
 
 
 def ordered(one: Minimum, point: Point) -> Point:
-    """A point with bounds that leave something between them."""
+    """Return a point with bounds that leave room between them."""
     if one.part.kind == "angle":
         return {**point, one.part.bounds[0]: mp.mpf(1)}
     if one.part.kind == "annulus":
@@ -172,7 +172,7 @@ def ordered(one: Minimum, point: Point) -> Point:
 
 
 def _slacks(one: Minimum, point: Point, law: dict[sp.Symbol, Any]) -> list[Any]:
-    """How far the law stays within the set."""
+    """Return how far the law is inside its set; a negative entry is a violated bound."""
     values = [law[u] for u in one.part.symbols]
     kind = bare(one.part.kind)
     limits = one.part.bounds[-1:] if kind == "ball" else one.part.bounds
@@ -180,7 +180,7 @@ def _slacks(one: Minimum, point: Point, law: dict[sp.Symbol, Any]) -> list[Any]:
 
 
 def drawn(one: Minimum, point: Point, rng: random.Random) -> dict[sp.Symbol, Any]:
-    """A random admissible control of one set."""
+    """Draw a random admissible control of one set."""
     symbols, limits = one.part.symbols, one.part.bounds
     if one.part.kind == "angle":
         return {symbols[0]: mp.mpf(rng.uniform(-4, 4))}

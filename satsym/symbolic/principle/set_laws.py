@@ -1,4 +1,4 @@
-"""The minimiser of H over each set of a product, and over the sets of the regularised problem, as expressions."""
+"""The minimiser of H over each set of a product, and over the sets of the regularised problem."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))
 
 
 def found(so_far: Derivation) -> tuple[Minimum, ...]:
-    """The branches of a derivation that has its Hamiltonian."""
+    """Return the minimiser's branches for all sets, from a derivation that contains its Hamiltonian."""
     problem = problem_of(so_far)
     return minima(so_far.name, so_far.equation("hamiltonian.H").rhs, parts_of(problem), sign(problem))
 
 
 def problem_of(so_far: Derivation) -> Problem:
-    """Return the problem of a derivation that has one."""
+    """Return the problem of a derivation, which must have one."""
     if so_far.problem is None:
         raise TypeError(f"{so_far.name} has no cost")
     return so_far.problem
 
 
 def bare(kind: PartKind) -> ControlSetKind:
-    """The simple set that limits controls as this one does from outside; an angle is not limited."""
+    """Return the simple set with the same outer limit as this kind of set; an angle is not limited."""
     return "free" if kind == "angle" else "ball" if kind == "annulus" else kind
 
 
 def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Expressions with directions as vectors that may be shorter: what the regularised problem has in place of them."""
+    """Replace directions in expressions by vectors that may be shorter, as in the regularised problem."""
     values = [with_norms(e, parts_of(problem_of(so_far))) for e in expressions]
     for part in (one.part for one in found(so_far) if one.directed):
         if part.kind != "angle":
@@ -60,7 +60,7 @@ def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]
 
 
 def _with_norm(value: sp.Expr, size: sp.Symbol, angle: sp.Symbol, norm: sp.Symbol) -> sp.Expr:
-    """With a symbol for a magnitude where it stands apart from the angle that turns what it multiplies."""
+    """Replace a magnitude by a symbol where it occurs apart from the angle that turns it."""
     circle = by_circle(value, angle)
     if circle is None:
         return value
@@ -69,7 +69,7 @@ def _with_norm(value: sp.Expr, size: sp.Symbol, angle: sp.Symbol, norm: sp.Symbo
 
 
 def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """What takes the place of controls, or of the components of directions, in the regularised problem."""
+    """Return the quantities that replace controls, or components of directions, in the regularised problem."""
     problem, every = problem_of(so_far), found(so_far)
     laws: dict[sp.Symbol, sp.Expr] = {}
     for one in every:
@@ -83,12 +83,12 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 
 def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
-    """The sets in which something switches: norms of vectors, or single controls."""
+    """Return the sets in which a norm of a vector, or a single control, switches."""
     return tuple(one for one in found(so_far) if one.branch in SWITCHED)
 
 
 def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
+    """Add minimum norms to laws of vectors in balls, so that the vectors can be kept at any norm."""
     balls = [one.part for one in throttled(so_far) if one.part.kind == "ball"]
     least = {part.bounds[-1]: symbols_of((minimum_norm_of(part),))[0] for part in balls}
 
@@ -99,7 +99,7 @@ def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> li
 
 
 def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
-    """How H changes with what switches: with the norm of a vector, in the direction in which it changes least."""
+    """Return the derivatives of H by the switching norms, in the direction in which H changes least."""
     slopes: list[sp.Expr] = []
     for one in throttled(so_far):
         if one.branch == "switched":
@@ -110,13 +110,13 @@ def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
 
 
 def effort(so_far: Derivation) -> sp.Expr:
-    """What the regularised problem costs besides, by its components."""
+    """Return the additional cost of the regularised problem, by its components."""
     every = [one for one in found(so_far) if one.directed]
     return EPSILON / 2 * sum((c**2 for one in every for c in pn.components_of(one.part)), sp.Integer(0))
 
 
 def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Expressions with slopes as what they stand for."""
+    """Replace symbols of slopes in expressions by their values."""
     values = {
         s: value
         for one in found(so_far)
@@ -129,7 +129,7 @@ def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.E
 
 
 def law_of(problem: Problem, one: Minimum) -> list[sp.Expr]:
-    """The minimiser over one set."""
+    """Return the minimiser of H over one set."""
     part = one.part
     if one.branch == "stationary":
         return list(one.laws)
@@ -144,7 +144,7 @@ def law_of(problem: Problem, one: Minimum) -> list[sp.Expr]:
 
 
 def _directed(problem: Problem, one: Minimum) -> list[sp.Expr]:
-    """The minimiser of what is linear in a direction, and perhaps in its length."""
+    """Return the minimiser of a function that is linear in a direction, and perhaps in its length."""
     slopes, ends = pn.slopes_of(one), one.part.bounds
     if one.part.kind == "angle":
         along, across = (-sign(problem) * s for s in slopes)
@@ -160,12 +160,12 @@ def _directed(problem: Problem, one: Minimum) -> list[sp.Expr]:
 
 
 def continuous_law(problem: Problem, one: Minimum) -> list[sp.Expr]:
-    """What solvers go by: of directions the law of the regularised problem, which tends to that of the problem."""
+    """Return the law that solvers use: for directions, that of the regularised problem."""
     return shortened(problem, one) if one.directed and one.part.kind != "angle" else law_of(problem, one)
 
 
 def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
-    """The minimiser where half the square costs the smoothing, by the components of the slope."""
+    """Return the minimiser with half the square weighted by the smoothing, by the components of the slope."""
     slopes = pn.slopes_of(one)
     if one.branch == "switched":
         return [Clip(-sign(problem) * slopes[0] / EPSILON, *one.part.bounds)]
@@ -179,13 +179,13 @@ def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
 
 
 def _size(problem: Problem, one: Minimum) -> sp.Expr:
-    """The norm of that minimiser, where H depends on the norm."""
+    """Return the norm of the regularised minimiser, where H depends on the norm."""
     margin = _gain(problem, one) - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
     return Clip(margin / EPSILON, 0 if one.part.kind == "ball" else one.part.bounds[0], one.part.bounds[-1])
 
 
 def _gain(problem: Problem, one: Minimum) -> sp.Expr:
-    """By how much a norm of one in the best direction makes H better; of an angle between bounds the best of these."""
+    """Return by how much a vector of norm one lowers H in the best direction; an angle may have bounds."""
     slopes = pn.slopes_of(one)
     if one.turned_by is None or one.turned_to is None:
         return _length(slopes)

@@ -1,11 +1,10 @@
-"""Controls on which H depends neither linearly nor quadratically: its minimiser, one control at a time.
+"""Minimisers of H over single controls on which H depends neither linearly nor quadratically.
 
-Where the slope of H is ``a f(u) + b`` with a function that can be inverted, the minimiser is stated in closed form if
-the function takes all values or the control has no bounds, at which H may be least where the slope does not vanish;
-else it is the root of a slope that grows, found to the last digits where the law is evaluated. Of ``a cos u + b sin u``
-between bounds it is the direction of ``(-a, -b)``, or the end of the interval nearest to that. A control that
-multiplies what an angle turns, such as a lift, has two minimisers, one of either sign: they are compared. Of a
-polynomial that is not convex, all places at which its slope vanishes are compared with the ends.
+Where the slope of H is ``a f(u) + b`` with an invertible function f, the minimiser has a closed form if f takes all
+values or the control has no bounds; else it is the root of an increasing slope, found to the last digits where the law
+is evaluated. The minimiser of ``a cos u + b sin u`` between bounds is the direction of ``(-a, -b)``, or the end of the
+interval nearest to it. A control that multiplies what an angle turns, such as a lift, has two minimisers, one of either
+sign, which are compared. For a polynomial that is not convex, all zeros of its slope are compared with the ends.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ from satsym.symbolic.functions.roots import Argmin, Bearing, Choice, Convex, Mid
 from satsym.symbolic.principle.control_sets import by_circle
 
 SAMPLES, CONTROLS = 10, 12
-"""Random points at which H is looked at, and controls at each."""
+"""Numbers of random points at which H is evaluated, and of controls at each."""
 
 INVERTED = 8
-"""Operations of a function that sympy is asked to invert, at most."""
+"""Largest number of operations of a function that sympy is asked to invert."""
 
 REACH = (-3, 0, 3, 9)
-"""Decades of the values of which inverses are asked."""
+"""Powers of ten of the values at which inverses are tried."""
 
 PRINTED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
 
@@ -39,7 +38,7 @@ Ends = tuple[sp.Expr, sp.Expr]
 
 
 def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
-    """The control between two ends at which H is least.
+    """Return the control between two ends at which H is least.
 
     Parameters
     ----------
@@ -73,7 +72,7 @@ def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
 def with_angle(
     name: str, h: sp.Expr, u: sp.Symbol, ends: Ends, angle: sp.Symbol, arc: Ends | None
 ) -> tuple[sp.Expr, sp.Expr] | None:
-    """The control and the angle at which H is least, where the control multiplies what the angle turns.
+    """Return control and angle at which H is least, where the control multiplies what the angle turns.
 
     ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is the lesser of ``c + l m`` and
     ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser. The sign
@@ -118,7 +117,7 @@ def with_angle(
 
 
 def indefinite(name: str, curvature: sp.Expr) -> bool:
-    """Whether what bends H, whatever the control, has either sign."""
+    """Tell whether the factor that bends H, whatever the control, may have either sign."""
     value = numeric([curvature])
     with mp.workdps(DIGITS):
         found = [value(point)[0] for point in points(curvature.free_symbols, f"{name} curvature", SAMPLES)]
@@ -126,7 +125,7 @@ def indefinite(name: str, curvature: sp.Expr) -> bool:
 
 
 def _of_polynomial(name: str, h: sp.Poly, u: sp.Symbol, ends: Ends) -> sp.Expr | None:
-    """The least of all minimisers of a polynomial; ``None`` where it is convex, or may fall for ever."""
+    """Return the global minimiser of a polynomial; ``None`` where it is convex, or may fall for ever."""
     *coefficients, _ = h.all_coeffs()
     grows = h.degree() % 2 == 0 and h.LC().is_positive
     if h.degree() < 3 or not (grows or all(end.is_finite is not False for end in ends)):
@@ -137,9 +136,9 @@ def _of_polynomial(name: str, h: sp.Poly, u: sp.Symbol, ends: Ends) -> sp.Expr |
 
 
 def nearest_angle(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
-    """The angle of an interval that is nearest to where a cosine and a sine together are least.
+    """Return the angle of an interval nearest to the minimiser of a cosine and a sine together.
 
-    It is turned to within half a turn of the middle: from there the nearer end is the better one.
+    The minimiser is turned to within half a turn of the middle: from there the nearer end is the better one.
     """
     middle = Middle(*ends)
     along = -cosine * sp.cos(middle) - sine * sp.sin(middle)
@@ -148,7 +147,7 @@ def nearest_angle(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
 
 
 def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
-    """Functions of the control -> what multiplies them."""
+    """Map functions of the control to their factors in the slope."""
     parts = [term.as_independent(u, as_Add=False) for term in sp.Add.make_args(slope)]
     found: dict[sp.Expr, sp.Expr] = {}
     for factor, function in parts:
@@ -157,7 +156,7 @@ def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
 
 
 def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
-    """The inverse of a function of one control that has one in closed form, found for all controls that are tried."""
+    """Return the inverse of a function of one control in closed form; it is checked for all controls tried."""
     if function.free_symbols != {u} or function.count_ops() > INVERTED:
         return None
     value = sp.Dummy("value", real=True)
@@ -181,7 +180,10 @@ def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
 
 
 def _unscaled(function: sp.Expr, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
-    """The function of ``c u``, and c: to solve for u in e^(5.82 u) is to sympy an equation of degree 291."""
+    """Write a function of the control as one of ``c u``, with c.
+
+    Sympy treats u in e^(5.82 u) = b as an unknown of an equation of degree 291.
+    """
     inner = {f: f.args[0] / u for f in function.atoms(sp.Function) if f.has(u)}
     (scale,) = set(inner.values()) if len(set(inner.values())) == 1 else {sp.Integer(1)}
     outside = function.xreplace(dict.fromkeys(inner, sp.Integer(0)))
@@ -191,7 +193,7 @@ def _unscaled(function: sp.Expr, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 
 
 def _everywhere(inverse: sp.Lambda) -> bool:
-    """Whether all values have an inverse, small and large ones of either sign."""
+    """Tell whether all values have an inverse, small and large ones of either sign."""
     (value,), back = inverse.variables, numeric([inverse.expr])
     with mp.workdps(DIGITS):
         found = [back({value: side * 1.1 * mp.mpf(10) ** k})[0] for side in (1, -1) for k in REACH]
@@ -201,7 +203,7 @@ def _everywhere(inverse: sp.Lambda) -> bool:
 def _at(
     inverse: sp.Lambda, derivative: sp.Expr, u: sp.Symbol, factor: sp.Expr, constant: sp.Expr
 ) -> tuple[sp.Expr, sp.Expr]:
-    """Where the slope ``factor f(u) + constant`` vanishes, and its derivative there."""
+    """Return the zero of the slope ``factor f(u) + constant``, and the derivative of the slope there."""
     value = sp.Dummy("value", real=True)
     at = tidy(-constant / factor)
     curvature = simplify(derivative.xreplace({u: inverse(value)}))
@@ -209,7 +211,7 @@ def _at(
 
 
 def _root(name: str, terms: dict[sp.Expr, sp.Expr], constant: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
-    """The minimiser as the root of a slope that grows, which is refused where it does not."""
+    """Return the minimiser as the root of an increasing slope; other slopes are refused."""
     functions = list(terms)
     inner = sorted(set().union(*(f.free_symbols for f in functions)) - {u}, key=lambda s: s.name)
     weights = [sp.Dummy(f"a{k}", real=True) for k in range(len(functions) + 1)]
@@ -221,7 +223,7 @@ def _root(name: str, terms: dict[sp.Expr, sp.Expr], constant: sp.Expr, u: sp.Sym
 
 
 def _bends_down(name: str, u: sp.Symbol, bent: sp.Expr) -> bool:
-    """Whether what H is bent by is negative, for some controls or in some places."""
+    """Tell whether the curvature of H is negative, for some controls or in some places."""
     curvature, others = numeric([bent]), bent.free_symbols - {u}
     with mp.workdps(DIGITS):
         controls = [point[u] * 2 ** (k % 5 - 2) for k, point in enumerate(points([u], f"{name} {u}", CONTROLS))]
@@ -235,7 +237,7 @@ def _bends_down(name: str, u: sp.Symbol, bent: sp.Expr) -> bool:
 
 
 def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
-    """Refuse a slope that grows for some controls and falls for others, all else being equal."""
+    """Refuse a slope that increases for some controls and decreases for others."""
     curvature = numeric([sp.diff(slope, u)])
     others = slope.free_symbols - {u}
     with mp.workdps(DIGITS):

@@ -1,11 +1,10 @@
-"""The boundary residual: one function whose zero is the right end of every boundary type.
+"""The boundary residual: one function whose zeros satisfy the end conditions of every boundary type.
 
-At the final time the first variation of the cost leaves (H + S_t) dt + (S_x - lambda)' dx, which must vanish
-for every variation that the instance admits (Kirk, Optimal Control Theory, 5.1). Two numbers for each state
-say which: ``given`` (dx = 0) and ``on_reference`` (dx = c'(t) dt); with neither the state is free. What then
-multiplies each independent variation, and each condition on the end itself, are the residuals. With the five
-choices of textbooks, and all mixtures, they are the boundary conditions. Terminal constraints psi = 0 enter
-through S + nu' psi.
+At the final time the first variation of the cost leaves (H + S_t) dt + (S_x - lambda)' dx, which must vanish for every
+variation that the instance admits (Kirk, Optimal Control Theory, 5.1). Two numbers for each state say which: ``given``
+(dx = 0) and ``on_reference`` (dx = c'(t) dt); with neither the state is free. The factors of the independent
+variations, and the conditions on the end itself, are the residuals. With the five choices of textbooks, and all
+mixtures, they are the boundary conditions. Terminal constraints psi = 0 enter through S + nu' psi.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ KINDS = ("given", "reference", "free")
 
 
 def boundary_residual(so_far: Derivation) -> Step:
-    """The residuals of the end itself and of transversality, state by state, of constraints and of the final time.
+    """Derive the residuals of end conditions and transversality, by state, constraint and final time.
 
     Of the two residuals of a state one is zero by the choice of ``given`` and ``on_reference``.
     """
@@ -76,7 +75,7 @@ def boundary_residual(so_far: Derivation) -> Step:
 
 
 def on_a_reference(model: Model, equations: Sequence[Equation]) -> list[Equation]:
-    """Return equations without what holds for states that end on a reference, where the model states none."""
+    """Return equations without the conditions for states that end on a reference, if the model has none."""
     idle = {} if model.reference else {n.on_reference(x): sp.Integer(0) for x in symbols_of(model.states)}
     return [replace(e, rhs=e.rhs.xreplace(idle)) for e in equations]
 
@@ -88,7 +87,7 @@ def _first_variation(
     curve: Sequence[sp.Expr],
     equations: Sequence[Equation],
 ) -> Check:
-    """Hold the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
+    """Check the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
     residuals, cost, path = numeric([e.rhs for e in equations]), numeric([weighted]), numeric(list(curve))
     dt, *moves = chosen = [sp.Dummy(f"delta {symbol.name}", real=True) for symbol in (t, *states)]
     stated = (weighted, *curve, *(e.rhs for e in equations))

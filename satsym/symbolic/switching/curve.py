@@ -1,8 +1,8 @@
-"""Least time in closed form: the curve on which a bounded control switches, and the law that it makes of the state.
+"""Minimum time in closed form: the curve on which a bounded control switches, and the law as a function of the state.
 
-In two states, a chain of two integrators, the switching function is linear in time and so changes its sign once at
+For two states, a chain of two integrators, the switching function is linear in time and so changes its sign once at
 most: the last arc is one of the two motions under a bound that arrive at the target. Together they are the switching
-curve. Off it the control is the one whose arc has yet to meet the curve.
+curve. Off the curve the control is the one whose arc meets the curve later.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.functions import parts, written_out
 
 CURVE, FEEDBACK, RESTS = "switching_curve", "switching_feedback", "rest_to_rest"
-"""Names of the three steps."""
+"""Names of the three steps on a switching curve."""
 _CLOCK = sp.Dummy("time", real=True)
 
 
 def states_of(derivation: Derivation) -> tuple[str, str] | None:
-    """Names of position and rate where there is a switching curve."""
+    """Return the names of position and rate of a derivation with a switching curve."""
     chain = chain_of(derivation) if CURVE in derivation else None
     return (chain.position.name, chain.rate.name) if chain else None
 
 
 def switching_curve(so_far: Derivation) -> Step | None:
-    """The arcs that arrive at the target, and the curve that they make."""
+    """Derive the arcs that arrive at the target, and the curve that they form."""
     chain = chain_of(so_far)
     if chain is None:
         return None
@@ -60,7 +60,7 @@ def switching_curve(so_far: Derivation) -> Step | None:
 
 
 def switching_feedback(so_far: Derivation) -> Step | None:
-    """The control of least time as a function of the state: by the side of the curve on which it lies."""
+    """Derive the time-optimal control as a function of the state: the side of the curve decides."""
     if CURVE not in so_far or (chain := chain_of(so_far)) is None:
         return None
     beyond = chain.position - so_far.equation(f"{CURVE}.curve").rhs
@@ -74,7 +74,7 @@ def switching_feedback(so_far: Derivation) -> Step | None:
 
 
 def rest_to_rest(so_far: Derivation) -> Step | None:
-    """Return how long a change of position takes from rest to rest, and its first arc."""
+    """Derive the time that a change of position takes from rest to rest, and its first arc."""
     if FEEDBACK not in so_far or (chain := chain_of(so_far)) is None:
         return None
     duration, first = _between_rests(chain)
@@ -84,22 +84,22 @@ def rest_to_rest(so_far: Derivation) -> Step | None:
 
 
 def _side(chain: Chain) -> sp.Expr:
-    """The sign of the distance from the curve, or on it that of the arc."""
+    """Return the sign of the distance from the curve; on the curve, the sign of the arc."""
     return sp.sign(s.BEYOND_CURVE) + (1 - sp.sign(s.BEYOND_CURVE) ** 2) * sp.sign(chain.rate - chain.target[1])
 
 
 def _levels(chain: Chain) -> sp.Expr:
-    """The bound that applies on each side."""
+    """Return the bound that applies on each side of the curve."""
     return Switch(s.SIDE, sp.Integer(0), chain.falling, chain.rising)
 
 
 def _law(chain: Chain) -> sp.Expr:
-    """The control as a function of the distance from the curve and the rate."""
+    """Return the control as a function of the distance from the curve and the rate."""
     return _levels(chain).xreplace({s.SIDE: _side(chain)})
 
 
 def chain_of(so_far: Derivation) -> Chain | None:
-    """Return the two integrators, where time alone costs; otherwise nothing."""
+    """Return the two integrators of a problem in which only time costs; ``None`` for other problems."""
     problem, model = so_far.problem, so_far.model
     if problem is None or len(model.states) != 2 or len(model.controls) != 1 or model.reference:
         return None
@@ -127,14 +127,14 @@ def chain_of(so_far: Derivation) -> Chain | None:
 
 
 def _moved(chain: Chain, bound: sp.Expr, time: sp.Expr, start: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
-    """Position and rate after a time under a constant control."""
+    """Return position and rate after a time under a constant control."""
     rate = start[1] + sp.integrate(chain.gain * bound, (_CLOCK, 0, _CLOCK))
     position = start[0] + sp.integrate(chain.slope * rate, (_CLOCK, 0, _CLOCK))
     return position.xreplace({_CLOCK: time}), rate.xreplace({_CLOCK: time})
 
 
 def _arc(chain: Chain, bound: sp.Symbol) -> sp.Expr:
-    """Position, seen from the target, as a function of the rate along the motion under a bound that arrives there."""
+    """Return position, relative to the target, as a function of the rate on the arc that arrives under a bound."""
     before = sp.Dummy("before", real=True)
     position, rate = _moved(chain, bound, before, chain.target)
     (moment,) = sp.solve(rate - chain.rate, before)
@@ -142,7 +142,7 @@ def _arc(chain: Chain, bound: sp.Symbol) -> sp.Expr:
 
 
 def _between_rests(chain: Chain) -> tuple[sp.Expr, sp.Expr]:
-    """How long the way from rest to rest takes, and the first of its two arcs."""
+    """Return the time from rest to rest, and the duration of the first of its two arcs."""
     duration, first = (sp.Dummy(name, positive=True) for name in ("duration", "first"))
     way = chain.target[0] - chain.position
     found = []
@@ -175,12 +175,12 @@ class Chain:
 
     @property
     def target(self) -> tuple[sp.Symbol, sp.Symbol]:
-        """Given final values of position and rate."""
+        """Return the given final values of position and rate."""
         return n.target(self.position), n.target(self.rate)
 
 
 def arrives(so_far: Derivation, chain: Chain, curve: sp.Expr, law: sp.Expr) -> Check:
-    """Check that the law leads from a point of the curve to the target."""
+    """Check that the law leads from points of the curve to the target."""
     motion = _Motion(so_far, chain)
     place, control = numeric([chain.target[0] + curve]), numeric([law])
 
@@ -194,7 +194,7 @@ def arrives(so_far: Derivation, chain: Chain, curve: sp.Expr, law: sp.Expr) -> C
 
 
 def extremal(so_far: Derivation, chain: Chain, beyond: sp.Expr, law: sp.Expr) -> Check:
-    """Check that the law arrives from anywhere, and that costates with H = 0 make the same controls."""
+    """Check that the law arrives from any state, and that costates with H = 0 give the same controls."""
     motion, control = _Motion(so_far, chain), numeric([law])
     distance = numeric([beyond])
     optimal = numeric(written_out(so_far, [so_far.equation(f"control_law.{chain.control.name}").rhs]))
@@ -218,7 +218,7 @@ def extremal(so_far: Derivation, chain: Chain, beyond: sp.Expr, law: sp.Expr) ->
 
 
 def between_rests(so_far: Derivation, chain: Chain, law: sp.Expr, duration: sp.Expr, first: sp.Expr) -> Check:
-    """Check that two arcs of those durations lead from rest to rest."""
+    """Check that two arcs of these durations lead from rest to rest."""
     motion, control = _Motion(so_far, chain), numeric([law])
     times = numeric([duration, first.xreplace({s.TRANSITION: duration})])
 
@@ -234,7 +234,7 @@ def between_rests(so_far: Derivation, chain: Chain, law: sp.Expr, duration: sp.E
 
 
 class _Motion:
-    """States and costates under a constant control, followed numerically."""
+    """States and costates under a constant control, integrated numerically."""
 
     def __init__(self, so_far: Derivation, chain: Chain) -> None:
         constants = definitions_of(so_far.model)
@@ -244,13 +244,13 @@ class _Motion:
         self.rates = numeric(self.slopes)
 
     def symbols(self, *expressions: sp.Expr) -> set[sp.Symbol]:
-        """What a check needs values of."""
+        """Return the symbols that need values in a check."""
         chain = self.chain
         needed = {n.TIME, *self.moving, chain.control, chain.falling, chain.rising, *chain.target}
         return needed.union(*(e.free_symbols for e in (*expressions, *self.slopes)))
 
     def start(self, point: Point) -> Point:
-        """The point with zero between the bounds."""
+        """Return a point changed such that zero lies between the bounds."""
         low, high = sorted((self.chain.falling, self.chain.rising), key=lambda bound: bound.name.endswith("_max"))
         return {**point, low: -abs(point[low]), high: abs(point[high])}
 
@@ -261,7 +261,7 @@ class _Motion:
         return [here[target] for target in self.chain.target]
 
     def after(self, here: Point, control: Any, time: Any) -> Point:
-        """Everything after a time: one step of RK4, which is exact where all are polynomials of time up to t^4."""
+        """Return the values after a time: one step of RK4, exact for polynomials of time up to t^4."""
         held = {**here, self.chain.control: control}
 
         def rates(shift: Any, by: list[Any]) -> list[Any]:
@@ -276,13 +276,13 @@ class _Motion:
         return {**held, **{z: held[z] + time / 6 * (a + 2 * b + 2 * c + d) for z, a, b, c, d in steps}}
 
     def last_arc(self, here: Point, control: Any) -> Point:
-        """Everything after the time that the rate needs to its target at the size of its slope, whatever its sign."""
+        """Return the values after the time that the rate needs to its target at the absolute value of its slope."""
         slope = self.rates({**here, self.chain.control: control})[self.moving.index(self.chain.rate)]
         return self.after(here, control, abs((here[self.chain.target[1]] - here[self.chain.rate]) / slope))
 
 
 def _until(crossed: Callable[[Any], bool]) -> Any:
-    """The time of the first crossing, by halving."""
+    """Find the time of the first crossing by bisection."""
     early, late = mp.mpf(0), mp.mpf(1)
     while not crossed(late) and late < mp.mpf(2) ** 60:
         late *= 2
@@ -293,7 +293,7 @@ def _until(crossed: Callable[[Any], bool]) -> Any:
 
 
 def _zeros(functions: Callable[[Point], list[Any]], here: Point, unknown: tuple[sp.Symbol, ...]) -> Point:
-    """Where functions that are affine in some unknowns vanish."""
+    """Solve for the unknowns at which affine functions vanish."""
     none = {**here, **dict.fromkeys(unknown, mp.mpf(0))}
     constant = mp.matrix(functions(none))
     columns = [mp.matrix(functions({**none, symbol: mp.mpf(1)})) - constant for symbol in unknown]

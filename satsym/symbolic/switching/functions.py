@@ -1,8 +1,8 @@
-"""Hamiltonians linear in the controls and their magnitudes: switching functions, the law they make, their rates.
+"""Hamiltonians linear in the controls and their magnitudes: switching functions, the law, and their rates.
 
-H = H_0 + sum of sigma_i u_i + sum of w_i |u_i| is least, on a box, where each control is at a bound, or at rest where
-its magnitude costs more than it earns. The sign of sigma_i - or its size beside w_i - decides which, and how it
-changes is the Poisson bracket with H. Where sigma_i stays at the threshold the law says nothing: see
+H = H_0 + sum of sigma_i u_i + sum of w_i |u_i| is least on a box where each control is at a bound, or at rest where its
+magnitude costs more than it gains. The sign of sigma_i - or its size beside w_i - decides which, and its rate is the
+Poisson bracket with H. Where sigma_i stays at the threshold the law is undetermined: see
 :mod:`satsym.symbolic.switching.singular`.
 """
 
@@ -36,7 +36,7 @@ SCALES = (0.1, 1.0, 10.0)
 
 @dataclass(frozen=True)
 class Parts:
-    """H taken apart: ``drift + sum(switching * u) + sign * sum(weights * |u|)``."""
+    """The parts of H: ``drift + sum(switching * u) + sign * sum(weights * |u|)``."""
 
     drift: sp.Expr
     switching: tuple[sp.Expr, ...]
@@ -44,7 +44,7 @@ class Parts:
 
 
 def applies(so_far: Derivation) -> bool:
-    """Whether the cost and the motion are affine in the controls and their magnitudes.
+    """Tell whether cost and motion are affine in the controls and their magnitudes.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def refuse_magnitudes(so_far: Derivation) -> None:
 
 
 def parts(so_far: Derivation) -> Parts:
-    """H taken apart, as the step ``switching_function`` has it."""
+    """Return the parts of H as the step ``switching_function`` states them."""
     assert so_far.problem is not None
     controls = symbols_of(so_far.model.controls)
     stated = {e.name: e.rhs for e in so_far.step("switching_function").equations}
@@ -95,7 +95,7 @@ def parts(so_far: Derivation) -> Parts:
 
 
 def switching_function(so_far: Derivation) -> Step:
-    """H_0, what multiplies each control in H, and the weight of each magnitude."""
+    """Derive H_0, the factor of each control in H, and the weight of each magnitude."""
     problem, controls = _problem(so_far), symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     stands_for = s.magnitudes(controls)
@@ -124,7 +124,7 @@ def switching_function(so_far: Derivation) -> Step:
 
 
 def control_law(so_far: Derivation) -> Step:
-    """The control that minimises H over the box: at a bound, or of least magnitude."""
+    """Derive the control that minimises H over the box: at a bound, or of least magnitude."""
     problem, found = _problem(so_far), parts(so_far)
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
@@ -141,7 +141,7 @@ def control_law(so_far: Derivation) -> Step:
 
 
 def smoothed_law(so_far: Derivation) -> Step:
-    """The law of the companion that weighs u^2 a little, and only a share of |u|: continuous, the same in the limit."""
+    """Derive the continuous law of the regularised problem, which weighs u^2 a little and |u| a little less."""
     problem, found = _problem(so_far), parts(so_far)
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
@@ -173,7 +173,7 @@ def smoothed_law(so_far: Derivation) -> Step:
 
 
 def switching_rate(so_far: Derivation) -> Step:
-    """How the switching functions change along an extremal, by Poisson brackets."""
+    """Derive the rates of the switching functions along an extremal by Poisson brackets."""
     problem, found = _problem(so_far), parts(so_far)
     controls, lam = symbols_of(so_far.model.controls), costates(so_far)
     equations: list[Equation] = []
@@ -192,7 +192,7 @@ def switching_rate(so_far: Derivation) -> Step:
 
 
 def poisson(so_far: Derivation, by: sp.Expr, of: sp.Expr) -> sp.Expr:
-    """The Poisson bracket {by, of} = by_lambda of_x - by_x of_lambda: how ``of`` changes where H is ``by``."""
+    """Return the Poisson bracket by_lambda of_x - by_x of_lambda: the rate of ``of`` where H is ``by``."""
     states, lam = symbols_of(so_far.model.states), costates(so_far)
     terms = (
         sp.diff(by, costate) * sp.diff(of, x) - sp.diff(by, x) * sp.diff(of, costate)
@@ -202,7 +202,7 @@ def poisson(so_far: Derivation, by: sp.Expr, of: sp.Expr) -> sp.Expr:
 
 
 def flow(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """States and costates -> their rates of change, the controls being held."""
+    """Map states and costates to their rates of change under constant controls."""
     z = (*symbols_of(so_far.model.states), *costates(so_far))
     return dict(zip(z, (*so_far.rhs("first_order"), *so_far.rhs("costate_equations")), strict=True))
 
@@ -214,7 +214,7 @@ def along_extremals(
     derived: Sequence[sp.Expr],
     replaced: Mapping[sp.Expr, sp.Expr] | None = None,
 ) -> Any:
-    """Compare derived total time derivatives of functions with differences along the canonical equations."""
+    """Compare derived total time derivatives of functions with differences along canonical equations."""
     rates = {z: rate.xreplace(dict(replaced or {})) for z, rate in flow(so_far).items()}
     values, rate, motion = numeric(list(functions)), numeric(list(derived)), numeric(list(rates.values()))
     everything = {t, *rates, *symbols_of(so_far.model.controls)}
@@ -223,7 +223,7 @@ def along_extremals(
 
 
 def directional(values: Any, motion: Any, moving: Sequence[sp.Symbol], point: Point) -> list[Any]:
-    """Central differences of functions along a motion, time included."""
+    """Return central differences of functions along a motion, time included."""
     with mp.workdps(3 * mp.mp.dps):
         speed = motion(point)
     along = [(t, 1), *zip(moving, speed, strict=True)]
@@ -231,7 +231,7 @@ def directional(values: Any, motion: Any, moving: Sequence[sp.Symbol], point: Po
 
 
 def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Expressions with switching functions and weights as what they stand for, minimisers as what they compare."""
+    """Replace symbols of switching functions and weights by their values, and minimisers by comparisons."""
     found, controls = parts(so_far), symbols_of(so_far.model.controls)
     values = dict(zip(map(s.switching_of, controls), found.switching, strict=True))
     values |= dict(zip(map(s.weight_of, controls), found.weights, strict=True))
@@ -239,7 +239,7 @@ def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.E
 
 
 def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
-    """Check that no admissible control makes H better: corners, controls at rest, and random ones."""
+    """Check that no admissible control has a lower H: corners, controls at rest, and random ones."""
     problem = _problem(so_far)
     controls, lower, upper = _box(so_far)
     limits, better = (*lower, *upper), sign(problem)
@@ -266,7 +266,7 @@ def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr
 def _competitors(
     point: Point, lower: Sequence[sp.Symbol], upper: Sequence[sp.Symbol], rng: random.Random
 ) -> list[Sequence[Any]]:
-    """All corners of the box, its points with controls at rest, and random points of it."""
+    """Return all corners of the box, its points with controls at rest, and random points of it."""
     levels = [
         (point[low], point[high], max(point[low], min(mp.mpf(0), point[high])))
         for low, high in zip(lower, upper, strict=True)
@@ -276,20 +276,20 @@ def _competitors(
 
 
 def _box(so_far: Derivation) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Symbol, ...], tuple[sp.Symbol, ...]]:
-    """Controls, lower and upper bounds."""
+    """Return controls, lower bounds and upper bounds."""
     controls = symbols_of(so_far.model.controls)
     limits = symbols_of(control_sets.bounds("box", so_far.model.controls))
     return controls, limits[: len(controls)], limits[len(controls) :]
 
 
 def moving_magnitudes(so_far: Derivation) -> list[sp.Symbol]:
-    """Controls whose magnitudes stand in the motion, so that costates decide whether these are worth having."""
+    """Return controls whose magnitudes occur in the motion, so that costates determine their worth."""
     controls, lam = symbols_of(so_far.model.controls), set(costates(so_far))
     return [u for u, w in zip(controls, parts(so_far).weights, strict=True) if w.free_symbols & lam]
 
 
 def _weight_symbols(found: Parts, controls: Sequence[sp.Symbol]) -> list[sp.Expr]:
-    """Weights by name, zero where there is none."""
+    """Map the names of weights to symbols, zero where a magnitude has no weight."""
     return [s.weight_of(u) if w != 0 else sp.Integer(0) for u, w in zip(controls, found.weights, strict=True)]
 
 
@@ -300,7 +300,7 @@ def _problem(so_far: Derivation) -> Problem:
 
 
 def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Sequence[sp.Expr]) -> None:
-    """Refuse what no law here minimises."""
+    """Refuse problems for which no law is derived here."""
     if problem.control_set != "box":
         raise DerivationError(
             f"{name}: H is linear in the controls, so its minimum lies at their bounds; this requires "

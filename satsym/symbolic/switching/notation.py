@@ -1,4 +1,4 @@
-"""Symbols of problems whose Hamiltonian is linear in the controls, and how they are typeset."""
+"""Symbols of problems whose Hamiltonian is linear in the controls, with their LaTeX."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ SMOOTHING = sp.Symbol("smoothing", positive=True)
 """The weight of u^2 / 2 in the regularised problem."""
 
 MAGNITUDE_FACTOR = sp.Symbol("magnitude_share", real=True)
-"""What multiplies the weights of magnitudes in the regularised problem."""
+"""The factor of the weights of magnitudes in the regularised problem."""
 
 REGULARISED = (
     Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the regularised problem", positive=True),
     Variable(MAGNITUDE_FACTOR.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
 )
-"""What follows the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
+"""The numbers after the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
 
 SMOOTHED = sp.Symbol("H_smoothed", real=True)
-"""H of the smoothed companion."""
+"""The Hamiltonian of the regularised problem."""
 
 ON_CURVE = sp.Symbol("position_on_switching_curve", real=True)
 """The position of the switching curve at the rate of a state."""
@@ -37,32 +37,32 @@ BEYOND_CURVE = sp.Symbol("beyond_switching_curve", real=True)
 """How far the position lies beyond the switching curve."""
 
 SIDE = sp.Symbol("side_of_switching_curve", real=True)
-"""On which side of the switching curve a state lies, or the sign of its arc where it lies on it."""
+"""The side of the switching curve on which a state lies, or the sign of its arc if it lies on the curve."""
 
 TRANSITION, FIRST_ARC = sp.Symbol("transition_time", positive=True), sp.Symbol("first_arc_time", positive=True)
-"""Durations of a change of position from rest to rest in least time, and of its first arc."""
+"""Durations of the fastest change of position from rest to rest, and of its first arc."""
 switching_of = named("switching_{}")
 """The switching function of a control: what multiplies it in H."""
 
 
 def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol:
-    """A time derivative of the switching function."""
+    """Return the symbol of a time derivative of a switching function."""
     return sp.Symbol(f"switching_{control.name}{suffix}_{order}", real=True)
 
 
 weight_of = named("magnitude_weight_{}")
 """The weight of a control's magnitude in the cost."""
 smoothed = named("{}_smoothed")
-"""The control of the smoothed companion."""
+"""The symbol for a control of the regularised problem."""
 
 
 def singular(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
-    """The control on a singular arc."""
+    """Return the symbol of a control on a singular arc."""
     return sp.Symbol(f"{control.name}_singular{suffix}", real=True)
 
 
 def kelley(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
-    """What must not be negative on a singular arc (not positive where H is maximised)."""
+    """Return the symbol that must not be negative on a singular arc (not positive where H is maximised)."""
     return sp.Symbol(f"kelley_{control.name}{suffix}", real=True)
 
 
@@ -71,22 +71,22 @@ drift_bracket = named("bracket_H_0_{}")
 
 
 def bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
-    """The Poisson bracket of the switching functions of two controls."""
+    """Return the symbol of the Poisson bracket of the switching functions of two controls."""
     return sp.Symbol(f"bracket_{by.name}_{control.name}", real=True)
 
 
 def weight_bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
-    """The Poisson bracket of the weight of one control's magnitude and the switching function of another."""
+    """Return the symbol of the Poisson bracket of one control's weight and another's switching function."""
     return sp.Symbol(f"bracket_weight_{by.name}_{control.name}", real=True)
 
 
 def magnitudes(controls: Sequence[sp.Symbol]) -> dict[sp.Expr, sp.Symbol]:
-    """Each |u|, and a symbol of its own for it."""
+    """Map each |u| to a symbol of its own."""
     return {sp.Abs(u): sp.Dummy(f"magnitude_{u.name}", real=True) for u in controls}
 
 
 def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> bool:
-    """Whether expressions are affine in the controls and their magnitudes."""
+    """Tell whether expressions are affine in the controls and their magnitudes."""
     stands_for = magnitudes(controls)
     entries = [*controls, *stands_for.values()]
     for expression in expressions:
@@ -98,16 +98,17 @@ def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> 
 
 
 def constants(model: Model) -> list[str]:
-    """Names of what stands in front of costates and controls."""
+    """Return the names of factors that are printed before costates and controls."""
     return [SMOOTHING.name, MAGNITUDE_FACTOR.name, *(weight_of(u).name for u in symbols_of(model.controls))]
 
 
 BRANCHES = ("", "_positive", "_negative")
-"""Singular arcs of a control without a weight, and with one on which the control is positive, and negative."""
+"""Suffixes of singular arcs: of a control without a weight, and of positive and negative ones of a control with a
+weight."""
 
 
 def names(problem: Problem) -> dict[str, str]:
-    """Names and LaTeX of what the derivation of a switching problem may introduce.
+    """Map the names that the derivation of a switching problem may introduce to LaTeX.
 
     Empty where the running cost already shows that the Hamiltonian is not linear in the controls.
     """
@@ -140,7 +141,7 @@ def names(problem: Problem) -> dict[str, str]:
 
 
 def _dotted(sigma: str, order: int, mark: str = "") -> str:
-    """A time derivative, with dots as far as they can be read."""
+    """Return the LaTeX of a time derivative, with dots as long as these are readable."""
     head, _, index = sigma.partition("_")
     index = f"_{index}" if index else ""
     if order <= 2:

@@ -1,4 +1,4 @@
-"""The phase plane of a switching curve, as points: the curve, and trajectories that it leads to the target."""
+"""Points of a phase plane: the switching curve, and trajectories that it leads to the target."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from satsym.symbolic.motion.geometry import Place
 from satsym.symbolic.switching import curve as switching_curve
 
 FASTEST = 1.5
-"""The largest rate that is shown."""
+"""The largest rate in the picture."""
 STARTS = ((-1.35, 0.35), (1.35, -0.35), (-0.75, -0.9), (0.75, 0.9))
-"""Where trajectories begin: positions in parts of where the curve is at the largest rate, and rates."""
+"""Initial states of trajectories: positions, relative to that of the curve at the largest rate, and rates."""
 POINTS = 24
-"""Points of each arc."""
+"""Number of points of each arc."""
 
 
 @dataclass(frozen=True)
 class PhasePlane:
-    """What is drawn about a target at rest, with the bounds and all parameters of size one.
+    """The contents of a phase plane about a target at rest, with the bounds and all parameters of size one.
 
     Attributes
     ----------
@@ -82,6 +82,6 @@ def phase_plane(derivation: Derivation) -> PhasePlane | None:
 
 
 def _at_one(derivation: Derivation, constant: sp.Expr) -> float:
-    """A constant with all parameters of size one."""
+    """Return the value of a constant with all parameters of size one."""
     stated = sp.sympify(constant).xreplace(definitions_of(derivation.model))
     return float(stated.xreplace({s: sp.Integer(-1 if s.is_negative else 1) for s in stated.free_symbols}))

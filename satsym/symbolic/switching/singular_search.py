@@ -26,22 +26,22 @@ SIDES = {"_positive": 1, "_negative": -1}
 """Sign of a control with a weight on its magnitude, on the two kinds of singular arcs."""
 
 MOST_OPERATIONS = 2000
-"""Operations in a derivative, as it is or on the surface, beyond which the search is given up."""
+"""Largest number of operations of a derivative, before or after reduction, for the search to continue."""
 
 
 @dataclass
 class Surface:
-    """Where successive conditions hold: symbols solved for, conditions left as they are."""
+    """The surface of successive conditions: symbols that are solved for, and conditions that are not."""
 
     solved: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     left: list[sp.Expr] = field(default_factory=list)
 
     def reduced(self, expression: sp.Expr) -> sp.Expr:
-        """An expression on the surface."""
+        """Return an expression with the solved symbols substituted."""
         return _simplest(sp.sympify(expression).xreplace(self.solved))
 
     def add(self, condition: sp.Expr, unknowns: Sequence[sp.Symbol]) -> None:
-        """Solve a condition, reduced before, for the first unknown it is linear in, and certainly if there is one."""
+        """Solve a reduced condition for the first unknown in which it is linear, with certainty if possible."""
         chosen: tuple[sp.Symbol, sp.Expr] | None = None
         for unknown in unknowns:
             slope = _slope(condition, unknown)
@@ -57,41 +57,42 @@ class Surface:
         self.solved = {k: _simplest(v.xreplace({unknown: value})) for k, v in self.solved.items()} | {unknown: value}
 
     def equations(self) -> sp.Tuple:
-        """What holds there."""
+        """Return the equations that hold on the surface."""
         stated = [sp.Eq(k, v, evaluate=False) for k, v in self.solved.items()]
         return sp.Tuple(*stated, *(sp.Eq(c, 0, evaluate=False) for c in self.left))
 
 
 @dataclass(frozen=True)
 class Search:
-    """What the derivatives of one switching function at one threshold lead to."""
+    """The outcome of differentiating one switching function at one threshold."""
 
     control: sp.Symbol
     branch: str
-    """Which control, and which of :data:`satsym.symbolic.switching.notation.BRANCHES`."""
+    """The control, and the suffix of its threshold in :data:`satsym.symbolic.switching.notation.BRANCHES`."""
     magnitude: Mapping[sp.Expr, sp.Expr]
-    """Replacement of |u| there."""
+    """The replacement of |u| on this kind of singular arc."""
     threshold: sp.Expr
     """The switching function less its threshold."""
     derivatives: tuple[sp.Expr, ...]
-    """Its total time derivatives, from the first."""
+    """The total time derivatives of the switching function, from the first."""
     outcome: str
     """``"order"`` (the last derivative has the control), ``"closed"`` (the last one follows from those before),
     ``"impossible"`` (the last one cannot vanish) or ``"open"``."""
     surface: Surface
-    """Where the derivatives before the last vanish, and the last one if it is without the control."""
+    """The surface on which the derivatives before the last vanish, and the last one if it does not contain the control.
+    """
     slope: sp.Expr = sp.Integer(0)
     singular: sp.Expr = sp.Integer(0)
-    """What multiplies the control in the last derivative, and the control that this gives, both on the surface."""
+    """The factor of the control in the last derivative, and the singular control, both on the surface."""
 
     @property
     def order(self) -> int:
-        """Number of derivatives taken."""
+        """Return the number of derivatives taken."""
         return len(self.derivatives)
 
 
 def searches(so_far: Derivation) -> list[Search]:
-    """The search for each control at each of its thresholds."""
+    """Search for the singular control of each control at each of its thresholds."""
     assert so_far.problem is not None
     found, controls = parts(so_far), symbols_of(so_far.model.controls)
     motion = tuple(flow(so_far).items())
@@ -110,7 +111,7 @@ def _in_fractions(
     motion: tuple[tuple[sp.Symbol, sp.Expr], ...],
     controls: tuple[sp.Symbol, ...],
 ) -> Search:
-    """The search with fractions for decimals, which neither cancel nor factor; in decimals again in the end."""
+    """Run a search with fractions in place of decimals, which neither cancel nor factor, and convert back."""
     if not any(e.has(sp.Float) for e in (threshold, *(rate for _, rate in motion))):
         return _search(u, branch, threshold, motion, controls)
     rates = tuple((z, as_fractions(rate)) for z, rate in motion)
@@ -166,10 +167,10 @@ def _search(
 
 
 def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr | None:
-    """A reduced condition without the factor whose vanishing would make all costates vanish, if another may vanish.
+    """Remove the factor of a condition whose vanishing would make all costates vanish.
 
-    ``None`` where that other one is no simple factor: where it vanishes, so do derivatives of the condition, whatever
-    it does later.
+    ``None`` where another factor is not simple: where it vanishes, so do derivatives of the condition, whatever it does
+    later.
     """
     powers = (factor.as_base_exp() for factor in sp.Mul.make_args(sp.numer(condition)))
     factors = {base: exponent for base, exponent in powers if base.free_symbols}
@@ -182,7 +183,7 @@ def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol
 
 
 def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
-    """What multiplies an unknown in a condition that is a product, as reduced ones are, and linear in it."""
+    """Return the factor of an unknown in a reduced condition, a product that is linear in the unknown."""
     factors = sp.Mul.make_args(condition)
     having = [factor for factor in factors if factor.has(unknown)]
     if len(having) != 1 or having[0].is_Pow:
@@ -199,7 +200,7 @@ def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
 
 
 def _simplest(expression: sp.Expr) -> sp.Expr:
-    """The expression factored where it is rational, apart from magnitudes, else simplified."""
+    """Factor an expression where it is rational, apart from magnitudes; simplify it otherwise."""
     names = {magnitude: sp.Dummy(real=True) for magnitude in expression.atoms(sp.Abs)}
     plain = expression.xreplace(names)
     if not plain.is_rational_function():
@@ -209,7 +210,7 @@ def _simplest(expression: sp.Expr) -> sp.Expr:
 
 
 def _vanishes_by_half_angles(expression: sp.Expr) -> bool:
-    """Whether an expression is zero, proved by the tangents of half its angles where it is rational in them."""
+    """Tell whether an expression is zero, proved by tangents of half angles where it is rational in them."""
     single = sp.expand_trig(expression)
     halves = {f.args[0]: sp.Dummy(real=True) for f in single.atoms(TrigonometricFunction)}
     tangents = {f(angle): value for angle, h in halves.items() for f, value in _by_half(h).items()}
@@ -218,7 +219,7 @@ def _vanishes_by_half_angles(expression: sp.Expr) -> bool:
 
 
 def _by_half(h: sp.Symbol) -> dict[type[TrigonometricFunction], sp.Expr]:
-    """Functions of an angle by the tangent of its half."""
+    """Map functions of an angle to rational functions of the tangent of half the angle."""
     sine, cosine = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
     ratios = {sp.tan: sine / cosine, sp.cot: cosine / sine, sp.sec: 1 / cosine, sp.csc: 1 / sine}
     return {sp.sin: sine, sp.cos: cosine, **ratios}

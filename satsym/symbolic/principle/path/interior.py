@@ -20,16 +20,16 @@ from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.model import Problem, Requirement, symbols_of, t
 
 STEP = "interior_conditions"
-"""The step that only derivations of such problems have."""
+"""The name of the step that only derivations with points on the way have."""
 
 
 def entry(name: str, place: int, count: int) -> str:
-    """Name of one of the conditions at a point; of a single one the point's."""
+    """Return the name of one of the conditions at a point; a single condition has the name of the point."""
     return name if count == 1 else f"{name}_{place}"
 
 
 def named(problem: Problem) -> dict[str, sp.Expr]:
-    """Name -> each condition, those of the first point first."""
+    """Map names to all conditions, those of the first point first."""
     return {
         entry(name, k, len(stated)): sp.sympify(condition)
         for name, stated in problem.interior.items()
@@ -38,22 +38,22 @@ def named(problem: Problem) -> dict[str, sp.Expr]:
 
 
 def condition(name: str) -> sp.Symbol:
-    """The symbol for what vanishes, by its name."""
+    """Return the symbol for a condition, by its name."""
     return sp.Symbol(f"interior_{name}", real=True)
 
 
 def multiplier(name: str) -> sp.Symbol:
-    """The symbol for the multiplier of the condition with this name."""
+    """Return the symbol for the multiplier of a condition, by its name."""
     return sp.Symbol(f"pi_{name}", real=True)
 
 
 def change(of: sp.Symbol, point: str) -> sp.Symbol:
-    """The symbol for the value before a point less that after it."""
+    """Return the symbol for the value of a quantity before a point less the value after it."""
     return sp.Symbol(f"change_of_{of.name}_at_{point}", real=True)
 
 
 def interior_conditions(so_far: Derivation) -> Step | None:
-    """By what costates and H jump at each point."""
+    """Derive the jumps of costates and H at each point."""
     problem = so_far.problem
     if problem is None or not problem.interior:
         return None
@@ -75,7 +75,7 @@ def interior_conditions(so_far: Derivation) -> Step | None:
 
 
 def _first_variation(states: tuple[sp.Symbol, ...], adjoined: sp.Expr, jumps: list[Equation]) -> Check:
-    """Hold the jumps against the change of what is adjoined along any dx and dt, by differences."""
+    """Check the jumps against the change of the adjoined conditions along any dx and dt, by differences."""
     found, value = numeric([one.rhs for one in jumps]), numeric([adjoined])
     along = {x: sp.Dummy(f"delta {x.name}", real=True) for x in (t, *states)}
 
@@ -88,7 +88,7 @@ def _first_variation(states: tuple[sp.Symbol, ...], adjoined: sp.Expr, jumps: li
 
 
 def names(problem: Problem) -> dict[str, str]:
-    """Name -> LaTeX of all symbols."""
+    """Map the names of all symbols of points on the way to LaTeX."""
     found: dict[str, str] = {}
     for place, (point, stated) in enumerate(problem.interior.items(), start=1):
         for k in range(1, len(stated) + 1):
@@ -105,7 +105,7 @@ def names(problem: Problem) -> dict[str, str]:
 def declare(
     known: dict[str, Dimension | None], problem: Problem, total: Dimension | None, require: Requirement
 ) -> None:
-    """Enter the dimensions of all symbols, where `total` is that of the cost."""
+    """Enter the dimensions of all symbols of points on the way, where `total` is the dimension of the cost."""
     for name, stated in named(problem).items():
         known[condition(name).name] = found = require(f"the interior point {name}", stated)
         known[multiplier(name).name] = over(total, found)

@@ -1,9 +1,9 @@
-"""Inequalities that hold controls, g(x, u, t, p) <= 0, linear in these: the law on the boundary, and its multiplier.
+"""Path constraints g(x, u, t, p) <= 0 that are linear in the controls: the law on the boundary, and its multiplier.
 
-H is minimised over the controls that keep the constraint. Where the law without it keeps to it, that is the law; else
-the constraint is active, and with H + mu g the conditions g = 0 and H_u + mu g_u = 0 give controls and mu >= 0 (Hartl,
-Sethi and Vickson, SIAM Review 37, 1995, theorem 4.1). Nothing jumps at entry and exit, where mu vanishes. One
-constraint is active at a time.
+H is minimised over the controls that satisfy the constraint. Where the law without the constraint satisfies it, that is
+the law; else the constraint is active, and with H + mu g the conditions g = 0 and H_u + mu g_u = 0 give controls and mu
+>= 0 (Hartl, Sethi and Vickson, SIAM Review 37, 1995, theorem 4.1). Nothing jumps at entry and exit, where mu vanishes.
+One constraint is active at a time.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from satsym.symbolic.principle.path.path_constraints import (
 from satsym.symbolic.principle.pontryagin import costates
 
 STEP = "mixed_constraints"
-"""The step that only derivations of such problems have."""
+"""The name of the step that only derivations with constraints on controls have."""
 
 
 def mixed_constraints(so_far: Derivation) -> Step | None:
-    """What decides whether each constraint is active, and if it is, the controls and the multiplier."""
+    """Derive for each constraint when it is active, and then the controls and the multiplier."""
     problem = problem_of(so_far)
     if not (stated := pn.mixed(problem)):
         return None
@@ -75,7 +75,7 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
 
 
 def remarks(so_far: Derivation, stated: Mapping[str, sp.Expr]) -> tuple[Conclusion, ...]:
-    """Which constraints are bounds of the controls, and which leave the costate equations as they are."""
+    """Return remarks on constraints that are bounds of the controls, or leave the costate equations unchanged."""
     problem, states = problem_of(so_far), symbols_of(so_far.model.states)
     bounds = [pn.rate(name, 0) for name in stated if name not in problem.path_constraints]
     still = [pn.rate(name, 0) for name, g in stated.items() if not g.has(*states)]
@@ -84,7 +84,7 @@ def remarks(so_far: Derivation, stated: Mapping[str, sp.Expr]) -> tuple[Conclusi
 
 
 def mixed_costates(so_far: Derivation) -> Step | None:
-    """The costate equations while each constraint is active."""
+    """Derive the costate equations while each constraint is active."""
     if STEP not in so_far:
         return None
     problem, states, lam = problem_of(so_far), symbols_of(so_far.model.states), costates(so_far)
@@ -115,7 +115,7 @@ def mixed_costates(so_far: Derivation) -> Step | None:
 
 
 def constraints(so_far: Derivation) -> list[Constraint]:
-    """All that hold a control, of order zero; none where there are none, of controls that switch their bounds."""
+    """Return all path constraints that contain a control, with order zero; none for switching controls."""
     if switching(so_far):
         return [Constraint(name, (g,)) for name, g in pn.mixed(problem_of(so_far)).items()]
     if STEP not in so_far:
@@ -125,7 +125,7 @@ def constraints(so_far: Derivation) -> list[Constraint]:
 
 
 def _active(so_far: Derivation, found: Constraint) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
-    """Controls and multiplier while it is; where they are not in closed form, no controls, and its symbol."""
+    """Return controls and multiplier while a constraint is active, as symbols where no closed form exists."""
     if stationary(so_far):
         return {}, pn.multiplier(found.name)
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
@@ -134,7 +134,7 @@ def _active(so_far: Derivation, found: Constraint) -> tuple[dict[sp.Symbol, sp.E
 
 
 def _cheapest(so_far: Derivation, found: Constraint, active: dict[sp.Symbol, sp.Expr]) -> Check:
-    """H against that of other controls that keep the constraint: random ones, moved along its effect until they do."""
+    """Check H against its value for random other controls that were moved until they satisfy the constraint."""
     problem, h, g = problem_of(so_far), so_far.equation("hamiltonian.H").rhs, found.rates[0]
     controls, hats = tuple(active), free_law(so_far)
     effect, _ = affine(so_far, found, controls)
@@ -161,14 +161,15 @@ def _cheapest(so_far: Derivation, found: Constraint, active: dict[sp.Symbol, sp.
 
 
 def every(so_far: Derivation) -> list[Constraint]:
-    """Return all constraints along the way, first those on states alone."""
+    """Return all path constraints, first those on states alone."""
     return [*path_constraints.constraints(so_far), *constraints(so_far)]
 
 
 def linear_quadratic(so_far: Derivation) -> bool:
-    """Whether the motion is linear, costs are quadratic, and constraints along the way, if any, linear or quadratic.
+    """Tell whether motion, costs and path constraints are linear or quadratic, so that signs decide convexity.
 
-    What is left to make the problem convex are signs of matrices, which depend on the parameters.
+    The motion must be linear, the costs quadratic, and path constraints linear or quadratic. Whether the problem is
+    convex then depends on the signs of matrices, which depend on the parameters.
     """
     problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
     if problem is None or problem.interior:  # times that are free make none convex
@@ -176,7 +177,7 @@ def linear_quadratic(so_far: Derivation) -> bool:
     moving = (*states, *symbols_of(so_far.model.controls))
 
     def settled(expressions: list[Any], order: int) -> bool:
-        """Whether derivatives of this order are free of states and controls."""
+        """Tell whether derivatives of this order are free of states and controls."""
         table = [sp.sympify(e) for e in expressions]
         for _ in range(order):
             table = [sp.diff(e, v) for e in table for v in moving]

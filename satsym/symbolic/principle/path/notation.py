@@ -1,4 +1,4 @@
-"""Symbols of constraints along the way, and how they are typeset."""
+"""Symbols of path constraints, with their LaTeX."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from satsym.symbolic.principle.parts import parts_of
 
 
 def of_states(problem: Problem) -> dict[str, sp.Expr]:
-    """What is stated on states alone."""
+    """Return the path constraints on states alone."""
     return {name: g for name, g in _declared(problem).items() if not _holds_control(problem, g)}
 
 
 def mixed(problem: Problem, with_bounds: bool = True) -> dict[str, sp.Expr]:
-    """What holds a control; beside path constraints, and points on the way, bounds of a box are among these."""
+    """Return the path constraints that contain a control, and bounds of a box beside other constraints."""
     found = {name: g for name, g in _declared(problem).items() if _holds_control(problem, g)}
     return found | ({b.name: h for b, h in _bounds(problem).items()} if with_bounds else {})
 
 
 def holds_controls(problem: Problem) -> bool:
-    """Whether a path constraint holds a control, besides its bounds."""
+    """Tell whether a path constraint contains a control, apart from bounds."""
     return any(_holds_control(problem, g) for g in _declared(problem).values())
 
 
@@ -47,56 +47,59 @@ def _bounds(problem: Problem) -> dict[sp.Symbol, sp.Expr]:
 
 
 HIGHEST = 2
-"""Order of a constraint that is solved; those of a higher one have endlessly many junctions as a rule."""
+"""Highest order of a constraint that is solved; those of higher order usually have infinitely many junctions."""
 
 
 def entry(name: str, order: int) -> str:
-    """Name of the equation of a rate."""
+    """Return the name of the equation for a time derivative of a constraint."""
     return f"{name}_{order}" if order else name
 
 
 def vanishing_entry(name: str, order: int) -> str:
-    """Name of the equation of what vanishes on the boundary."""
+    """Return the name of the equation for a quantity that vanishes on the boundary."""
     return f"{name}_vanishing_{order}" if order else f"{name}_vanishing"
 
 
 def rate(name: str, order: int) -> sp.Symbol:
-    """The symbol for a rate of a constraint; of order 0 the constraint itself."""
+    """Return the symbol for a time derivative of a constraint; of order 0, for the constraint itself."""
     return sp.Symbol(f"constraint_{entry(name, order)}", real=True)
 
 
 def vanishing(name: str, order: int) -> sp.Symbol:
-    """The symbol for the last rate under the law, or a rate of that."""
+    """Return the symbol for the last time derivative of a constraint under the law, or for its derivative."""
     return sp.Symbol(f"constraint_{vanishing_entry(name, order)}", real=True)
 
 
 def multiplier(name: str) -> sp.Symbol:
-    """The symbol for the multiplier of a constraint."""
+    """Return the symbol for the multiplier of a constraint."""
     return sp.Symbol(f"eta_{name}", real=True)
 
 
 def jump(name: str) -> sp.Symbol:
-    """The symbol for the multiplier at a junction."""
+    """Return the symbol for the multiplier of a constraint at a junction."""
     return sp.Symbol(f"zeta_{name}", real=True)
 
 
 def change(of: sp.Symbol) -> sp.Symbol:
-    """The symbol for the value before a junction less that after it."""
+    """Return the symbol for the value of a quantity before a junction less the value after it."""
     return sp.Symbol(f"change_of_{of.name}", real=True)
 
 
 def boundary_control(name: str, control: sp.Symbol) -> sp.Symbol:
-    """The symbol for a control on the boundary of a constraint."""
+    """Return the symbol for a control on the boundary of a constraint."""
     return sp.Symbol(f"{control.name}_on_{name}", real=True)
 
 
 def control_rate(name: str, control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the rate of a control on the boundary of a constraint."""
+    """Return the symbol for the rate of a control on the boundary of a constraint."""
     return sp.Symbol(f"rate_of_{control.name}_on_{name}", real=True)
 
 
 def names(problem: Problem, with_bounds: bool = True) -> dict[str, str]:
-    """Name -> LaTeX of all of them, with numbers where there are several; bounds that the law has are left out."""
+    """Map the names of all symbols of path constraints to LaTeX, numbered if there are several constraints.
+
+    Bounds that are part of the law are left out.
+    """
     if not (every := of_states(problem) | mixed(problem, with_bounds)):
         return {}
     found = {change(HAMILTONIAN).name: r"H(t^-) - H(t^+)"}
@@ -123,7 +126,7 @@ def declare(
     total: Dimension | None,
     require: Requirement,
 ) -> None:
-    """Enter the dimensions of these.
+    """Enter the dimensions of all symbols of path constraints.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Controls at which H_u vanishes, or that of H with a constraint, where they are not written in closed form.
+"""Controls without closed form, which stay symbols at which H_u, or H_u with a constraint adjoined, vanishes.
 
-They stay symbols: what is derived beside constraints along the way holds them, with their rates where it is
-differentiated along an extremal. Their numbers are found where it is evaluated, by Newton's method.
+Steps on path constraints contain these symbols, and their rates where they differentiate along an extremal. Their
+numbers are found by Newton's method where expressions are evaluated.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from satsym.symbolic.principle.path import path_constraints as states
 
 
 def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
-    """Refuse path constraints beside controls that are not where H_u vanishes, or may jump.
+    """Refuse path constraints beside controls that may jump, or at which H_u does not vanish.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
 
 
 def control_rates(so_far: Derivation) -> Step | None:
-    """At what rate the controls move on the boundary of each constraint on states alone."""
+    """Derive the rates of the controls on the boundary of each constraint on states alone."""
     if states.STEP not in so_far or not states.stationary(so_far):
         return None
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
@@ -58,9 +58,9 @@ def control_rates(so_far: Derivation) -> Step | None:
 
 
 def conditions(so_far: Derivation, name: str, g: sp.Expr) -> tuple[list[Equation], Check]:
-    """What vanishes while a constraint that holds controls is active: the derivatives of H with the constraint by them.
+    """Return what vanishes while a mixed constraint is active: derivatives of H with it adjoined, by the controls.
 
-    With the constraint itself it decides controls and multiplier.
+    Together with the constraint itself they determine controls and multiplier.
     """
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     whole = h + sign(states.problem_of(so_far)) * pn.multiplier(name) * g
@@ -75,7 +75,7 @@ def conditions(so_far: Derivation, name: str, g: sp.Expr) -> tuple[list[Equation
 
 
 def mixed(so_far: Derivation, stated: dict[str, sp.Expr], step: str) -> Step:
-    """The step of all constraints that hold controls."""
+    """Derive the step of all constraints that contain controls."""
     equations, checks = list[Equation](), []
     for name, g in stated.items():
         found, check = conditions(so_far, name, g)
