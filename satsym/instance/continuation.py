@@ -1,4 +1,4 @@
-"""The ``[continuation]`` of an instance: what changes on the way from an easy problem to the one that is meant."""
+"""The ``[continuation]`` table: numbers that change on the way from an easy problem to the stated one."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from satsym.instance.types import Instance
 
 LARGE = 10.0
-"""Ratio of both ends of the way from which steps are shares of its logarithm."""
+"""Ratio of both ends of a continuation above which its steps are logarithmic."""
 
 
 @dataclass(frozen=True)
 class Varied:
-    """A number of an instance that changes, in the model's unit."""
+    """A number of an instance that changes during a continuation, in the model's unit."""
 
     key: Key
     begin: float
     end: float
 
     def value(self, share: float) -> float:
-        """The number at a share of the way: a share of its logarithm where the way is long."""
+        """Return the number at a fraction of the way, on a logarithmic scale where the way is long."""
         if share in (0.0, 1.0):
             return self.end if share else self.begin
         if self.begin * self.end > 0.0 and max(self.begin / self.end, self.end / self.begin) >= LARGE:
@@ -35,14 +35,14 @@ class Varied:
         return self.begin + share * (self.end - self.begin)
 
     def at(self, instance: Instance, share: float) -> Instance:
-        """The instance at a share of the way."""
+        """Return the instance at a fraction of the way."""
         return self.key.placed(instance, self.value(share))
 
 
 def varied(
     table: Mapping[str, tuple[float | str, float | str]], spec: ProblemSpec, given: Instance
 ) -> tuple[Varied, ...]:
-    """What changes, checked against the model and against what the instance gives.
+    """Return the number that changes, checked against the model and the numbers of the instance.
 
     Raises
     ------

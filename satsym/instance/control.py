@@ -1,4 +1,4 @@
-"""The ``[control]`` of an instance: bounds control by control, and norms set by set."""
+"""The ``[control]`` table of an instance: bounds by control, and norms by set."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from satsym.wording import printable, shown, suggestion
 
 MAX_NORM, MIN_NORM = "max_norm", "min_norm"
 WHOLE = ""
-"""The name of the set that all controls are in, where there is but one."""
+"""The name of the set of all controls, where there is only one set."""
 
 Norms = dict[str, tuple[float, float]]
-"""By the name of a set, the least and the largest norm."""
+"""The least and the largest norm, by the name of the set."""
 
 
 def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms]:
-    """Lower and upper bounds in the model's order, and norms by set; infinite where nothing is given."""
+    """Return lower and upper bounds in the model's order, and norms by set; infinite where none is given."""
     lower = dict.fromkeys(spec.control_names, -math.inf)
     upper = dict.fromkeys(spec.control_names, math.inf)
     norms: Norms = {}
@@ -74,14 +74,14 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
 
 
 def _norms_of(spec: ProblemSpec) -> tuple[str, ...]:
-    """What limits norms without naming their set."""
+    """Return the keys that limit norms without naming their set."""
     kinds: list[str | None] = [part.kind for part in spec.control_parts if part.normed]
     found = {"ball": (MAX_NORM,), "annulus": (MIN_NORM, MAX_NORM)}
     return found.get((kinds or [spec.control_set])[0] or "", ()) if len(kinds) <= 1 else ()
 
 
 def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
-    """Refuse a vector on which H depends linearly and whose length nothing limits."""
+    """Refuse a vector on which H depends linearly and whose length is not limited."""
     for part in spec.control_parts:
         if part.branch != "quadratic" and part.normed and part.name not in norms:
             raise BadInput(
@@ -91,7 +91,7 @@ def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
 
 
 def _of_set(value: Any, part: ControlPart, spec: ProblemSpec, key: str) -> Norms:
-    """The norms of one set."""
+    """Read the norms of one set."""
     taken = {"ball": (MAX_NORM,), "annulus": (MIN_NORM, MAX_NORM)}.get(part.kind, ())
     if not isinstance(value, Mapping) or not taken:
         raise BadInput(f"{key}: {_control_set(spec)}")
@@ -126,12 +126,12 @@ def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
 
 
 def _part_of(control: str, spec: ProblemSpec) -> str:
-    """The kind of the set in which a control is."""
+    """Return the kind of the set that contains a control."""
     return next((part.kind for part in spec.control_parts if control in part.controls), "")
 
 
 def _control_set(spec: ProblemSpec) -> str:
-    """What the model's kind of control set takes."""
+    """Describe the keys that the model's kind of control set allows."""
     if spec.control_parts:
         return "the model takes " + "; ".join(map(_taken, spec.control_parts))
     return {
@@ -143,7 +143,7 @@ def _control_set(spec: ProblemSpec) -> str:
 
 
 def _taken(part: ControlPart) -> str:
-    """What one set takes."""
+    """Describe the keys that one set allows."""
     controls = ", ".join(part.controls)
     return {
         "free": f"no bound of {controls}",

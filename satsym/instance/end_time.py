@@ -1,4 +1,4 @@
-"""Inequalities at the end in time alone: where one is met the final time follows from it, as if it were given."""
+"""Inequalities at the end that involve time alone: an active one determines the final time, as if it were given."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ if TYPE_CHECKING:
     from satsym.instance.types import Instance
 
 DRAWN = 8
-"""States and times at which a derivative of an inequality is looked at: one that is the same at all is constant."""
+"""Number of random states and times at which a derivative of an inequality is evaluated to see whether it is constant.
+"""
 
 ITERATIONS, LAST_STEP = 60, 1e-14
-"""Steps of Newton's method, and the last one's size, relative to the time it leads to."""
+"""Most steps of Newton's method, and the size of the last step, relative to the time."""
 
 TIME_TOLERANCE = 1e-12
-"""Relative difference of final times that are one."""
+"""Largest relative difference of equal final times."""
 
 
 def in_time_alone(instance: Instance) -> frozenset[str]:
-    """Inequalities at the end in which no state occurs."""
+    """Return the inequalities at the end that involve no state."""
     names = stated(instance.model).spec.terminal_inequalities
     if not names:
         return frozenset()
@@ -37,7 +38,9 @@ def in_time_alone(instance: Instance) -> frozenset[str]:
 
 
 def end_time(instance: Instance, met: Sequence[str]) -> float | None:
-    """The final time at which these inequalities in time alone are met; as it is given, or free, where none is.
+    """Return the final time at which the active inequalities in time alone are equalities.
+
+    Without an active one, the final time is the given one, or free.
 
     Raises
     ------
@@ -59,10 +62,10 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
 
 
 def never(instance: Instance) -> str:
-    """Say why an inequality in time alone holds at no final time; empty where each may hold.
+    """Explain why an inequality in time alone holds at no final time; empty where each may hold.
 
-    Where the final time is free, this is proved of an inequality that is linear in time: one that does not hold at a
-    time, and is met at none after the start, never holds. Of others nothing is said.
+    Where the final time is free, this is decided only for an inequality that is linear in time: it never holds if it
+    does not hold at some time, and is an equality at none after the start.
     """
     names = stated(instance.model).spec.terminal_inequalities
     last = instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
@@ -84,7 +87,7 @@ def never(instance: Instance) -> str:
 
 
 def _root(instance: Instance, name: str) -> float | None:
-    """Where Newton's method leads from the guessed final time, or a unit after the start; ``None``: not after it."""
+    """Return the limit of Newton's method from the guessed final time; ``None`` if it is not after the start."""
     which = stated(instance.model).spec.terminal_inequalities.index(name)
     x = np.ones(len(instance.initial))
     t = instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
@@ -101,7 +104,7 @@ def _root(instance: Instance, name: str) -> float | None:
 
 
 def inequalities_at(instance: Instance, t: float, x: Array) -> tuple[Array, Array, Array]:
-    """Inequalities at an end.
+    """Evaluate the inequalities at an end.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Ranges in which final states must lie, and at which of their ends they do."""
+"""Ranges of final states, and the ends of these ranges at which final states are found."""
 
 from __future__ import annotations
 
@@ -17,27 +17,29 @@ if TYPE_CHECKING:
 
 
 class Side(str, Enum):
-    """An end of a range."""
+    """A side of a range: its lower or its upper end."""
 
     LOWER = "lower"
     UPPER = "upper"
 
     @property
     def outward(self) -> float:
-        """The sign of a change that leaves the range there."""
+        """Return the sign of a change that leaves the range at this side."""
         return 1.0 if self is Side.UPPER else -1.0
 
     def of(self, limits: Row) -> float:
-        """Where that end is."""
+        """Return the limit at this side."""
         return limits[self is Side.UPPER]
 
 
 Final = Mapping[str, float | str | tuple[float | str, float | str]]
-"""The table [final]: of each state a value, or both ends of a range."""
+"""The table [final]: for each state a value, or both ends of a range."""
 
 
 def ranges(table: Final, spec: ProblemSpec) -> dict[str, tuple[float, float]]:
-    """The ranges of final states in the model's order, infinite where an end is free; those of no width are left out.
+    """Return the ranges of final states in the model's order, without those of zero width.
+
+    An end that is free is infinite.
 
     Raises
     ------
@@ -73,7 +75,7 @@ def ranges(table: Final, spec: ProblemSpec) -> dict[str, tuple[float, float]]:
 
 
 def without_ranges(table: Final, spec: ProblemSpec) -> dict[str, float | str]:
-    """What is given exactly, by a value or by a range of no width."""
+    """Return the exact final values, given by a number or by a range of zero width."""
     inside = ranges(table, spec)
     return {
         name: value[0] if isinstance(value, tuple) else value for name, value in table.items() if name not in inside

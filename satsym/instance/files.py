@@ -1,4 +1,4 @@
-"""Instance files: finding them by name or path, and reading TOML that may be anything."""
+"""Instance files: finding them by name or path, and reading TOML that may contain anything."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _MANY_DIGITS = re.compile(r"[0-9][0-9_]{4000,}")
 
 
 def shipped() -> list[str]:
-    """Names of the instances that come with satsym."""
+    """Return the names of the instances that come with satsym."""
     return sorted(path.stem for path in SHIPPED.glob("*.toml"))
 
 
 def titles() -> dict[str, str]:
-    """Title of each shipped instance by name; reads no model."""
+    """Return the titles of shipped instances by name, without reading a model."""
     return {name: read(SHIPPED / f"{name}.toml").get("title", "") for name in shipped()}
 
 
 def locate(name_or_path: str) -> Path:
-    """The file of a shipped instance, or the path that was given.
+    """Return the file of a shipped instance, or the path that was given.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def locate(name_or_path: str) -> Path:
 
 
 def _instead(name: str) -> str:
-    """What to write for a name that is none: a file here, instances of a model that is called so, or what is near."""
+    """Suggest what to write for an unknown name: a local file, an instance of a model, or a similar name."""
     if _exists(Path(f"{name}.toml")):
         return f'did you mean "{printable(name)}.toml"?'
     if source_files.is_model(name) and (
@@ -88,7 +88,7 @@ def parsed(found: str) -> dict[str, Any]:
 
 
 def finite(tree: dict[str, Any]) -> dict[str, Any]:
-    """Return the tree of an instance file once all its numbers are known to be finite.
+    """Return the tree of an instance file after a check that all its numbers are finite.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _parse(text: str) -> dict[str, Any]:
 
 
 def _repair(error: str) -> str:
-    """What is wrong most often where a reader of TOML says so."""
+    """Suggest the usual repair for an error of the TOML parser."""
     if error.startswith("Invalid value"):
         return 'put text into quotes, such as "free"'
     if "end of document after" in error:
@@ -133,7 +133,7 @@ def _exists(path: Path) -> bool:
 
 
 def text(path: Path) -> str:
-    """The text of an instance file, which may be anything.
+    """Return the text of an instance file, which may contain anything.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def text(path: Path) -> str:
 
 
 def _leaves(tree: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Every value that is no table or list, in the file's order, with the key to name in a message."""
+    """Yield every value that is no table or list, in the file's order, with its key for messages."""
     stack: list[tuple[str, Any]] = [("", tree)]
     while stack:
         key, value = stack.pop()

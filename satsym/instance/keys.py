@@ -1,4 +1,4 @@
-"""The keys of an instance file, one by one: what people and editors read of the schema."""
+"""The keys of instance files, as lists for people and as a JSON schema for editors."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 @dataclass(frozen=True)
 class Entry:
-    """A key of an instance file, or what all keys of a table have in common that are the model's names."""
+    """A key of an instance file, or the common entry of a table whose keys are names of the model."""
 
     table: str
-    """Where it stands; empty above all tables."""
+    """The table of the key; empty for keys above all tables."""
     name: str
-    """The key, or in capitals what the keys are."""
+    """The key, or in capitals the kind of name that is the key."""
     kind: str
-    """What its value may be."""
+    """The type of the value, in words."""
     required: bool
     default: str
-    """As it would be written; empty where there is none."""
+    """The default as TOML; empty where there is none."""
     key: Key
 
 
 def entries() -> list[Entry]:
-    """All keys, table by table, those of a table before the tables in it."""
+    """Return all keys, table by table, those of a table before its subtables."""
     return list(_entries(InstanceFile, ""))
 
 
@@ -52,7 +52,7 @@ def _entries(table: type[Any], section: str) -> Iterator[Entry]:
 
 
 def _written(value: Any) -> str:
-    """A default as TOML has it; nothing for what is not there."""
+    """Write a default value in TOML; empty where there is none."""
     if value is None or value == ():
         return ""
     if isinstance(value, bool):
@@ -61,7 +61,7 @@ def _written(value: Any) -> str:
 
 
 def json_schema() -> dict[str, Any]:
-    """The schema of instance files for editors, as JSON Schema."""
+    """Return the JSON schema of instance files, for editors."""
     return {"$schema": DIALECT, "title": "satsym instance", **_object(InstanceFile)}
 
 
@@ -87,7 +87,7 @@ def _property(field: Any) -> dict[str, Any]:
 
 
 def _of_type(kind: Any) -> dict[str, Any]:
-    """The schema of a value, which may have to be one of some names."""
+    """Return the schema of a value, which may have to be one of some names."""
     found = {k: v for k, v in msgspec.json.schema(kind).items() if k != "description"}
     if {"type": "null"} in found.get("anyOf", ()):  # which TOML has not
         found = {k: v for k, v in found["anyOf"][0].items() if k != "description"}

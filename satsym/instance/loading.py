@@ -1,6 +1,6 @@
-"""From a name, a path or tables to an instance that fits its model.
+"""Loading of instances from a name, a path or tables, with checks against their model.
 
-The tables [classical], [switching], [driven] and [limits] are checked against the model here, too.
+The tables [classical], [switching], [driven] and [limits] are checked here, too.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MAX_TITLE = 200
 
 @dataclass(frozen=True, eq=False)
 class Written:
-    """An instance as it was written, in a file or in Python."""
+    """An instance as it was written, in a file or in Python, before checks against its model."""
 
     tree: Mapping[str, Any]
     """Tables as TOML has them."""
@@ -38,12 +38,12 @@ class Written:
     path: Path
     """File of the instance; models are looked for beside it."""
     given: str = ""
-    """What messages call it; by default its name."""
+    """The name in messages; by default that of the instance."""
     model: Kernels | None = None
-    """Kernels, where they are at hand and need not be looked for."""
+    """The kernels, if they are known and need not be searched."""
 
     def instance(self) -> Instance:
-        """What it says, checked against its model.
+        """Return the instance after checks against its model.
 
         Raises
         ------
@@ -79,7 +79,7 @@ def load(name_or_path: str | Path) -> Instance:
 
 
 def read(name_or_path: str | Path) -> Written:
-    """An instance as its file has it; only that the file can be read has been checked.
+    """Return an instance as its file states it, without checks against its model.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
 
 
 def _refuse_beside_limits(instance: Instance) -> None:
-    """Refuse what is not solved beside ranges of final states, and inequalities at the end."""
+    """Refuse features that are not solved together with ranges of final states or inequalities."""
     for name in instance.ranges:
         if name in instance.solver.free_angles:
             key = f"[final] {name}: a range"
@@ -182,7 +182,7 @@ def _refuse_beside_limits(instance: Instance) -> None:
 
 
 def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptions | None:
-    """The law that an instance states.
+    """Return the classical control law that an instance states.
 
     Raises
     ------
@@ -224,7 +224,7 @@ def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptio
 
 
 def limits(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, float]:
-    """Largest magnitudes that are allowed, by name, in the model's units.
+    """Return the largest magnitudes that an instance allows, by name, in the model's units.
 
     Raises
     ------
@@ -245,7 +245,7 @@ def limits(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, flo
 
 
 def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
-    """The error of the position that a switching feedback allows.
+    """Return the position error that a switching feedback tolerates.
 
     Raises
     ------
@@ -270,7 +270,7 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
 
 
 def driven(table: DrivenTable | None, spec: ProblemSpec) -> DrivenOptions | None:
-    """The control that other instances have worked out.
+    """Return the control that other instances compute.
 
     Raises
     ------
@@ -288,5 +288,5 @@ def driven(table: DrivenTable | None, spec: ProblemSpec) -> DrivenOptions | None
 
 
 def _rate(spec: ProblemSpec) -> str:
-    """The unit of a damping: per second, or a plain number where all numbers of the model are plain."""
+    """Return the unit of a damping: per second, or a plain number where all numbers of the model are plain."""
     return "1/s" if any(v.unit != "1" for v in (*spec.states, *spec.parameters)) else "1"

@@ -1,4 +1,4 @@
-"""The numbers of an instance that may be changed, by the names that instance files have for them."""
+"""The numbers of an instance that can be varied, by their names in instance files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Table(str, Enum):
-    """A table of an instance file that has such numbers."""
+    """The tables of an instance file whose numbers can be varied."""
 
     INITIAL = "initial"
     FINAL = "final"
@@ -40,23 +40,23 @@ SIDES = ("lower", "upper")
 
 @dataclass(frozen=True)
 class Key:
-    """A number of an instance, such as ``initial.r``."""
+    """The key of a number of an instance, such as ``initial.r``."""
 
     table: Table
     name: str
 
     @property
     def text(self) -> str:
-        """As it is asked for, and as tables name it."""
+        """Return the full name of the number, as in ``initial.r``."""
         return f"{self.table.value}.{self.name}"
 
     @property
     def short(self) -> str:
-        """As continuations name it: parameters and times without their table."""
+        """Return the name used in continuations: parameters and times without their table."""
         return self.name if self.table in (Table.PARAMETERS, Table.TIME) else self.text
 
     def value(self, given: float | str, spec: ProblemSpec, place: str = "") -> float:
-        """A number as it stands, or a quantity with its unit, in the model's unit and inside its domain.
+        """Convert a number, or a quantity with its unit, to the model's unit, and check its domain.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ class Key:
         return value_of(self._variable(spec), given, place)
 
     def spread(self, given: float | str, spec: ProblemSpec) -> float:
-        """A standard deviation in the model's unit."""
+        """Convert a standard deviation to the model's unit."""
         if self.table is Table.TIME:
             number = time(given, self.text, spec)
         else:
@@ -95,7 +95,7 @@ class Key:
         return number
 
     def of(self, instance: Instance) -> float | None:
-        """Its value in an instance; ``None`` where that gives no number."""
+        """Return the value in an instance; ``None`` where the instance gives no number."""
         spec = instance.model.spec
         if self.table is Table.TIME:
             return {"t0": instance.t0, "tf": instance.tf, GUESS: instance.tf_guess}[self.name]
@@ -114,27 +114,27 @@ class Key:
         return instance.parameters[spec.parameter_names.index(self.name)]
 
     def given(self, instance: Instance) -> bool:
-        """Whether an instance gives a number for it, and leaves it neither out nor free."""
+        """Tell whether an instance gives a number for this key, neither omitted nor free."""
         free = any(unknown.name == self.name and unknown.place.value == self.table.value for unknown in instance.free)
         return not free and self.of(instance) is not None
 
     def placed(self, instance: Instance, value: float) -> Instance:
-        """An instance with another value, which nothing checks."""
+        """Return an instance with another value of this key, without checks."""
         return placed(instance, {self: value})
 
     def unit(self, spec: ProblemSpec) -> str:
-        """Its unit; of times nothing, for the model says what it counts them in."""
+        """Return the unit of the number; times have none, since the model states their unit."""
         if self.table in (Table.TIME, Table.LQR):
             return "" if self.table is Table.TIME else "1"
         return spec.controls[self._control(spec)].unit if self.table is Table.CONTROL else self._variable(spec).unit
 
     @property
     def side(self) -> str:
-        """Side of the control's interval that is bounded, ``lower`` or ``upper``."""
+        """Return the side of the control's interval that is bounded, ``lower`` or ``upper``."""
         return self.name.rpartition(".")[2]
 
     def _control(self, spec: ProblemSpec) -> int:
-        """The place of the control that is bounded, the first one's of all."""
+        """Return the position of the control that is bounded; the first one where all are."""
         return 0 if self.name == MAX_NORM else spec.control_names.index(self.name.rpartition(".")[0])
 
     def _variable(self, spec: ProblemSpec) -> Variable:
@@ -143,7 +143,7 @@ class Key:
 
 
 def placed(instance: Instance, values: Mapping[Key, float]) -> Instance:
-    """An instance with other values, which nothing checks; made once, for that takes time."""
+    """Return an instance with other values, without checks; it is made once, because that takes time."""
     spec, fields = instance.model.spec, dict[str, Any]()
     for key, value in values.items():
         match key.table:
@@ -172,7 +172,7 @@ def _with(row: tuple[float, ...], place: int, value: float) -> tuple[float, ...]
 
 
 def known(spec: ProblemSpec) -> Iterator[Key]:
-    """All that may be changed of an instance of a model."""
+    """Return the keys of all numbers that can be varied in an instance of a model."""
     for table, names in (
         (Table.INITIAL, spec.state_names),
         (Table.PARAMETERS, spec.parameter_names),
@@ -187,14 +187,14 @@ def known(spec: ProblemSpec) -> Iterator[Key]:
 
 
 def _in_boxes(spec: ProblemSpec) -> tuple[str, ...]:
-    """Controls that have bounds of their own."""
+    """Return the controls that have bounds of their own."""
     if spec.control_parts:
         return tuple(name for part in spec.control_parts if part.kind == "box" for name in part.controls)
     return spec.control_names if spec.control_set == "box" else ()
 
 
 def find(text: str, instance: Instance) -> Key:
-    """The key of a name.
+    """Return the key of a name that has a number in the instance.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def find(text: str, instance: Instance) -> Key:
 
 
 def named(text: str, instance: Instance, place: str, without: Table | None = None) -> Key:
-    """The key of a name, be it the whole one or the short one.
+    """Return the key of a full or short name.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def named(text: str, instance: Instance, place: str, without: Table | None = Non
 
 
 def _instead(text: str, keys: list[Key]) -> str:
-    """What to write for a name that is none: the one that ends so, a bound's two sides, or what its table has."""
+    """Suggest what to write for an unknown name: a key with this ending, a side of a bound, or a table's keys."""
     if sides := [key.text for key in keys if key.table is Table.CONTROL and key.text.rpartition(".")[0] == text]:
         return f"bounds are {' and '.join(sides)}"
     if ending := [key.text for key in keys if key.name == text]:
@@ -251,12 +251,12 @@ def _instead(text: str, keys: list[Key]) -> str:
 
 
 def changed(instance: Instance, values: Mapping[str, float]) -> Instance:
-    """An instance with other values of some numbers, by their names; see :func:`at`."""
+    """Return an instance with other values of some numbers, by name; see :func:`at`."""
     return at(instance, tuple(find(name, instance) for name in values), tuple(values.values()))
 
 
 def texts(table: Mapping[str, str | Mapping[str, str]]) -> list[tuple[str, str]]:
-    """Keys and what is said of them, whether a table has ``"initial.r"`` or a table ``initial`` with ``r``."""
+    """Return keys and values of a table, written as ``"initial.r"`` or as a subtable ``initial`` with ``r``."""
     found: list[tuple[str, str]] = []
     for name, value in table.items():
         if isinstance(value, str):
@@ -267,9 +267,9 @@ def texts(table: Mapping[str, str | Mapping[str, str]]) -> list[tuple[str, str]]
 
 
 def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> Instance:
-    """An instance with other values of some numbers, checked anew as far as they go.
+    """Return an instance with other values of some numbers, after the checks that concern them.
 
-    Where a continuation changes one of them, it ends at the new value.
+    Where a continuation varies one of them, it ends at the new value.
 
     Raises
     ------

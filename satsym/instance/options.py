@@ -1,4 +1,4 @@
-"""The optional tables of an instance, checked against its model: [solver], [lqr], [guess]."""
+"""The optional tables [solver], [lqr] and [guess] of an instance, checked against its model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Weights = Sequence[float | Sequence[float]]
 
 
 def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
-    """The options, if they fit together and the angles are angles of the model."""
+    """Return the solver options after checks that they fit together and name angles of the model."""
     if options.relaxation is not None and not any(method.relaxed for method in possible(options.method)):
         raise BadInput(
             '[solver] relaxation: only the sweep method uses relaxation; remove it, or write method = "sweep"'
@@ -39,7 +39,7 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
 
 
 def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
-    """Weights as full matrices, checked for shape and symmetry, and the sign of R."""
+    """Return the weights as full matrices, after checks of shape, symmetry and the sign of R."""
     if table is None:
         return None
     inputs = spec.control_names if table.inputs is None else table.inputs
@@ -59,7 +59,7 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
 
 
 def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> tuple[Weights, Weights]:
-    """Q and R as they were written, or from the deviations that are allowed."""
+    """Return Q and R as written, or from allowed deviations."""
     if table.allowed:
         for name, given in (("Q", table.Q), ("R", table.R), ("N", table.N)):
             if given is not None:
@@ -72,7 +72,7 @@ def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> 
 
 
 def guess(table: GuessTable, spec: ProblemSpec) -> Guess:
-    """Series by name, in the model's units; costates have no unit of their own and take plain numbers."""
+    """Return guessed series by name, in the model's units; costates have no unit of their own."""
     known(table.parameter, spec.parameters, "parameter", "guess.parameter")
     return Guess(
         state=_series(table.state, spec.states, "state"),
@@ -110,20 +110,20 @@ def _no_repetition(names: Sequence[str], key: str) -> None:
 MOST_BYTES = 2**31
 
 _BYTES = 8
-"""Bytes of a floating-point number."""
+"""Size of a floating-point number in bytes."""
 
 
 def needed_memory(options: SolverOptions, spec: ProblemSpec) -> int:
-    """Bytes that are taken at most, by the number of steps.
+    """Estimate an upper bound of the memory in bytes, from the number of steps.
 
-    The estimate depends on nothing but the instance, so that what one machine refuses no other accepts. It is what
-    solving, certifying, simulating and writing were measured to take at most, by all methods, rounded up.
+    The estimate depends on nothing but the instance, so that an instance is refused on all machines or on none. It is
+    the measured maximum over solving, certifying, simulating and writing by all methods, rounded up.
     """
     return options.steps * _each(options, spec)
 
 
 def refuse_too_many_steps(options: SolverOptions, spec: ProblemSpec) -> None:
-    """Refuse steps that need more memory than there may be.
+    """Refuse a number of steps that needs more memory than allowed.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def refuse_too_many_steps(options: SolverOptions, spec: ProblemSpec) -> None:
 
 
 def _each(options: SolverOptions, spec: ProblemSpec) -> int:
-    """Bytes for each step: flows of the canonical equations and what belongs to nodes, or what a method remembers."""
+    """Return the bytes for each step: flows and values at nodes, or the memory of a method."""
     n, m = len(spec.states), len(spec.controls)
     numbers = 10 * n * n + 10 * (n + m)
     if spec.has_cost:

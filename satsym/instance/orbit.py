@@ -1,4 +1,4 @@
-"""The table [orbit] of an instance: where in the sky and when its motion takes place."""
+"""The [orbit] table of an instance: the frame, the centre and the epoch of its motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FRAMES = ("EME2000", "ICRF", "GCRF")
 YEARS = range(1900, 2200)
 """Calendar years in which an epoch may lie."""
 SPACE = 3
-"""Components of a position that needs no plane."""
+"""Number of components of a position in space."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +50,12 @@ BODIES = MappingProxyType(
         "Neptune": Body(6836527.10058, 24764.0),
     }
 )
-"""By name; of the outer planets mu is that of the planet with its moons."""
+"""Centres of attraction by name; mu of an outer planet includes its moons."""
 
 
 @dataclass(frozen=True)
 class OrbitOptions:
-    """Where in the sky and when a motion takes place.
+    """The frame, the centre and the epoch of a motion.
 
     Attributes
     ----------
@@ -79,12 +79,12 @@ class OrbitOptions:
 
     @property
     def body(self) -> Body:
-        """The body at the origin."""
+        """Return the body at the origin."""
         return BODIES[self.centre]
 
 
 def orbit(table: OrbitTable | None, spec: ProblemSpec) -> OrbitOptions | None:
-    """The orbit that an instance states.
+    """Return the frame, centre and epoch that an instance states.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def orbit(table: OrbitTable | None, spec: ProblemSpec) -> OrbitOptions | None:
 
 
 def _epoch(given: datetime) -> datetime:
-    """A date and a time in UTC; one without an offset is in UTC already."""
+    """Return a date and time in UTC, where a time without an offset is taken as UTC."""
     if given.year not in YEARS:
         raise BadInput(
             f"[orbit] epoch: the year {given.year} does not lie between {YEARS[0]} and {YEARS[-1]}; correct the epoch"

@@ -1,4 +1,4 @@
-"""The numbers of an instance against the description of its model: names, units, domains, kinds."""
+"""Conversion of an instance's numbers by its model's description: names, units, domains, kinds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FREE = "free"
 
 
 def quantity(value: float | str, unit: str, key: str) -> float:
-    """A number as it stands, or a text with its own unit, in the model's unit."""
+    """Convert a number, or a text with its own unit, to the model's unit."""
     if not isinstance(value, str):
         return float(value)
     try:
@@ -36,7 +36,7 @@ def known(names: Iterable[str], variables: Iterable[Variable], what: str, sectio
 
 
 def value_of(variable: Variable, value: float | str, key: str) -> float:
-    """A variable's value in its unit, inside its domain."""
+    """Return a variable's value in its unit, after a check of its domain."""
     number = quantity(value, variable.unit, key)
     if variable.positive and number <= 0:
         raise BadInput(f"{key}: {shown(value)} is outside the domain of {variable.symbol}; write a positive value")
@@ -44,7 +44,7 @@ def value_of(variable: Variable, value: float | str, key: str) -> float:
 
 
 def parameters(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
-    """Parameters in the model's order; those left out take the model's defaults."""
+    """Return the parameters in the model's order, with the model's defaults for omitted ones."""
     known(table, spec.parameters, "parameter", "parameters")
     found = tuple(_parameter(v, table.get(v.symbol, v.default)) for v in spec.parameters)
     values = dict(zip(spec.parameter_names, found, strict=True))
@@ -66,7 +66,7 @@ def _parameter(variable: Variable, value: float | str | None) -> float:
 
 
 def initial(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
-    """The initial state in the model's order."""
+    """Return the initial state in the model's order."""
     known(table, spec.states, "state", "initial")
     return tuple(_initial(v, table.get(v.symbol)) for v in spec.states)
 
@@ -81,7 +81,7 @@ def _initial(variable: Variable, value: float | str | None) -> float:
 
 
 def final(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, float | Literal["reference"]]:
-    """The given final states in the model's order; ``"reference"`` stays as it is, what is ``"free"`` is not given."""
+    """Return the given final states in the model's order, without ``"free"`` ones; ``"reference"`` is kept."""
     known(table, spec.states, "state", "final")
     given = [v for v in spec.states if table.get(v.symbol, FREE) != FREE]
     return {v.symbol: _final(v, table[v.symbol], spec) for v in given}
@@ -97,7 +97,7 @@ def _final(variable: Variable, value: float | str, spec: ProblemSpec) -> float |
 
 
 def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, float | None]:
-    """Initial time, final time (``None`` where free) and the guess of it."""
+    """Return initial time, final time (``None`` where free) and the guess of the final time."""
     t0 = time(table.t0, "[time] t0", spec)
     tf = None if table.tf == FREE else time(table.tf, "[time] tf", spec)
     if tf is None and not spec.has_cost:
@@ -113,7 +113,7 @@ def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, flo
 
 
 def time(value: float | str, key: str, spec: ProblemSpec) -> float:
-    """A time in the model's unit of time."""
+    """Convert a time to the model's unit of time."""
     if not isinstance(value, str):
         return float(value)
     try:

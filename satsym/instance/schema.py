@@ -1,7 +1,7 @@
-"""The keys of an instance file and the type of each, before any model is known.
+"""The keys of an instance file with their types, independent of any model.
 
-Tables are strict: a key that is not listed here is refused. Each type carries the words that a message uses for
-it, so that what is checked and what is said cannot drift apart.
+Tables are strict: a key that is not listed here is refused. Each type carries the words that a message uses for it, so
+that the check and the message cannot differ.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ Epoch = Annotated[datetime, Meta(description="a date and a time in UTC, such as 
 
 
 class OneOf:
-    """Names of which a text is one, asked for when a file is read: more may be known by then."""
+    """A type of text that must be one of some names, which are evaluated when a file is read."""
 
     def __init__(self, names: Callable[[], tuple[str, ...]]) -> None:
         self.names = names
 
     @property
     def description(self) -> str:
-        """Description of the key in the JSON schema, as ``Meta`` has it."""
+        """Return the description of the key in the JSON schema, as ``Meta`` has it."""
         return "one of " + ", ".join(f'"{name}"' for name in self.names())
 
 
@@ -85,13 +85,13 @@ ALL = ("all",)
 
 @dataclass(frozen=True)
 class Key:
-    """What a key is for, beside its type and its default."""
+    """The purpose of a key, besides its type and its default."""
 
     meaning: str
     commands: tuple[str, ...] = ALL
     """Commands that use the key."""
     unit: str = ""
-    """Unit of a number that stands without one; empty for what is no quantity."""
+    """Unit of a plain number; empty for keys that are no quantities."""
     names: str = ""
     """Kind of the names that are the keys of a table, such as states; empty where the keys are fixed."""
 
@@ -195,7 +195,7 @@ class StudyTable(_Table, frozen=True):
 
 
 class SolverOptions(_Table, frozen=True):
-    """What solvers are given besides the problem."""
+    """Options of solvers that are not part of the problem."""
 
     method: Annotated[Method, Key("solver; by default the one that suits the problem", SOLVING)] = methods.AUTO
     tolerance: Annotated[Positive, Key("largest residual that a solution may have", MOVING, "1")] = 1e-9
@@ -211,7 +211,7 @@ class SolverOptions(_Table, frozen=True):
 
 
 class InstanceFile(_Table, frozen=True):
-    """An instance as it was written."""
+    """The contents of an instance file."""
 
     model: Annotated[Name, Key("a shipped model, or the path of a model relative to this file, without .py")]
     initial: Annotated[
@@ -283,7 +283,7 @@ def check(tree: dict[str, Any]) -> InstanceFile:
 
 
 def study(tree: Mapping[str, Any]) -> StudyTable:
-    """What is asked of a study by the command line or in Python, checked as the table [study] is.
+    """Check the options of a study from the command line or from Python as the table [study] is checked.
 
     Raises
     ------
@@ -307,13 +307,13 @@ def _table(tree: dict[str, Any], table: Any, section: str) -> Any:
 
 @cache
 def _declared(table: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The keys of a table, and their types."""
+    """Return the keys of a table and their types."""
     fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
     return fields, {name: apart(entry.type)[0] for name, entry in fields.items()}
 
 
 def apart(kind: Any) -> tuple[Any, Key]:
-    """The type of a key, and what it is for."""
+    """Split an annotated type into the type of a key and its purpose."""
     base, *more = get_args(kind)
     (key,) = (m for m in more if isinstance(m, Key))
     others = tuple(m for m in more if not isinstance(m, Key))
@@ -336,7 +336,7 @@ def _value(value: Any, kind: Any, section: str, name: str) -> Any:
 
 
 def _chosen(value: Any, kind: Any) -> Any:
-    """A value of a type, which may have to be one of some names."""
+    """Check a value of a type, which may have to be one of some names."""
     names = names_of(kind)
     if names and value is not None and value not in names:
         raise msgspec.ValidationError
@@ -344,18 +344,18 @@ def _chosen(value: Any, kind: Any) -> Any:
 
 
 def names_of(kind: Any) -> tuple[str, ...]:
-    """The names of which values of a type are one; none where any will do."""
+    """Return the names that values of a type must be among; empty where any value is allowed."""
     metas = (meta for part in (kind, *get_args(kind)) for meta in getattr(part, "__metadata__", ()))
     return next((meta.names() for meta in metas if isinstance(meta, OneOf)), ())
 
 
 def inner_table(kind: Any) -> type[_Table] | None:
-    """The table that a type stands for, if it is one or may be ``None`` instead."""
+    """Return the table that a type stands for, also where ``None`` is allowed instead."""
     return next((k for k in (kind, *get_args(kind)) if isinstance(k, type) and issubclass(k, _Table)), None)
 
 
 def entries_of(kind: Any) -> Any:
-    """The type of the values of a table whose keys are a model's names."""
+    """Return the type of the values of a table whose keys are a model's names."""
     return get_args(kind)[1] if get_origin(kind) is dict else None
 
 
@@ -368,7 +368,7 @@ def _key(section: str, name: str) -> str:
 
 
 def wanted(kind: Any, section: str, name: str) -> str:
-    """The words that a type carries, for a table its header."""
+    """Return the description of a type for messages; for a table, its header."""
     if inner_table(kind) or entries_of(kind):
         return f"a table, [{_below(section, name)}]"
     metas = (meta for part in (kind, *get_args(kind)) for meta in getattr(part, "__metadata__", ()))

@@ -1,4 +1,4 @@
-"""What an instance is once it has been checked against its model."""
+"""The checked data of an instance and of its tables."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Row = tuple[float, ...]
 
 @dataclass(frozen=True)
 class BoundedNorm:
-    """Controls whose norm is bounded."""
+    """A set of controls whose norm is bounded."""
 
     name: str
     """Name of the set that these controls form; empty where it holds all controls of the model."""
@@ -36,12 +36,12 @@ class BoundedNorm:
     lower: float
     upper: float
     unit: str
-    """``"1"`` where they have none in common."""
+    """The common unit of the controls; ``"1"`` where they have none in common."""
 
 
 @dataclass(frozen=True)
 class LqrOptions:
-    """What a linear-quadratic regulator minimises: the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
+    """The cost of a linear-quadratic regulator: the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class LqrOptions:
 
 @dataclass(frozen=True)
 class ClassicalOptions:
-    """A linear law that follows a command from time t0 on.
+    """A linear control law that follows a command from time t0 on.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class ClassicalOptions:
 
 @dataclass(frozen=True)
 class DrivenOptions:
-    """A control that other instances have worked out.
+    """A control that other instances compute.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ class Instance:
     orbit: OrbitOptions | None = None
 
     def meeting(self, met: Mapping[str, Side]) -> Instance:
-        """The instance whose end is at these limits, and at no other one.
+        """Return the instance with these end limits active, and no others.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class Instance:
 
     @cached_property
     def end_limits(self) -> Mapping[str, tuple[Side, ...]]:
-        """What limits the end, by name: at which ends each range has a limit, and each inequality, whose upper is 0."""
+        """Return the limits of the end by name: the limited sides of each range, and of each inequality."""
         from satsym.kernels.active import stated
 
         found = {name: tuple(s for s in Side if math.isfinite(s.of(ends))) for name, ends in self.ranges.items()}
@@ -233,12 +233,12 @@ class Instance:
 
     @property
     def called(self) -> str:
-        """What messages call it: the path of its file, or its name where it comes with satsym or was made in Python."""
+        """Return the name in messages: the path of the file, or the name of a shipped or Python instance."""
         own = self.path.parent != SHIPPED and self.path.is_file()
         return printable(str(self.path), 200) if own else self.name
 
     def require_numbers(self) -> None:
-        """Refuse, for what does not optimise, an instance that leaves something free.
+        """Refuse an instance that leaves numbers free, for commands that do not optimise.
 
         Raises
         ------
@@ -252,7 +252,7 @@ class Instance:
 
     @property
     def boundary_type(self) -> int:
-        """Which of the five cases of transversality it is, 1 to 5; one free state makes the final state a free one."""
+        """Return the type of the transversality conditions, 1 to 5; one free state makes the final state free."""
         everything = len(self.final) == len(self.initial)
         if self.tf is not None:
             return 1 if everything else 3
@@ -262,7 +262,7 @@ class Instance:
 
     @cached_property
     def bounded_norms(self) -> tuple[BoundedNorm, ...]:
-        """The norms of controls that are bounded: in a ball, an annulus or an angle, alone or beside other sets."""
+        """Return the bounded norms of controls, in balls, annuli and angles, alone or beside other sets."""
         spec = self.model.spec
         everything = tuple(range(len(spec.controls)))
         found = {"": (everything, (0.0, self.max_norm))} if spec.control_set == "ball" else {}
@@ -282,7 +282,7 @@ class Instance:
 
     @cached_property
     def control_set(self) -> ControlSet:
-        """The admissible controls."""
+        """Return the set of admissible controls."""
         from satsym.control_set import ControlSet  # here, for it loads numpy, which listing instances does not need
 
         return ControlSet.of(self.model.spec, self.lower, self.upper, self.max_norm, self.norms)

@@ -1,4 +1,4 @@
-"""What an instance leaves ``"free"``: initial states, the initial time, parameters. The solver chooses their values."""
+"""Numbers that an instance leaves ``"free"``: initial states, the initial time, parameters. Solvers choose them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Place(str, Enum):
-    """The table of an instance in which it stands."""
+    """The table of an instance that contains a free number."""
 
     INITIAL = "initial"
     TIME = "time"
@@ -28,7 +28,7 @@ class Place(str, Enum):
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number of an instance that is to be found; until then the instance holds where to begin.
+    """A free number of an instance, which is to be found from the initial guess that the instance holds.
 
     Attributes
     ----------
@@ -45,17 +45,17 @@ class Unknown:
 
     @property
     def key(self) -> str:
-        """Key of the unknown number, as messages name it."""
+        """Return the key of the unknown number for messages."""
         return f"[{self.place.value}] {self.name}"
 
     def of(self, instance: Instance) -> float:
-        """Value of the unknown number in an instance."""
+        """Return the value of the unknown number in an instance."""
         if self.place is Place.TIME:
             return instance.t0
         return (instance.initial if self.place is Place.INITIAL else instance.parameters)[self.index]
 
     def at(self, instance: Instance, value: float) -> Instance:
-        """The instance with another value of it."""
+        """Return the instance with another value of the unknown number."""
         if self.place is Place.TIME:
             return replace(instance, t0=value)
         row = list(instance.initial if self.place is Place.INITIAL else instance.parameters)
@@ -65,17 +65,17 @@ class Unknown:
         return replace(instance, parameters=tuple(row))
 
     def admits(self, instance: Instance, value: float) -> bool:
-        """Whether a value lies in its domain, and the motion has time left."""
+        """Tell whether a value is in the number's domain, and leaves time for the motion."""
         if self.place is Place.TIME:
             return instance.tf is None or value < instance.tf
         return value > 0.0 or not self.positive
 
 
 def begun(file: InstanceFile, spec: ProblemSpec) -> tuple[InstanceFile, tuple[Unknown, ...]]:
-    """The file with numbers to begin with in place of what is free, and what that is.
+    """Replace free numbers of a file by initial guesses, and return these numbers as unknowns.
 
-    These are the first guess of a state, its final value, the default of a parameter, the middle of where the model
-    says that it lies, or else zero or one.
+    The guesses are the first guess of a state, its final value, the default of a parameter, the middle of its typical
+    range, or else zero or one.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def _stated(file: InstanceFile, spec: ProblemSpec) -> Iterator[Unknown]:
 
 
 def _first(file: InstanceFile, unknown: Unknown, spec: ProblemSpec) -> float | str:
-    """Where to begin with a state or a parameter."""
+    """Return the initial guess of a state or a parameter."""
     name, guess = unknown.name, file.guess
     variable: Variable
     if unknown.place is Place.INITIAL:
@@ -138,7 +138,7 @@ def _first(file: InstanceFile, unknown: Unknown, spec: ProblemSpec) -> float | s
 
 
 def _first_time(file: InstanceFile, spec: ProblemSpec) -> float | str:
-    """Where to begin with the initial time: the guess, zero, or as long before a final time that is not later."""
+    """Return the initial guess of the initial time: the stated guess, zero, or a time before the final one."""
     if file.time.t0_guess is not None:
         return file.time.t0_guess
     tf = 1.0 if file.time.tf == FREE else time(file.time.tf, "[time] tf", spec)

@@ -1,4 +1,4 @@
-"""The weights of a linear-quadratic regulator: matrices, diagonals, or the deviations that are allowed."""
+"""The weights of a linear-quadratic regulator: matrices, diagonals, or allowed deviations."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Row = tuple[float, ...]
 Matrix = tuple[Row, ...]
 ROUNDING = 1e-12
-"""How far a matrix may be from symmetric, or below zero, relative to what its entries can be."""
+"""Largest asymmetry, or negative eigenvalue, of an accepted matrix, relative to its entries."""
 
 
 def checked(
@@ -28,7 +28,7 @@ def checked(
     states: int,
     inputs: int,
 ) -> tuple[Matrix, Matrix, Matrix | None]:
-    """All weights as full matrices.
+    """Return all weights as full matrices, after checks.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def checked(
 
 
 def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) -> Matrix:
-    """The cross weights, a row for each state."""
+    """Return the cross weights, a row for each state."""
     found = tuple(tuple(row) if isinstance(row, Sequence) else () for row in rows)
     if len(found) != states or any(len(row) != inputs for row in found):
         raise BadInput(
@@ -62,7 +62,7 @@ def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) ->
 
 
 def entries(states: Sequence[str], inputs: Sequence[str]) -> tuple[str, ...]:
-    """Names of weights: ``Q.x`` and ``R.u`` on the diagonals, ``N.x.u``."""
+    """Return the names of weights: ``Q.x`` and ``R.u`` on the diagonals, ``N.x.u``."""
     return (
         *(f"Q.{name}" for name in states),
         *(f"R.{name}" for name in inputs),
@@ -71,7 +71,7 @@ def entries(states: Sequence[str], inputs: Sequence[str]) -> tuple[str, ...]:
 
 
 def entry(options: LqrOptions | None, name: str, states: Sequence[str]) -> float | None:
-    """One of these; ``None`` where there is no regulator, or it does not use that input."""
+    """Return a weight by name; ``None`` without a regulator, or where it does not use that input."""
     if options is None or (place := _place(options, name, states)) is None:
         return None
     letter, i, j = place
@@ -80,7 +80,7 @@ def entry(options: LqrOptions | None, name: str, states: Sequence[str]) -> float
 
 
 def placed(options: LqrOptions | None, name: str, value: float, states: Sequence[str]) -> LqrOptions | None:
-    """Return the options of a regulator with another value of one weight, which nothing checks."""
+    """Return the options of a regulator with another value of one weight, without checks."""
     if options is None or (place := _place(options, name, states)) is None:
         return options
     letter, i, j = place
@@ -91,7 +91,7 @@ def placed(options: LqrOptions | None, name: str, value: float, states: Sequence
 
 
 def _place(options: LqrOptions, name: str, states: Sequence[str]) -> tuple[str, int, int] | None:
-    """Matrix, row and column of a weight."""
+    """Return matrix, row and column of a weight."""
     letter, first, *second = name.split(".")
     rows = options.inputs if letter == "R" else states
     columns, last = (options.inputs, second[0]) if second else (rows, first)
@@ -99,14 +99,14 @@ def _place(options: LqrOptions, name: str, states: Sequence[str]) -> tuple[str, 
 
 
 def semidefinite(matrix: Sequence[Sequence[float]]) -> bool:
-    """Whether a symmetric matrix is positive semidefinite, but for rounding."""
+    """Tell whether a symmetric matrix is positive semidefinite up to rounding."""
     return smallest_eigenvalue(matrix) >= -ROUNDING
 
 
 def from_allowed(
     allowed: Mapping[str, float | str], states: Sequence[Variable], inputs: Sequence[Variable]
 ) -> tuple[Row, Row]:
-    """Diagonals of Q and R by Bryson's rule: a weight of 1/d^2 where a deviation d is allowed.
+    """Return the diagonals of Q and R by Bryson's rule: a weight of 1/d^2 for an allowed deviation d.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
 
 
 def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Matrix:
-    """A symmetric matrix from its rows or its diagonal."""
+    """Return a symmetric matrix from its rows or its diagonal."""
     wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
     diagonal = [row for row in rows if not isinstance(row, Sequence)]
     if len(rows) != size or len(diagonal) not in (0, size):
@@ -163,7 +163,7 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
 
 
 def smallest_eigenvalue(matrix: Sequence[Sequence[float]]) -> float:
-    """Smallest eigenvalue of the matrix with its diagonal scaled to 1, which keeps its sign whatever the units."""
+    """Return the smallest eigenvalue of the matrix scaled to unit diagonal, whose sign is independent of units."""
     import numpy as np
 
     values = np.array(matrix)

@@ -1,7 +1,7 @@
 """A derivation as data, ``NAME.derivation.json``: every step with its equations, and every name with its unit.
 
-Formulas in it are texts of the safe language. So what is printed elsewhere can be held against a derivation without
-executing the file that states it.
+Formulas are texts of the safe language. So documents can be compared with a derivation without executing the file that
+states it.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ FORMAT = 1
 SUFFIX = ".derivation.json"
 DECLARED = "declared"
 _MOST_BYTES = 20_000_000
-"""Bytes of a record, at most; those that come with satsym have up to 60 thousand."""
+"""Largest size of a record, in bytes; shipped ones have up to 60 thousand."""
 VARIABLES = ("state", "control", "output")
-"""Kinds of names that rows and columns of matrices are called by."""
+"""Kinds of names that rows and columns of matrices have."""
 
 Text: TypeAlias = str | None
-"""A formula; ``None`` for what has no counterpart in printed formulas."""
+"""A formula as text; ``None`` for an expression that printed formulas cannot represent."""
 
 
 class Name(msgspec.Struct, frozen=True, omit_defaults=True):
-    """A name: its kind (empty for what is derived), how it is typeset, its unit, dimension and meaning."""
+    """A name in a derivation: its kind (empty for derived ones), LaTeX, unit, dimension and meaning."""
 
     latex: str = ""
     kind: str = ""
@@ -47,7 +47,7 @@ class Name(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class Stated(msgspec.Struct, frozen=True, omit_defaults=True):
-    """An equation, whose right-hand side may be a matrix."""
+    """A recorded equation, whose right-hand side may be a matrix."""
 
     name: str
     lhs: Text
@@ -55,7 +55,7 @@ class Stated(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class RecordedStep(msgspec.Struct, frozen=True):
-    """A step: its rule, what it follows from, and what it establishes."""
+    """A recorded step: its rule, its sources, and its equations."""
 
     name: str
     rule: str
@@ -64,9 +64,9 @@ class RecordedStep(msgspec.Struct, frozen=True):
 
 
 class Record(msgspec.Struct, frozen=True):
-    """A derivation: its names, named constants with their values, what is declared, and its steps.
+    """A recorded derivation: its names, named constants with their values, declarations, and steps.
 
-    ``sources`` are the files that state it, seen from the record, with their digests.
+    ``sources`` are the files that state the derivation, relative to the record, with their digests.
     """
 
     written: str
@@ -82,7 +82,7 @@ class Record(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class Equated:
-    """What an address of an equation names; the right-hand side may be a matrix."""
+    """The equation at an address; the right-hand side may be a matrix."""
 
     lhs: Node
     rhs: Node | Matrix[Node]
@@ -115,7 +115,7 @@ def _decoded(path: Path, _: int, __: int) -> Record:
 
 
 def load(path: Path) -> Record:
-    """Read a record.
+    """Read a record from a file.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def load(path: Path) -> Record:
 
 
 def with_sources(found: Record, folder: Path, stating: Mapping[Path, str]) -> Record:
-    """The record with the files that state it, as seen from the folder that it is to lie in."""
+    """Return the record with its source files, relative to the folder where the record will be."""
     sources = {}
     for path, digest in stating.items():
         try:
@@ -151,7 +151,7 @@ def with_sources(found: Record, folder: Path, stating: Mapping[Path, str]) -> Re
 
 
 def text_of(found: Record) -> str:
-    """The record as text: a line for each name and each equation."""
+    """Return the record as text: a line for each name and each equation."""
 
     def line(value: object) -> str:
         return msgspec.json.encode(value).decode()
@@ -170,13 +170,13 @@ def text_of(found: Record) -> str:
 
 
 def from_text(text: str) -> Record:
-    """The record that a text of our own writing is."""
+    """Return the record from a text that :func:`text_of` wrote."""
     return msgspec.json.decode(text, type=Record)
 
 
 @lru_cache(maxsize=20_000)
 def formula(text: str) -> Node:
-    """A formula of a record.
+    """Return a formula of a record as a tree.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def formula(text: str) -> Node:
 
 
 def look_up(found: Record, address: str) -> Found:
-    """The thing at ``model:step.equation``, ``model:step.A`` or ``model:declared.name``.
+    """Return what is at ``model:step.equation``, ``model:step.A`` or ``model:declared.name``.
 
     Raises
     ------
@@ -212,12 +212,12 @@ def look_up(found: Record, address: str) -> Found:
 
 
 def variables(found: Record, kind: str) -> tuple[str, ...]:
-    """Names of a kind, in the order of the model."""
+    """Return the names of a kind, in the order of the model."""
     return tuple(name for name, entry in found.names.items() if entry.kind == kind)
 
 
 def rates(found: Record) -> dict[str, str]:
-    """State or costate -> the name of its rate: another state where the equations say that it is one, else its own."""
+    """Map states or costates to the names of their rates, which may be other states."""
     states = variables(found, "state")
     names = {name: f"d_{name}" for name in (*states, *(f"lambda_{state}" for state in states)) if name in found.names}
     for step in found.steps:
@@ -228,7 +228,7 @@ def rates(found: Record) -> dict[str, str]:
 
 
 def dimensions(found: Record) -> dict[str, dict[str, Fraction]]:
-    """Dimensions of all names that have one."""
+    """Return the dimensions of all names that have one."""
     return {
         name: {base: Fraction(power) for base, power in entry.dimension.items()}
         for name, entry in found.names.items()
@@ -263,7 +263,7 @@ def _declared(found: Record, name: str, address: str) -> Found:
 
 
 def _family(found: Record, step: RecordedStep, prefix: str) -> Family | None:
-    """Entries named ``prefix_row_column`` where rows and columns are declared variables, in their order."""
+    """Return the entries named ``prefix_row_column``, with declared variables as rows and columns."""
     values: dict[str, Stated] = {e.name: e for e in step.equations}
     for equation in step.equations:
         if equation.lhs is not None and isinstance(left := formula(equation.lhs), Sym):
@@ -289,7 +289,7 @@ def _by_names(family: Mapping[str, Node], prefix: str, groups: list[tuple[str, .
 
 
 def _by_numbers(family: Mapping[str, Node], prefix: str) -> Family | None:
-    """Entries named ``prefix_1_2``."""
+    """Return the entries named ``prefix_1_2`` of a family."""
     places = [tuple(name.removeprefix(f"{prefix}_").split("_")) for name in family]
     if any(len(place) != 2 or not all(part.isdigit() for part in place) for place in places):
         return None

@@ -1,4 +1,4 @@
-"""Records of derivations by name: those beside an own model first, where one is at work, else the shipped ones."""
+"""Records of derivations by name: first those in the folder of a user's own model, then the shipped ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FOLDER: ContextVar[Path | None] = ContextVar("folder", default=None)
 
 
 def place_of(model: str, beside: Path) -> tuple[Path | None, str]:
-    """The folder and the name of a model: ``"NAME"`` is shipped, ``"DIR/NAME"`` lies in a folder, seen from a file.
+    """Return folder and name of a model: ``"NAME"`` is shipped, ``"DIR/NAME"`` is relative to a file.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def place_of(model: str, beside: Path) -> tuple[Path | None, str]:
 
 @contextmanager
 def opened(folder: Path | None) -> Iterator[None]:
-    """Records of a folder are found before the shipped ones."""
+    """Make the records of a folder take precedence over the shipped ones in this context."""
     token = _FOLDER.set(folder)
     try:
         yield
@@ -47,7 +47,7 @@ def opened(folder: Path | None) -> Iterator[None]:
 
 
 def path_of(name: str) -> Path | None:
-    """Where the record of a model lies; ``None`` where there is none."""
+    """Return the path of a model's record; ``None`` where there is none."""
     folder = _FOLDER.get()
     places = [folder] if folder is not None else []
     for place in (*places, *source_files.generated()):
@@ -61,13 +61,13 @@ def path_of(name: str) -> Path | None:
 
 
 def is_shipped(name: str) -> bool:
-    """Whether a name is that of a model that comes with satsym, and of none in the folder at work."""
+    """Tell whether a name is that of a shipped model, and of none in the current folder of records."""
     path = path_of(name)
     return path is None or path.parent in source_files.generated()
 
 
 def find(name: str) -> Record:
-    """The record of a model.
+    """Return the record of a model.
 
     Raises
     ------
