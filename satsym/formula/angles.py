@@ -1,4 +1,4 @@
-"""Arguments of exponentials and angles, multiplied out: a sum of rational multiples of products of symbols."""
+"""Arguments of exponentials and angles, expanded to sums of rational multiples of products of symbols."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from satsym.formula.writing import written
 
 
 class TooManyTerms(Exception):
-    """An angle, or an exponent, that is not taken apart: it has too many terms."""
+    """An angle, or an exponent, has too many terms to be expanded."""
 
 
 Complex: TypeAlias = tuple[Fraction, Fraction]
 Monomial: TypeAlias = tuple[tuple[str, Fraction], ...]
-"""Names, or the text of what is no product, each with its exponent; sorted."""
+"""The factors of a product, as names or texts with exponents, sorted."""
 
 HALF_TURNS: Monomial = (("pi", Fraction(1)),)
 PARTS = 12
-"""A coefficient may be a multiple of one over this."""
+"""Largest denominator of a coefficient of an angle."""
 _ONE: Complex = (Fraction(1), Fraction(0))
 _MOST_TERMS = 200
 
 
 @dataclass(frozen=True)
 class Terms:
-    """A sum: product of symbols -> its complex rational coefficient, none of them zero."""
+    """A sum that maps products of symbols to complex rational coefficients, none of them zero."""
 
     coefficients: Mapping[Monomial, Complex]
 
     def plus(self, other: Terms) -> Terms:
-        """The sum of two sums."""
+        """Return the sum of two sums."""
         total = dict(self.coefficients)
         for key, coefficient in other.coefficients.items():
             _enter(total, key, coefficient)
         return Terms(total)
 
     def times_i(self) -> Terms:
-        """The sum times the imaginary unit."""
+        """Return the sum times the imaginary unit."""
         return Terms({key: (-imaginary, real) for key, (real, imaginary) in self.coefficients.items()})
 
 
 def terms_of(node: Node) -> Terms:
-    """A formula as a sum of products; what is neither is taken as one symbol."""
+    """Write a formula as a sum of products; any other part counts as one symbol."""
     return Terms(_expanded(node))
 
 
@@ -116,7 +116,7 @@ def _joined(one: Monomial, other: Monomial) -> Monomial:
 
 @lru_cache(maxsize=100_000)
 def over(one: Monomial, other: Monomial) -> Monomial:
-    """The quotient of two products."""
+    """Return the quotient of two products."""
     return _joined(one, tuple((name, -power) for name, power in other))
 
 

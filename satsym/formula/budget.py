@@ -1,4 +1,4 @@
-"""How much work and memory one row of a ledger may take: counted, never timed, so that the answer is the same anywhere.
+"""Limits on the work and memory for one row of a ledger: counted, never timed, so that every machine agrees.
 
 Work is counted in calls: the interpreter announces each call of a function, Python's or a library's, and each return.
 That reaches everything which a text can set going, sympy's rewriting included, without a list of what may be slow.
@@ -25,47 +25,48 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Limit:
-    """What something may take."""
+    """A limit of work and of memory."""
 
     calls: int
-    """Calls and returns of functions; a million takes about half a second."""
+    """Largest number of calls and returns of functions; a million takes about half a second."""
     numbers: int = 20_000_000
-    """Entries of arrays, characters of texts and the like, all of them together, kept or not."""
+    """Largest number of entries of arrays, characters of texts and the like, all together, kept or not."""
 
 
 READING = Limit(50_000_000)
-"""A whole ledger of a megabyte at most, with all measurements and units loaded; uny_thesis takes 4.9 million."""
-FORMULA = Limit(25_000_000)
-"""A row that is compared with what is derived; lapan_pitch 24 takes 2.5 million."""
-CLAIM = Limit(80_000_000)
-"""A row that a proposition judges: it simulates, and walks through printed programs; appendix B of its_thesis takes 7.1
+"""Limit for reading a whole ledger of at most a megabyte, with all measurements and units loaded; uny_thesis takes 4.9
 million."""
+FORMULA = Limit(25_000_000)
+"""Limit for a row that is compared with a derived expression; lapan_pitch 24 takes 2.5 million."""
+CLAIM = Limit(80_000_000)
+"""Limit for a row that a proposition judges, with simulations and runs of printed programs; appendix B of its_thesis
+takes 7.1 million."""
 VERDICT = Limit(25_000_000)
-"""A row in the light of the others; uny_thesis 2.64 takes 2.0 million."""
+"""Limit for the verdict on a row in view of the others; uny_thesis 2.64 takes 2.0 million."""
 LEDGER = 600_000_000
-"""Calls for all rows of one ledger together; uny_thesis takes 58 million."""
+"""Limit of calls for all rows of one ledger together; uny_thesis takes 58 million."""
 
 
 _ADVICE = "write it shorter, or split it into rows"
 
 
 class OverBudget(BadInput):
-    """More work or memory than one row may take; nothing is said of whether it is right."""
+    """A row takes more work or memory than allowed; whether it is right stays open."""
 
 
 class Spent(BaseException):
-    """Raised where the last call was made; no handler of a library's for mere exceptions swallows it."""
+    """Raised where the last allowed call was made; not an Exception, so that no library's handler catches it."""
 
 
 class Account:
-    """What is left of a limit."""
+    """The rest of a limit."""
 
     def __init__(self, limit: Limit) -> None:
         self.limit = limit
         self.calls, self.numbers = limit.calls, limit.numbers
 
     def charge(self, calls: int, numbers: int) -> None:
-        """Take something off."""
+        """Subtract calls and numbers."""
         self.calls -= calls
         self.numbers -= numbers
         if self.overdrawn:
@@ -73,13 +74,13 @@ class Account:
 
     @property
     def overdrawn(self) -> str:
-        """What was exceeded, for people; empty where nothing was."""
+        """Return what was exceeded, for people; empty where nothing was."""
         if self.calls < 0:
             return f"takes more than {self.limit.calls:,} operations; {_ADVICE}"
         return f"makes more than {self.limit.numbers:,} numbers; {_ADVICE}" if self.numbers < 0 else ""
 
     def profile(self, frame: FrameType, event: str, argument: object) -> None:
-        """Called by the interpreter for each call and each return."""
+        """Count a call or a return, announced by the interpreter."""
         self.calls -= 1
         if self.calls < 0:
             raise Spent(self.overdrawn)
@@ -89,9 +90,9 @@ _ACTIVE: ContextVar[Account | None] = ContextVar("account", default=None)
 
 
 def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = lambda _: None, calls: bool = True) -> T:
-    """Do some work, and give up once it takes more than a limit; inside other such work that one's limit holds.
+    """Do some work under a limit; nested work is under its own limit.
 
-    Without ``calls`` only what is charged counts, which costs no time, for work that is known to be small.
+    Without ``calls`` only explicit charges count, which costs no time, for work that is known to be small.
 
     Raises
     ------
@@ -121,7 +122,7 @@ def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = l
 
 @contextmanager
 def exempt() -> Iterator[None]:
-    """Work that no ledger decides the size of, such as deriving a shipped model, is not counted."""
+    """Suspend counting for work whose size no ledger decides, such as deriving a shipped model."""
     account = _ACTIVE.get()
     if account is None:
         yield
@@ -135,7 +136,7 @@ def exempt() -> Iterator[None]:
 
 
 def charge(calls: int = 0, numbers: int = 0) -> None:
-    """Count what a single call of a library does: how often it does something, how many numbers it makes."""
+    """Count what a single call of a library does: repetitions and numbers made."""
     account = _ACTIVE.get()
     if account is not None:
         account.charge(int(calls), int(numbers))
@@ -143,16 +144,15 @@ def charge(calls: int = 0, numbers: int = 0) -> None:
 
 @dataclass
 class Allowance:
-    """What all rows of a ledger may take together."""
+    """The work and memory that all rows of a ledger may take together."""
 
     counted: bool = True
-    """Whether it is counted at all. Counting makes the interpreter half as fast; of a ledger that comes with satsym it
-    is known what it takes."""
+    """Whether calls are counted, which halves the speed of the interpreter; shipped ledgers need no count."""
     left: int = LEDGER
     """Calls that are left."""
 
     def within(self, limit: Limit, work: Callable[[], T]) -> T:
-        """As :func:`within`, of what is left."""
+        """Do some work as :func:`within` does, under the rest of the allowance."""
         if not self.counted:
             return work()
         if self.left <= 0:

@@ -1,4 +1,4 @@
-"""The second engine's rules: derivatives, substitution and determinants on our own trees, without sympy."""
+"""The rules of the second engine: derivatives, substitution and determinants on our own trees, without sympy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MINUS_ONE = Num(Fraction(-1))
 
 
 class Calculus(Engine[Node]):
-    """Evaluates formulas over trees.
+    """An evaluator of formulas on trees.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Calculus(Engine[Node]):
         return self._weighed(substituted(expression, values))
 
     def determinant(self, matrix: Matrix[Node]) -> Node:
-        """The determinant of a matrix, by minors of the first row."""
+        """Return the determinant of a matrix, by minors of the first row."""
         if matrix.shape[0] != matrix.shape[1]:
             raise BadInput("a determinant requires a square matrix")
         if matrix.shape == (1, 1):
@@ -69,7 +69,7 @@ class Calculus(Engine[Node]):
         return self.add(terms)
 
     def rank(self, matrix: Matrix[Node]) -> int:
-        """The largest rank at a few random points: it is less than that on a set of measure zero only."""
+        """Return the largest rank at a few random points, which is the generic rank almost certainly."""
         entries = [entry for row in matrix.rows for entry in row]
         columns = matrix.shape[1]
         found = []
@@ -89,12 +89,12 @@ class Calculus(Engine[Node]):
             raise BadInput(f"solve(...) requires an equation that is linear in {by}")
 
     def _weighed(self, tree: Node) -> Node:
-        """The tree, unless it is too heavy for what sympy, or the field, would be asked to do with it next."""
+        """Return the tree after a check that it is not too heavy for sympy or the field."""
         return self._scales.checked(tree)
 
 
 def total(terms: Sequence[Node]) -> Node:
-    """A sum, without zeros."""
+    """Return the sum of terms, without zeros."""
     kept = [term for term in terms if term != ZERO]
     if len(kept) < 2:
         return kept[0] if kept else ZERO
@@ -102,7 +102,7 @@ def total(terms: Sequence[Node]) -> Node:
 
 
 def product(factors: Sequence[Node]) -> Node:
-    """A product, without ones; zero if a factor is."""
+    """Return the product of factors, without ones; zero if a factor is zero."""
     scale, kept = Fraction(1), []
     for factor in factors:
         value = constant(factor)
@@ -118,19 +118,19 @@ def product(factors: Sequence[Node]) -> Node:
 
 
 def raised(base: Node, exponent: Fraction) -> Node:
-    """A power, written as itself where the exponent is one."""
+    """Return a power; the base itself where the exponent is one."""
     if exponent == 1:
         return base
     return Pow(base, Num(exponent)) if exponent else ONE
 
 
 def difference(one: Node, other: Node) -> Node:
-    """One minus the other."""
+    """Return one minus the other."""
     return total([one, Neg(other)]) if other != ZERO else one
 
 
 def derivative(node: Node, by: str) -> Node:
-    """A partial derivative, by the rules of the calculus.
+    """Return a partial derivative, by the rules of calculus.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""What a formula over derived and printed things means, in terms of a few operations that an engine provides.
+"""The meaning of formulas over derived and printed expressions, in terms of a few operations of an engine.
 
 There are two engines: sympy's (:mod:`satsym.symbolic.lookup.library`) and our own trees
-(:mod:`satsym.formula.calculus`). What is written here, products of matrices and the like, they share.
+(:mod:`satsym.formula.calculus`). They share this module, which has products of matrices and the like.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from satsym.status import BadInput
 
 @dataclass(frozen=True)
 class Operation:
-    """What a call means, and how many arguments it takes."""
+    """The meaning of a call, and its number of arguments."""
 
     meaning: Callable[[Any, Call], Value]
     fewest: int = 1
@@ -27,52 +27,52 @@ class Operation:
 
 
 class Engine(ABC, Generic[S]):
-    """Evaluates formulas; the abstract methods are what two engines do differently."""
+    """An evaluator of formulas, with abstract methods for the operations that the two engines do differently."""
 
     operations: ClassVar[Mapping[str, Operation]]
-    """What calls mean, by name, besides those of elementary functions."""
+    """The meaning of calls by name, besides those of elementary functions."""
 
     def __init__(self, sources: Sources[S]) -> None:
         self.sources = sources
 
     @abstractmethod
     def number(self, value: Fraction) -> S:
-        """A number."""
+        """Return a number of the engine."""
 
     @abstractmethod
     def add(self, terms: Sequence[S]) -> S:
-        """A sum."""
+        """Return the sum of terms."""
 
     @abstractmethod
     def multiply(self, factors: Sequence[S]) -> S:
-        """A product."""
+        """Return the product of factors."""
 
     @abstractmethod
     def power(self, base: S, exponent: Fraction) -> S:
-        """A power."""
+        """Return a power."""
 
     @abstractmethod
     def function(self, name: str, arguments: Sequence[S]) -> S:
-        """An elementary function."""
+        """Apply an elementary function."""
 
     @abstractmethod
     def derivative(self, expression: S, by: str) -> S:
-        """A partial derivative by a symbol."""
+        """Return a partial derivative by a symbol."""
 
     @abstractmethod
     def substitute(self, expression: S, values: Mapping[str, S]) -> S:
-        """Symbols replaced, all at once."""
+        """Replace symbols in an expression, all at once."""
 
     @abstractmethod
     def determinant(self, matrix: Matrix[S]) -> S:
-        """The determinant of a square matrix."""
+        """Return the determinant of a square matrix."""
 
     @abstractmethod
     def rank(self, matrix: Matrix[S]) -> int:
-        """The rank at a generic point."""
+        """Return the rank of a matrix at a generic point."""
 
     def value(self, tree: Node | Equality) -> Value:
-        """What a formula means.
+        """Evaluate a formula.
 
         Raises
         ------
@@ -103,21 +103,21 @@ class Engine(ABC, Generic[S]):
         return self._call(tree)
 
     def scalar(self, tree: Node) -> S:
-        """The meaning of a formula that is no matrix; of an equation, its right-hand side."""
+        """Evaluate a formula that is no matrix; for an equation, its right-hand side."""
         found = self.operand(tree)
         if isinstance(found, Matrix | Roots | Kernel):
             raise BadInput("a matrix is given where an expression is needed")
         return found
 
     def matrix(self, tree: Node) -> Matrix[S]:
-        """The meaning of a formula that is a matrix."""
+        """Evaluate a formula that is a matrix."""
         found = self.operand(tree)
         if not isinstance(found, Matrix):
             raise BadInput("an expression is given where a matrix is needed")
         return found
 
     def characteristic(self, matrix: Matrix[S], variable: S) -> S:
-        """det(x I - A)."""
+        """Return det(x I - A)."""
         n = square(matrix)
         minus = self.number(Fraction(-1))
         rows = tuple(
@@ -129,7 +129,7 @@ class Engine(ABC, Generic[S]):
         return self.determinant(Matrix(rows))
 
     def product(self, one: Matrix[S], other: Matrix[S]) -> Matrix[S]:
-        """The product of two matrices."""
+        """Return the product of two matrices."""
         if one.shape[1] != other.shape[0]:
             raise BadInput(f"a {size_of(one)} matrix cannot be multiplied by a {size_of(other)} matrix")
         columns = list(zip(*other.rows, strict=True))
@@ -141,7 +141,7 @@ class Engine(ABC, Generic[S]):
         )
 
     def operand(self, tree: Node) -> Value:
-        """The meaning of a formula where a part of another stands: of an equation, its right-hand side."""
+        """Evaluate a part of a formula; for an equation, its right-hand side."""
         found = self.value(tree)
         return found.rhs if isinstance(found, Relation) else found
 
@@ -192,7 +192,7 @@ class Engine(ABC, Generic[S]):
         return result
 
     def identity(self, n: int) -> Matrix[S]:
-        """The identity matrix."""
+        """Return the identity matrix."""
         one, zero = self.number(Fraction(1)), self.number(Fraction(0))
         return Matrix(tuple(tuple(one if i == j else zero for j in range(n)) for i in range(n)))
 
@@ -203,21 +203,21 @@ class Engine(ABC, Generic[S]):
         return self.function(tree.function, [self.scalar(argument) for argument in tree.arguments])
 
     def relation(self, tree: Node) -> Relation[S]:
-        """The meaning of a formula that is an equation."""
+        """Evaluate a formula that is an equation."""
         found = self.value(tree)
         if not isinstance(found, Relation):
             raise BadInput("an expression is given where an equation is needed")
         return found
 
     def along(self, expression: S) -> S:
-        """The derivative of an expression by time, along the motion."""
+        """Return the derivative of an expression by time, along the motion."""
         terms = [self.derivative(expression, "t")]
         for name, rate in self.sources.rates().items():
             terms.append(self.multiply([self.derivative(expression, name), self.sources.name(rate)]))
         return self.add(terms)
 
     def solution(self, expression: Value, by: str) -> S:
-        """The only root of what is linear in a symbol."""
+        """Return the only root of an expression that is linear in a symbol."""
         if isinstance(expression, Matrix | Roots | Kernel):
             raise BadInput("solve(...) takes an expression or an equation")
         minus, zero = self.number(Fraction(-1)), self.number(Fraction(0))
@@ -233,7 +233,7 @@ class Engine(ABC, Generic[S]):
         """Refuse what is not ``slope*by + rest`` with a slope other than zero."""
 
     def inverse(self, matrix: Matrix[S]) -> Matrix[S]:
-        """The inverse of a matrix, by cofactors."""
+        """Return the inverse of a matrix, by cofactors."""
         n = square(matrix)
         over = self.power(self.determinant(matrix), Fraction(-1))
         return Matrix(

@@ -23,28 +23,28 @@ from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, c
 from satsym.formula.writing import written
 
 PRIME = 2305843009139462809
-"""Below 2^61; PRIME - 1 = 2^3 * 3 * 17 * 5651576002792801."""
+"""A prime below 2^61; PRIME - 1 = 2^3 * 3 * 17 * 5651576002792801."""
 POINTS = 12
 DRAWS = 400
-"""Points tried before it is said that there is none."""
+"""Largest number of points that are tried."""
 
 _TWO_PART, _THREE_PART = 8, 3
 _ODD = (PRIME - 1) // _TWO_PART
 _TO_POSITIVE = 24
 IMAGINARY = pow(29, (PRIME - 1) // 4, PRIME)
-"""A root of -1: 29 is no square."""
+"""A root of -1 modulo the prime, since 29 is no square."""
 
 
 BY_TERMS = frozenset({"sin", "cos", "tan", "exp", "sinh", "cosh", "tanh"})
-"""Functions whose arguments are taken apart into terms."""
+"""Functions whose arguments are expanded into terms."""
 
 
 class NoValue(Exception):
-    """The formula has no value at this point: a division by zero, or a root of what has none."""
+    """The formula has no value at this point: it divides by zero, or takes a root that does not exist."""
 
 
 class Nowhere(NoValue):
-    """It has a value at no point, but for a chance of one in 10^18: it divides by what is zero, or is no formula."""
+    """The formula has no value at any point, except with probability 1e-18: it divides by zero, or is no formula."""
 
 
 class Undecided(Exception):
@@ -52,7 +52,7 @@ class Undecided(Exception):
 
 
 class Point:
-    """Random values of all symbols, made up as they are asked for.
+    """Random values of all symbols, drawn when they are requested.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Point:
         self._memory: dict[int, tuple[Node, int]] = {}
 
     def value(self, node: Node) -> int:
-        """The value of a formula at this point.
+        """Return the value of a formula at this point.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Point:
         raise Nowhere(f"{type(node).__name__} is not a formula")
 
     def symbol(self, name: str) -> int:
-        """The value of a symbol."""
+        """Return the value of a symbol."""
         if name == "I":
             return IMAGINARY
         return _symbol(self._seed, name, name in self._positive or name == "pi")
@@ -144,7 +144,7 @@ class Point:
         return pow(size, pow(3, -1, (PRIME - 1) // _THREE_PART), PRIME)
 
     def value_of_call(self, node: Call) -> int:
-        """The value of a function of something."""
+        """Return the value of a function call."""
         name = node.function
         if name in ("sin", "cos", "tan"):
             inner = node.arguments[0]
@@ -174,7 +174,7 @@ class Point:
         return _random(self._seed, f"{name}({','.join(map(str, arguments))})")
 
     def _of_an_inverse(self, name: str, inverse: str, value: int) -> int:
-        """The sine, cosine or tangent of an angle that is given by one of these."""
+        """Return the sine, cosine or tangent of an angle that is itself given by an inverse function."""
         if inverse == "atan":
             cosine = self._power((1 + value * value) % PRIME, Fraction(-1, 2))
             sine = value * cosine % PRIME
@@ -189,7 +189,7 @@ class Point:
         return self._power(value * value % PRIME, Fraction(1, 2)) if value % PRIME else 0
 
     def _exponential(self, terms: Terms) -> int:
-        """The exponential of a sum: a product of one number for each term, to the power of its coefficient."""
+        """Return the exponential of a sum as a product of powers, one for each term."""
         product = 1
         for key, (real, imaginary) in terms.coefficients.items():
             if key == HALF_TURNS:
@@ -215,7 +215,7 @@ def _terms(node: Node) -> Terms:
 
 
 def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> bool:
-    """Whether a formula is zero at random points.
+    """Tell whether a formula is zero at random points.
 
     Parameters
     ----------
@@ -235,13 +235,13 @@ def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int 
 
 
 def values(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> Iterable[int]:
-    """Values at random points at which there is one; see :func:`vanishes`."""
+    """Return values at random points of the formula's domain; see :func:`vanishes`."""
     for point in points_for((tree,), seed, positive, points):
         yield point.value(tree)
 
 
 def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (), count: int = POINTS) -> list[Point]:
-    """Points at which all of some formulas have values.
+    """Return points at which all of some formulas have values.
 
     Raises
     ------
@@ -268,7 +268,7 @@ def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (),
 
 @lru_cache(maxsize=65536)
 def _symbol(seed: str, name: str, positive: bool) -> int:
-    """The value of a symbol at the point of a seed: a fourth power, or minus one, if it has a sign."""
+    """Return the value of a symbol at the point of a seed: a fourth power, negated for a negative sign."""
     size = pow(_random(seed, name), _TO_POSITIVE, PRIME)
     return size if positive or _random(seed, f"{name} sign") % 2 else PRIME - size
 
@@ -288,14 +288,14 @@ def _inverse(value: int) -> int:
 
 
 def _split(value: int, part: int) -> tuple[int, int]:
-    """A number as the product of a root of unity of order `part` and of what has no such part."""
+    """Write a number as a root of unity of order `part` times a number whose order is prime to it."""
     rest = (PRIME - 1) // part
     unit = pow(value, rest * pow(rest, -1, part), PRIME)
     return unit, value * pow(unit, -1, PRIME) % PRIME
 
 
 def _circular(name: str, turn: int) -> int:
-    """Cosine, sine or tangent from e^(ix)."""
+    """Return cosine, sine or tangent from e^(ix)."""
     back = _inverse(turn)
     cosine = (turn + back) * _HALF % PRIME
     sine = (turn - back) * _HALF % PRIME * _inverse(IMAGINARY) % PRIME
@@ -303,7 +303,7 @@ def _circular(name: str, turn: int) -> int:
 
 
 def rank(rows: list[list[int]]) -> int:
-    """The rank of a matrix of numbers modulo the prime."""
+    """Return the rank of a matrix of numbers modulo the prime."""
     from flint import nmod_mat
 
     return int(nmod_mat(len(rows), len(rows[0]) if rows else 0, [e % PRIME for row in rows for e in row], PRIME).rank())

@@ -1,4 +1,4 @@
-"""What formulas over derived and printed things may call; each function derives, none holds an answer."""
+"""Functions that formulas over derived and printed expressions may call; each derives its result."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _jacobian(engine: Engine[S], tree: Call) -> Value:
 
 
 def classical_weights() -> tuple[Fraction, ...]:
-    """Weights of the classical Runge-Kutta method, solved from the conditions of its order.
+    """Return the weights of the classical Runge-Kutta method, solved from its order conditions.
 
     With the nodes 0, 1/2, 1/2, 1 and each stage built on the one before it, the conditions sum b = 1, sum b c = 1/2,
     sum b c^2 = 1/3 and sum b_i a_ij c_j = 1/6 of order three have one solution; it is of order four (Hairer, Norsett

@@ -1,8 +1,8 @@
-"""The safe language: text from a file -> tree. Nothing is ever evaluated.
+"""The safe language of formulas: conversion of text from a file to a tree, without any evaluation.
 
-The text is measured before Python's own parser sees it, so that no length, depth or tower of powers can hurt; what
-the parser gives back is translated node by node, and any kind of node, operator, name or function that is not
-listed here is refused.
+The text is measured before Python's own parser sees it, so that no length, depth or tower of powers can do harm; the
+parser's result is translated node by node, and any kind of node, operator, name or function that is not listed here is
+refused.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MAX_DENOMINATOR = 12
 
 NAME = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*_?\Z")
 Functions: TypeAlias = Mapping[str, tuple[int, int]]
-"""Name -> least and largest number of arguments."""
+"""Names of functions with the least and largest number of arguments."""
 
 FUNCTIONS: Functions = {
     **dict.fromkeys("sin cos tan sqrt exp log abs sign asin acos atan sinh cosh tanh".split(), (1, 1)),
@@ -38,11 +38,11 @@ FUNCTIONS: Functions = {
     "max": (2, 2),
     "norm": (1, 1),  # of a column
 }
-"""What a printed formula may call."""
+"""The functions that a printed formula may call."""
 _JUDGING = {**{name: (found.fewest, found.most) for name, found in OPERATIONS.items()}, **FUNCTIONS}
-"""What the formulas of a ledger may call."""
+"""The functions that the formulas of a ledger may call."""
 _OF_LIBRARIES = {"np.sqrt": "sqrt", "np.linalg.norm": "norm"}
-"""What printed programs call some of them."""
+"""Names of functions in libraries, with the names that they have here."""
 
 _FOREIGN = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n]""")
 _FOREIGN_TO_RELATIONS = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n<>!]""")
@@ -51,7 +51,7 @@ _QUOTED = re.compile(r"""'[ !-&(-\[\]-~]*'|"[ !#-\[\]-~]*\"""")
 """Printable characters in quotes, without quotes and backslashes."""
 _SIGNS = re.compile(r"[-+](?:[ \n]*[-+]){3}")
 _LAMBDA, _STAND_IN = re.compile(r"\blambda\b"), "la__da"
-"""A Greek letter is a name here, though not in Python; what stands in for it is as long, and no name of its own."""
+"""The name lambda, which Python reserves, and its replacement of equal length, which no text contains."""
 _DECIMAL = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2})?")
 _DIGITS = re.compile(r"(?<![A-Za-z0-9_.])[0-9][0-9_]*|(?<=\.)[0-9_]+")
 _WORDS = {
@@ -110,7 +110,7 @@ def statement(text: str, *, judging: bool = False) -> Node | Equality:
 
 
 def checked_name(name: str) -> str:
-    """The name, if it may stand in a formula.
+    """Return a name after a check that it may occur in a formula.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def checked_name(name: str) -> str:
 
 
 def measured(text: str, judging: bool, relations: bool = False) -> None:
-    """Refuse a text that is too long or too deep, or has characters that mean nothing in a formula (a relation).
+    """Refuse a text that is too long or too deep, or has characters that are not part of formulas.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def measured(text: str, judging: bool, relations: bool = False) -> None:
 
 
 def _sides(text: str) -> list[str]:
-    """The text between the equality signs that stand outside all brackets."""
+    """Split a text at the equality signs outside all brackets."""
     sides, depth, start = [], 0, 0
     for i, character in enumerate(text):
         depth += (character in "([") - (character in ")]")
@@ -163,7 +163,7 @@ def _sides(text: str) -> list[str]:
 
 
 def parsed(line: str, text: str, what: str) -> ast.expr:
-    """What Python's parser makes of a line that has been measured.
+    """Parse a measured line by Python's parser.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def parsed(line: str, text: str, what: str) -> ast.expr:
 
 
 class _Reader:
-    """Translates what Python's parser found, and refuses whatever is not listed."""
+    """Translates Python's syntax tree, and refuses whatever is not listed."""
 
     def __init__(self, text: str, judging: bool) -> None:
         self._text = text
@@ -192,7 +192,7 @@ class _Reader:
         self._judging = judging
 
     def node(self, found: ast.expr, depth: int = 0) -> Node:
-        """The tree of a node of Python's."""
+        """Return the tree of a node of Python's syntax tree."""
         if depth > 2 * MAX_DEPTH:
             raise BadInput(_TOO_DEEP)
         if isinstance(found, ast.Constant):
@@ -225,7 +225,7 @@ class _Reader:
         return Num(Fraction(text))
 
     def _chain(self, found: ast.BinOp, depth: int) -> Node:
-        """Sums and products; a long one leans to the left and is walked, so that its length is no depth."""
+        """Translate sums and products; a long one leans to the left and is walked, so that its length is not depth."""
         spine: list[ast.BinOp] = []
         left: ast.expr = found
         while isinstance(left, ast.BinOp) and not isinstance(left.op, ast.Pow):

@@ -30,21 +30,21 @@ class Sym:
 
 @dataclass(frozen=True, slots=True)
 class Neg:
-    """A minus in front of something."""
+    """An expression with a minus in front."""
 
     operand: Node
 
 
 @dataclass(frozen=True, slots=True)
 class Add:
-    """A sum of two terms or more; what is subtracted is a :class:`Neg`."""
+    """A sum of two or more terms; a subtracted term is a :class:`Neg`."""
 
     terms: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Mul:
-    """A product of two factors or more."""
+    """A product of two or more factors."""
 
     factors: tuple[Node, ...]
 
@@ -91,11 +91,11 @@ class Grid:
 Node: TypeAlias = Num | Sym | Neg | Add | Mul | Div | Pow | Call | Text | Grid
 
 Path: TypeAlias = tuple[int, ...]
-"""Where a part stands: the place of a child, of its child, and so on."""
+"""The place of a part in a tree: the place of a child, of its child, and so on."""
 
 
 def grid(rows: Iterable[Iterable[Node]]) -> Grid:
-    """The rows of a matrix as a node."""
+    """Return the rows of a matrix as a node."""
     return Grid(tuple(Grid(tuple(row)) for row in rows))
 
 
@@ -111,11 +111,11 @@ class Equality:
 
 
 Formula: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
-"""What is printed: an expression, an equality, or the rows of a matrix."""
+"""A printed formula: an expression, an equality, or the rows of a matrix."""
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """The parts of a node, in the order in which they are printed."""
+    """Return the parts of a node, in printed order."""
     if isinstance(node, Neg):
         return (node.operand,)
     if isinstance(node, Add):
@@ -134,7 +134,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def rebuilt(node: Node, parts: tuple[Node, ...]) -> Node:
-    """The node with other parts in the same places."""
+    """Return the node with other parts in the same places."""
     if isinstance(node, Neg):
         return Neg(*parts)
     if isinstance(node, Add):
@@ -155,14 +155,14 @@ def rebuilt(node: Node, parts: tuple[Node, ...]) -> Node:
 
 
 def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Every part with its place, the whole first."""
+    """Yield every part of a tree with its path, the whole tree first."""
     yield path, node
     for i, child in enumerate(children(node)):
         yield from walk(child, (*path, i))
 
 
 def replaced(node: Node, path: Path, new: Node) -> Node:
-    """The tree with another part at a place."""
+    """Return the tree with another part at a path."""
     if not path:
         return new
     parts = list(children(node))
@@ -171,7 +171,7 @@ def replaced(node: Node, path: Path, new: Node) -> Node:
 
 
 def mapped(node: Node, function: Callable[[Node], Node | None]) -> Node:
-    """The tree in which whatever `function` answers to is replaced by its answer; what is replaced is not entered."""
+    """Replace every part for which `function` returns a result; replaced parts are not entered."""
     found = function(node)
     if found is not None:
         return found
@@ -180,22 +180,22 @@ def mapped(node: Node, function: Callable[[Node], Node | None]) -> Node:
 
 
 def substituted(node: Node, values: Mapping[str, Node]) -> Node:
-    """The tree in other symbols, all replaced at once."""
+    """Replace symbols of a tree by trees, all at once."""
     return mapped(node, lambda part: values.get(part.name) if isinstance(part, Sym) else None)
 
 
 def symbols(node: Node) -> set[str]:
-    """Names that occur."""
+    """Return the names that occur in a tree."""
     return {part.name for _, part in walk(node) if isinstance(part, Sym)}
 
 
 def size(node: Node) -> int:
-    """Number of nodes."""
+    """Return the number of nodes of a tree."""
     return sum(1 for _ in walk(node))
 
 
 def number(value: int | Fraction) -> Node:
-    """A number; a negative one with its minus in front, a fraction as a quotient."""
+    """Return the tree of a number; a negative one has its minus in front, a fraction is a quotient."""
     exact = Fraction(value)
     if exact < 0:
         return Neg(number(-exact))
@@ -205,7 +205,7 @@ def number(value: int | Fraction) -> Node:
 
 
 def constant(node: Node) -> Fraction | None:
-    """The value of a tree that is made of numbers and small powers alone; ``None`` for any other."""
+    """Return the value of a tree of numbers and small powers alone; ``None`` for any other."""
     if isinstance(node, Num):
         return node.value
     parts = [constant(child) for child in children(node)]
@@ -229,7 +229,7 @@ def constant(node: Node) -> Fraction | None:
 
 
 def cells(formula: Formula | None) -> list[Node]:
-    """An expression, both sides of an equality, or the entries of a matrix; nothing of nothing."""
+    """Return the expressions in a formula: itself, both sides of an equality, or the entries of a matrix."""
     if formula is None:
         return []
     if isinstance(formula, tuple):
@@ -238,7 +238,7 @@ def cells(formula: Formula | None) -> list[Node]:
 
 
 def shaped(entries: Sequence[T], columns: int) -> tuple[tuple[T, ...], ...]:
-    """Entries of a matrix, row by row, as its rows."""
+    """Arrange entries of a matrix, given row by row, in rows."""
     return tuple(tuple(entries[i : i + columns]) for i in range(0, len(entries), columns))
 
 
@@ -256,10 +256,10 @@ def each(formula: Formula, function: Callable[[Node], Node]) -> Formula:
 
 
 def names_in(formula: Formula | None) -> set[str]:
-    """Names of all symbols."""
+    """Return the names of all symbols in a formula."""
     return set().union(*map(symbols, cells(formula)))
 
 
 def calls_in(formula: Formula | None) -> Iterator[Call]:
-    """All calls of functions, from the outside inwards."""
+    """Return all function calls in a formula, from the outside inwards."""
     return (part for cell in cells(formula) for _, part in walk(cell) if isinstance(part, Call))

@@ -1,4 +1,4 @@
-"""What formulas over derived and printed things may mean: scalars of either engine, matrices, equations."""
+"""Values of formulas over derived and printed expressions: scalars of either engine, matrices, equations."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ S = TypeVar("S")
 
 @dataclass(frozen=True)
 class Matrix(Generic[S]):
-    """Rows of scalars."""
+    """A matrix as rows of scalars."""
 
     rows: tuple[tuple[S, ...], ...]
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Numbers of rows and columns."""
+        """Return the numbers of rows and columns."""
         return len(self.rows), len(self.rows[0]) if self.rows else 0
 
     @property
     def entries(self) -> list[S]:
-        """All entries of the matrix, row by row."""
+        """Return all entries of the matrix, row by row."""
         return [entry for row in self.rows for entry in row]
 
     def mapped(self, function: Callable[[S], S]) -> Matrix[S]:
-        """The matrix with another entry in the place of each."""
+        """Return the matrix with a function applied to each entry."""
         return Matrix(tuple(tuple(map(function, row)) for row in self.rows))
 
 
@@ -55,12 +55,12 @@ class Kernel(Generic[S]):
 
 
 Value: TypeAlias = Any
-"""A scalar, a :class:`Matrix`, a :class:`Relation`, :class:`Roots` or a :class:`Kernel`."""
+"""The value of a formula: a scalar, a :class:`Matrix`, a :class:`Relation`, :class:`Roots` or a :class:`Kernel`."""
 
 
 @dataclass(frozen=True)
 class Sources(Generic[S]):
-    """Where values come from: names, addresses of derived things, and printed rows.
+    """The sources of values: names, addresses of derived expressions, and printed rows.
 
     ``symbol`` gives our symbol for a name by which something is differentiated, or which is replaced.
     """
@@ -70,18 +70,18 @@ class Sources(Generic[S]):
     row: Callable[[str], Value]
     symbol: Callable[[str], str] = str
     rates: Callable[[], Mapping[str, str]] = dict
-    """State or costate -> the name of its rate."""
+    """A function that maps states and costates to the names of their rates."""
 
 
 def without(matrix: Matrix[S], i: int, j: int) -> Matrix[S]:
-    """The matrix without a row and a column, counted from zero."""
+    """Return the matrix without a row and a column, counted from zero."""
     return Matrix(
         tuple(tuple(entry for k, entry in enumerate(row) if k != j) for h, row in enumerate(matrix.rows) if h != i)
     )
 
 
 def stacked(matrices: Sequence[Matrix[S]], beside: bool) -> Matrix[S]:
-    """Matrices beside or below each other."""
+    """Place matrices beside or below each other."""
     if len({matrix.shape[0 if beside else 1] for matrix in matrices}) > 1:
         raise BadInput("the matrices that form a block matrix differ in size")
     if beside:
@@ -92,24 +92,24 @@ def stacked(matrices: Sequence[Matrix[S]], beside: bool) -> Matrix[S]:
 
 
 def transposed(matrix: Matrix[S]) -> Matrix[S]:
-    """Rows as columns."""
+    """Return the transposed matrix."""
     return Matrix(tuple(zip(*matrix.rows, strict=True)))
 
 
 def plain(value: Value) -> Any:
-    """The value, if it is a scalar."""
+    """Return the value, which must be a scalar."""
     if isinstance(value, Matrix | Roots | Kernel):
         raise BadInput("a matrix is given where an expression is needed")
     return value
 
 
 def square(matrix: Matrix[S]) -> int:
-    """The number of rows of a square matrix."""
+    """Return the number of rows of a square matrix."""
     if matrix.shape[0] != matrix.shape[1]:
         raise BadInput(f"a {size_of(matrix)} matrix is given where a square matrix is needed")
     return matrix.shape[0]
 
 
 def size_of(matrix: Matrix[S]) -> str:
-    """Rows by columns, for people."""
+    """Write rows by columns for people."""
     return "{} by {}".format(*matrix.shape)

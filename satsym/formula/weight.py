@@ -1,7 +1,7 @@
-"""How heavy a formula is, known from its tree before anything is done with it.
+"""The weight of a formula: bounds on its size after expansion, known from its tree beforehand.
 
-A tree may share its parts: twenty abbreviations that each square the one before make a million terms of forty nodes.
-So each part is weighed once, and the weight of a whole follows from those of its parts.
+A tree may share its parts: twenty abbreviations that each square the one before make a million terms of forty nodes. So
+each part is weighed once, and the weight of a whole follows from those of its parts.
 """
 
 from __future__ import annotations
@@ -17,56 +17,56 @@ from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, P
 
 T = TypeVar("T", bound=Node | Equality)
 MAX_NODES = 50_000
-"""Nodes of the tree, each part as often as it is printed; the shipped ledgers have up to 578."""
+"""Largest number of nodes of a tree, with shared parts counted each time; the shipped ledgers have up to 578."""
 MAX_DEPTH = 110
-"""Levels of brackets, up to 17 in the shipped ledgers; what walks a tree is recursive, and Python stops at a depth of a
-thousand calls."""
+"""Largest depth of brackets; the shipped ledgers have up to 17. Functions on trees are recursive, and Python stops at a
+depth of a thousand calls."""
 MAX_TERMS = 20_000
-"""Terms once multiplied out, of one printed formula."""
+"""Largest number of terms of one printed formula after expansion."""
 MAX_COMBINED_TERMS = 100_000
-"""Terms of what is made of several formulas, in which the shipped ledgers have up to 2112."""
+"""Largest number of terms of a combination of formulas; the shipped ledgers have up to 2112."""
 MAX_DIGITS = 2000
-"""Digits of a number once multiplied out; the shipped ledgers have up to 66."""
+"""Largest number of digits of a number after expansion; the shipped ledgers have up to 66."""
 MAX_DEGREE = 500
-"""The degree in all symbols, up to 47 in the shipped ledgers: dense polynomials are lists of that length."""
+"""Largest degree in all symbols; the shipped ledgers have up to 47. Dense polynomials are lists of that length."""
 MAX_ARGUMENT = 1e30
-"""Size of what an exponential or an angle is taken of, at points of size one: its whole part is computed exactly."""
+"""Largest argument of an exponential or an angle at points of size one, whose whole part is computed exactly."""
 MAX_CONSTANT_ARGUMENT = 1e4
-"""Size of a number of which an exponential is taken: the exponential may be written out with all digits."""
+"""Largest constant argument of an exponential, which may be written out with all digits."""
 
 _GROWING = frozenset({"exp", "sinh", "cosh", "tanh"})
 _TURNING = frozenset({"sin", "cos", "tan"})
 _NEAR_ZERO = 1e-3
-"""How near to zero a sum or a function is taken to come at a generic point."""
+"""Assumed least magnitude of a sum or a function at a generic point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """What a tree takes."""
+    """The weight of a tree: bounds on its terms, digits, degree and values."""
 
     nodes: int = 1
     depth: int = 1
     terms: int = 1
     digits: int = 1
     degree: int = 0
-    """See the limits."""
+    """Nodes, depth, terms, digits and degree, as in the limits above."""
     largest: float = 2.0
     smallest: float = 0.5
-    """About how large it is at points whose coordinates are of size one, and how near to zero it comes."""
+    """Approximate largest and smallest magnitude at points whose coordinates are of size one."""
     number: bool = False
-    """Whether no symbol is in it."""
+    """Whether the tree contains no symbol."""
 
 
 @dataclass
 class Scales:
-    """Weighs trees, each part once."""
+    """Computes weights of trees, each part once."""
 
     max_terms: int = MAX_COMBINED_TERMS
     """Terms that a tree may have once multiplied out."""
     _known: dict[int, tuple[Node, Weight]] = field(default_factory=dict)
 
     def checked(self, tree: T) -> T:
-        """A tree as it is given; what is too heavy is refused.
+        """Return the tree unchanged, or refuse it as too heavy.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class Scales:
         return tree
 
     def weight(self, node: Node) -> Weight:
-        """The weight of a tree that is not too heavy; see :meth:`checked`."""
+        """Return the weight of a tree that is not too heavy; see :meth:`checked`."""
         known = self._known.get(id(node))
         if known is not None:
             return known[1]
@@ -121,7 +121,7 @@ def _weight(node: Node, parts: Sequence[Weight], max_terms: int) -> Weight:
 
 
 def _multiplied_out(node: Node, parts: Sequence[Weight], max_terms: int) -> tuple[int, int, int]:
-    """Terms, digits and degree of a tree once it is multiplied out."""
+    """Bound terms, digits and degree of a tree after expansion."""
     terms, digits, degree = max(p.terms for p in parts), max(p.digits for p in parts), max(p.degree for p in parts)
     if isinstance(node, Add):
         return sum(p.terms for p in parts), digits, degree
@@ -143,7 +143,7 @@ def _multiplied_out(node: Node, parts: Sequence[Weight], max_terms: int) -> tupl
 
 
 def _sizes(node: Node, parts: Sequence[Weight]) -> tuple[float, float]:
-    """How large a tree is, and how near to zero it comes, at points of size one."""
+    """Bound the magnitude of a tree, above and below, at points of size one."""
     first = parts[0]
     if isinstance(node, Neg):
         return first.largest, first.smallest

@@ -1,4 +1,4 @@
-"""Trees as text in the safe language, with no more brackets than needed."""
+"""Conversion of trees to text in the safe language, with no more brackets than needed."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ GREEK = frozenset(
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
     "omega".split()
 )
-"""Letters that are written as words."""
+"""Greek letters, which are written as words."""
 _SUM, _PRODUCT, _POWER, _ATOM = range(4)
 
 
 def written(tree: Node | Equality) -> str:
-    """The text that reads as this tree."""
+    """Return the text that is read as this tree."""
     if isinstance(tree, Equality):
         return f"{written(tree.lhs)} = {written(tree.rhs)}"
     return _text(tree)[0]
 
 
 def _text(node: Node) -> tuple[str, int]:
-    """The text, and how tightly it binds."""
+    """Return the text of a node, and its binding strength."""
     if isinstance(node, Num):
         return _number(node.value)
     if isinstance(node, Sym):
@@ -67,7 +67,7 @@ def _number(value: Fraction) -> tuple[str, int]:
 
 
 def _decimal_places(denominator: int) -> int | None:
-    """How many decimal places numbers of this denominator need; ``None`` if no number of them is enough."""
+    """Return the decimal places that this denominator needs; ``None`` if no number is enough."""
     return next((n for n in range(61) if 10**n % denominator == 0), None)
 
 
