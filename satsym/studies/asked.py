@@ -1,4 +1,4 @@
-"""What is asked of a study, and what its results depend on."""
+"""The statement of a study, and everything that its results depend on."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from satsym.studies.reading import Design, chain
 from satsym.version import __version__
 
 LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
-"""Rows of a chunk at most, and chunks that a study with enough rows has at least."""
+"""Largest number of rows of a chunk, and least number of chunks of a study with enough rows."""
 
 LIBRARIES = ("numpy", "scipy", "numba")
-"""Whose versions may change the last digits."""
+"""Libraries whose versions may change the last digits of results."""
 
 PLACES = ("name", "path", "title", "model")
-"""Keys of an instance that its digest leaves out: no result depends on them, and the model has a digest of its own."""
+"""Keys of an instance that its digest omits: results do not depend on them, and the model has its own digest."""
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Many rows of one instance.
+    """The statement of a study: many rows of one instance.
 
     Attributes
     ----------
@@ -75,27 +75,27 @@ class Study:
 
     @cached_property
     def size(self) -> int:
-        """Rows of a chunk but for the last, which depends on the number of rows alone."""
+        """Return the number of rows of each chunk but the last, which depends on the number of rows alone."""
         return max(1, min(LARGEST_CHUNK, math.ceil(self.design.count / FEWEST_CHUNKS)))
 
     @property
     def chunks(self) -> int:
-        """How many there are."""
+        """Return the number of chunks."""
         return math.ceil(self.design.count / self.size)
 
     def chunk(self, number: int) -> Chunk:
-        """A chunk by its number, from 0."""
+        """Return a chunk by its number, from 0."""
         start, count = self.place(number)
         return Chunk(number, start, self.design.rows(start, start + count))
 
     def place(self, number: int) -> tuple[int, int]:
-        """The first row of a chunk, and how many there are."""
+        """Return the first row of a chunk, and its number of rows."""
         start = number * self.size
         return start, min(self.size, self.design.count - start)
 
     @cached_property
     def identity(self) -> dict[str, str]:
-        """Everything that the results depend on, by name."""
+        """Return everything that the results depend on, by name."""
         found = {f"instance {name}": text for name, text in _parts(self.instance).items()}
         found |= {
             "command": self.command.value,
@@ -118,18 +118,18 @@ class Study:
 
     @cached_property
     def digest(self) -> str:
-        """Digest of the whole study: its instance, its model and all that varies."""
+        """Return a digest of the whole study: its instance, its model and all that varies."""
         return _digest(self.identity)
 
     @property
     def row_digest(self) -> str:
-        """Digest of what the result of a row depends on besides its own numbers."""
+        """Return a digest of what the result of a row depends on besides its own numbers."""
         varied = {*self.design.stated(), "rows", "chunk", "table"}
         return _digest({k: v for k, v in self.identity.items() if k not in varied and not k.startswith("instance ")})
 
     @cached_property
     def task(self) -> Task:
-        """What workers need to know of it."""
+        """Return the part of the study that workers need."""
         return Task(
             instance=self.instance,
             keys=self.design.keys,
@@ -144,7 +144,7 @@ class Study:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A study without its values, which chunks bring; fields as there."""
+    """The part of a study that workers need: all but the values, which chunks bring; fields are those of the study."""
 
     instance: Instance
     keys: tuple[Key, ...]
@@ -157,31 +157,31 @@ class Task:
 
 
 CODE = ("satsym.studies.chunks", "satsym.studies.asked", "satsym.studies.branches")
-"""Modules whose code, with all that it imports, decides the results."""
+"""Modules whose code, with all that it imports, determines the results."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Rows that are computed one after the other, in an order that they alone decide."""
+    """Rows that are computed one after the other, in an order that depends on them alone."""
 
     number: int
     start: int
     values: Array
-    """Shape (rows, keys)."""
+    """Values of the varied numbers, shape (rows, keys)."""
 
     @property
     def order(self) -> list[int]:
-        """Places of the rows, neighbours after each other."""
+        """Return the places of the rows, ordered so that neighbours follow each other."""
         return list(chain(self.values))
 
     def apart(self) -> Iterator[Chunk]:
-        """Each of its rows alone."""
+        """Return a chunk for each of the rows."""
         for k in range(len(self.values)):
             yield Chunk(self.number, self.start + k, self.values[k : k + 1])
 
 
 def keys_of(task: Task, instances: Iterable[Instance]) -> list[str]:
-    """What the results of rows depend on, as a short text each."""
+    """Return for each row a short text of everything that its result depends on."""
     base, known = task.instance, _parts(task.instance)
     found = []
     for one in instances:
@@ -194,7 +194,7 @@ def keys_of(task: Task, instances: Iterable[Instance]) -> list[str]:
 
 
 def differences(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
-    """What differs between two identities, in a few words each."""
+    """Describe the differences between two identities, in a few words each."""
     found = []
     for name in (*before, *(name for name in now if name not in before)):
         old, new = before.get(name), now.get(name)
@@ -205,7 +205,7 @@ def differences(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
 
 
 def model_digest(kernels: Kernels) -> str:
-    """A digest of the generated module that kernels come from."""
+    """Return a digest of the generated module that kernels come from."""
     if kernels.text is not None:
         return hashlib.sha256(kernels.text.encode()).hexdigest()[:32]
     module = next(iter(kernels.functions.values())).__code__.co_filename
@@ -213,7 +213,7 @@ def model_digest(kernels: Kernels) -> str:
 
 
 def _parts(instance: Instance) -> dict[str, str]:
-    """The numbers and options of an instance, each as text."""
+    """Return the numbers and options of an instance, each as text."""
     names = (each.name for each in fields(instance) if each.name not in PLACES)
     return {name: repr(_plain(getattr(instance, name))) for name in names}
 

@@ -1,4 +1,4 @@
-"""A study from an instance, its ``[study]`` table, and what is said besides."""
+"""Construction of a study from an instance, its ``[study]`` table, and options of the command line or of Python."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OF_COMMANDS = {
     "feedback": (Command.SIMULATE,),
     "trajectories": (Command.SOLVE, Command.SIMULATE),
 }
-"""Options, and the commands that have them."""
+"""Options with the commands that have them."""
 
 
 def asked(
@@ -36,7 +36,7 @@ def asked(
     subject: str = "",
     settings: Mapping[str, float] = MappingProxyType({}),
 ) -> Study:
-    """A study, every part of it checked.
+    """Return a study after checks of every part of it.
 
     Parameters
     ----------
@@ -86,11 +86,11 @@ def asked(
 
 
 FEWEST_ROWS_COMPILED = 1000
-"""Rows from which on machine code is made, or read, without anybody asking for it."""
+"""Number of rows from which on code is compiled without being requested."""
 
 
 def _worth_compiling(study: Study) -> bool:
-    """Whether so many rows are solved together that compiling pays, where there is a compiler."""
+    """Tell whether enough rows are solved together for compilation to pay, and a compiler is installed."""
     from satsym.kernels.batch.compiling import able
 
     if study.design.count < FEWEST_ROWS_COMPILED or study.command is not Command.SOLVE or not able():
@@ -101,7 +101,7 @@ def _worth_compiling(study: Study) -> bool:
 
 
 def named(written: Written) -> str | None:
-    """How a command line names an instance; ``None`` where its tables are not those of a file."""
+    """Return the name of an instance on the command line; ``None`` where its tables are not those of a file."""
     if written.model is not None:
         return None
     shipped = written.path == instances.files.SHIPPED / f"{written.name}.toml"
@@ -114,7 +114,7 @@ def named(written: Written) -> str | None:
 
 
 def _option(name: str, command: Command, given: StudyTable, stated: StudyTable) -> Any:
-    """What is said of an option, but for what the table says of another command than the one that was asked for."""
+    """Return an option, from the call or from the table, unless the table is about another command."""
     fitting = command in OF_COMMANDS[name]
     for table, binding in ((given, True), (stated, given.command in (None, stated.command))):
         value = getattr(table, name)
@@ -127,7 +127,7 @@ def _option(name: str, command: Command, given: StudyTable, stated: StudyTable) 
 
 
 def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
-    """Refuse what no row can have."""
+    """Refuse requests that no row can fulfil."""
     spec = case.model.spec
     if command is Command.SOLVE:
         if not spec.has_cost:

@@ -1,14 +1,13 @@
-"""Branches: neighbouring rows of a grid whose answers belong together, and rows that have a cheaper answer beside them.
+"""Branches: rows of a grid whose answers belong to one family of extremals, and rows with a cheaper answer beside them.
 
 A problem with several minima has several families of extremals. Rows are solved in chunks that know nothing of each
 other, so one may have the answer of a family that is not the cheapest there, and its neighbour that of another. Where
-costs or costates jump from one row to the next, each of the two is solved once more from the other's answer: it comes
-to its own answer, then nothing jumps, or to another, which is taken where it is a minimum and costs less. A row that
-has changed may jump against its other neighbours, so this is done in rounds. What a round does depends on what the one
-before came to alone, and on no order of its comparisons.
-
-Rows that all follow one family jump nowhere. So three of them are solved before, from cold starts and with competitors,
-and what is cheaper there goes on to its neighbours in the same way.
+costs or costates jump from one row to the next, each of the two is solved once more from the other's answer: either it
+finds its own answer again, and the jump is only apparent, or another one, which replaces it where it is a minimum and
+costs less. A row that has changed may jump against its other neighbours, so this is repeated in rounds. A round depends
+on the result of the one before alone, and not on the order of its comparisons. Rows that all follow one family jump
+nowhere. So three of them are solved beforehand from cold starts and with competitors, and a cheaper answer there is
+passed on to neighbours in the same way.
 """
 
 from __future__ import annotations
@@ -40,28 +39,29 @@ from satsym.studies.solving import SINGLE_ORIGIN, certified, drawn_for_competito
 from satsym.studies.together import CLOSED, plain
 
 FEWEST_ROWS_OF_JUMP, MOST_ROWS = 4, 100_000
-"""Rows on a line in which one may jump against the trend, and rows of a study that is looked through."""
+"""Least number of rows on a line for a jump to be recognised, and largest number of rows of an examined study."""
 
 JUMP, ROUNDING = 4.0, 1e-6
-"""How many times what rows nearby change by is a jump, and the share of the largest value that is none."""
+"""Ratio of a change to nearby changes that makes it a jump, and the fraction of the largest value below which it is
+none."""
 
 RELATIVE_GAP = 1e-6
-"""Relative difference of costs and of costates of one extremal."""
+"""Largest relative difference of costs and of costates of one extremal."""
 
 SAMPLES, ACCURACY = 61, 1e-8
-"""Nodes, and largest error, of a neighbour's trajectory from which a row starts: it is only an initial guess."""
+"""Number of nodes, and largest error, of a neighbour's trajectory that serves as an initial guess."""
 
 ORIGIN = "neighbour's branch"
-"""The origin of answers that were found from a neighbour's, because they cost less."""
+"""The recorded origin of answers that were found from a neighbour's, because they cost less."""
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What is known of an answered row: enough to start from it."""
+    """The part of a row's answer that is needed to start from it."""
 
     number: int
     values: tuple[float, ...]
-    """Values of what the study varies."""
+    """Values of the varied numbers."""
     key: str
     cost: float
     """Cost of the answer, as it is minimised."""
@@ -72,7 +72,7 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two neighbours between which something jumps."""
+    """Two neighbouring rows between which costs or costates jump."""
 
     first: Known
     second: Known
@@ -80,24 +80,24 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Scout:
-    """A row that is solved from a cold start."""
+    """A row that is solved again from a cold start."""
 
     own: Known
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What a comparison of two neighbours came to."""
+    """The result of comparing two neighbours."""
 
     one: bool
-    """Whether both are of one branch."""
+    """Whether both rows are of one branch."""
     first: Row | None
     second: Row | None
-    """The cheaper answers that they have from each other."""
+    """The cheaper answers of both rows, found from each other's."""
 
 
 def looked_for(study: Study) -> bool:
-    """Whether rows have neighbours, and can be solved from these: smooth problems on a grid with enough rows."""
+    """Tell whether branches are searched: in smooth problems on a grid with enough rows."""
     grid = (
         isinstance(study.design, Grid)
         and max(study.design.shape) >= FEWEST_ROWS_OF_JUMP
@@ -108,7 +108,7 @@ def looked_for(study: Study) -> bool:
 
 @dataclass(eq=False)
 class Branches:
-    """The rows of a study as they are known so far, and which of their neighbours are of other branches.
+    """The rows of a study with their answers so far, and which neighbours are of different branches.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Branches:
 
     @classmethod
     def of(cls, study: Study, found: Iterator[tuple[int, list[float], Row]]) -> Branches:
-        """Collect the branches of a study from rows as they were computed: number, values, and result."""
+        """Collect the branches of a study from its computed rows: number, values, and result."""
         known, closed = dict[int, Known](), set[int]()
         for number, values, row in found:
             if one := _known(study, number, values, row):
@@ -135,7 +135,7 @@ class Branches:
         return cls(study, known, closed)
 
     def pairs(self) -> list[Pair]:
-        """Neighbours between which something jumps, and which were not compared as they are now; in order."""
+        """Return the neighbours between which something jumps and that are still to be compared, in order."""
         found = []
         for before, after in self._jumps():
             pair = Pair(self.known[before], self.known[after])
@@ -145,16 +145,16 @@ class Branches:
         return found
 
     def scouts(self) -> list[Scout]:
-        """The first, the middle and the last answered row, from which other minima are sought.
+        """Return the first, the middle and the last answered row, from which other minima are sought.
 
-        Rows that are answered in closed form are left out, because they have a single minimum.
+        Rows answered in closed form are left out, because they have a single minimum.
         """
         numbers = [number for number in self.known if number not in self.closed]
         places = sorted({0, len(numbers) // 2, len(numbers) - 1}) if numbers else []
         return [Scout(self.known[numbers[place]]) for place in places]
 
     def enter(self, pairs: Sequence[Pair], results: Sequence[Compared]) -> None:
-        """What comparisons came to."""
+        """Enter the results of comparisons."""
         for pair, result in zip(pairs, results, strict=True):
             self._compared[pair.first.number, pair.second.number] = pair.first, pair.second, result.one
         both = [
@@ -175,12 +175,12 @@ class Branches:
 
     @property
     def borders(self) -> int:
-        """How many neighbours are of different branches."""
+        """Count the pairs of neighbours of different branches."""
         return len(list(self._jumps()))
 
     @cached_property
     def labels(self) -> dict[int, int]:
-        """The branch of each answered row, from 1 in the order of their first rows. To be asked for at the end."""
+        """Return the branch of each answered row, numbered from 1 by first rows; only valid after all comparisons."""
         above = {number: number for number in self.known}
 
         def top(number: int) -> int:
@@ -198,7 +198,7 @@ class Branches:
         return {number: tops[top(number)] for number in sorted(above)}
 
     def _jumps(self) -> Iterator[tuple[int, int]]:
-        """Numbers of neighbours between which something jumps, but for those that were found to be of one branch."""
+        """Return the neighbours between which something jumps, except those found to be of one branch."""
         for line in self._lines():
             seen = np.array([(self.known[k].cost, *self.known[k].costates) for k in line])
             for place in np.flatnonzero(jumping(np.array(self._places(line)), seen)).tolist():
@@ -213,7 +213,7 @@ class Branches:
             yield from pairwise(line)
 
     def _lines(self) -> Iterator[list[int]]:
-        """Numbers of the answered rows of each line of the grid, axis by axis."""
+        """Return the numbers of answered rows on each line of the grid, axis by axis."""
         assert isinstance(self.study.design, Grid)
         numbers = np.arange(self.study.design.count).reshape(self.study.design.shape)
         for axis in range(numbers.ndim):
@@ -221,14 +221,14 @@ class Branches:
                 yield [number for number in line if number in self.known]
 
     def _places(self, line: Sequence[int]) -> list[float]:
-        """Where rows are on their line, in steps."""
+        """Return the places of rows on their line, in steps."""
         assert isinstance(self.study.design, Grid)
         places = np.array(np.unravel_index(np.array(line, dtype=int), self.study.design.shape))
         return [float(step) for step in np.abs(places - places[:, :1]).sum(axis=0)] if line else []
 
 
 def jumping(places: Array, values: Array) -> NDArray[np.bool_]:
-    """Between which rows of a line something changes far more than nearby, shape (rows - 1,).
+    """Tell between which rows of a line a quantity changes far more than nearby, shape (rows - 1,).
 
     Parameters
     ----------
@@ -255,20 +255,20 @@ NOTHING = Compared(False, None, None)
 
 @dataclass(frozen=True, eq=False)
 class Some(Generic[What]):
-    """Some comparisons for one worker, in the shape of a chunk."""
+    """Some comparisons for one worker, in the form of a chunk."""
 
     number: int
     of: tuple[What, ...]
 
 
 AT_A_TIME = 4
-"""Comparisons that a worker is given."""
+"""Number of comparisons that a worker gets at a time."""
 
 
 def followed(study: Study, found: Iterator[tuple[int, list[float], Row]], executor: Executor) -> Branches:
-    """All rows compared with their neighbours as often as anything jumps between them, at most once a row on average.
+    """Compare rows with their neighbours as often as something jumps, at most once a row on average.
 
-    A comparison whose worker dies comes to nothing, like one from which nothing follows.
+    A comparison whose worker dies has no result, and changes nothing.
 
     Parameters
     ----------
@@ -292,13 +292,16 @@ def followed(study: Study, found: Iterator[tuple[int, list[float], Row]], execut
 
 
 def all_compared(packed: bytes, group: Some[Pair]) -> list[Compared]:
-    """What a worker does with some pairs."""
+    """Compare some pairs; called in a worker."""
     task = chunks.unpacked(packed)
     return [compared(task, pair) for pair in group.of]
 
 
 def scouted(packed: bytes, group: Some[Scout]) -> Row | None:
-    """What a worker does with a scout: the answer from a cold start, if that is a minimum and costs less."""
+    """Solve a row from a cold start; called in a worker.
+
+    The answer counts if it is a minimum and costs less.
+    """
     task, own = chunks.unpacked(packed), group.of[0].own
     found = tried(partial(solvers.solve, keys.at(task.instance, task.keys, own.values)))
     if found is None or not found.status.answered or not own.cost - found.objective > RELATIVE_GAP * abs(own.cost):
@@ -314,7 +317,7 @@ def _result(future: Future[Result]) -> Result | None:
 
 
 def compared(task: Task, pair: Pair) -> Compared:
-    """Both rows of a pair from each other's answers, the second only if the first does not come to its own."""
+    """Solve both rows of a pair from each other's answers, the second only if the first changes."""
     first, second = (keys.at(task.instance, task.keys, one.values) for one in (pair.first, pair.second))
     found = _again(task, pair.first, first, pair.second, second)
     if isinstance(found, bool) and found:
@@ -325,7 +328,7 @@ def compared(task: Task, pair: Pair) -> Compared:
 
 
 def _again(task: Task, own: Known, instance: Instance, other: Known, theirs: Instance) -> Row | bool:
-    """A row from its neighbour's answer: a cheaper minimum; or else whether it is its own answer."""
+    """Solve a row from its neighbour's answer; return a cheaper minimum, or whether its own answer was found."""
     try:
         start = _guess(theirs, other)
     except FAILURES:
@@ -349,7 +352,7 @@ def _again(task: Task, own: Known, instance: Instance, other: Known, theirs: Ins
 
 
 def _row(task: Task, own: Known, instance: Instance, found: Solution, origin: str) -> Row | None:
-    """A row with a solution that is a minimum; ``None`` for another."""
+    """Return a row with a solution that is a minimum; ``None`` for another solution."""
     if found.certificate is None or found.certificate.verdict not in (Verdict.LOCAL_MINIMUM, Verdict.CERTIFIED):
         return None
     certificate = None if task.checked is Checked.NONE else found.certificate
@@ -362,7 +365,7 @@ def _solved(instance: Instance, full: bool) -> Solution:
 
 
 def _guess(instance: Instance, known: Known) -> Guess:
-    """The motion of an answer, from its costates at the start."""
+    """Return the motion of an answer, integrated from its initial costates."""
     model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
     n, names = len(instance.initial), model.spec.state_names
 
@@ -380,7 +383,7 @@ def _guess(instance: Instance, known: Known) -> Guess:
 
 
 def _known(study: Study, number: int, values: list[float], row: Row) -> Known | None:
-    """What is known of a row; ``None`` where it has no answer."""
+    """Return the part of a row's answer that others start from; ``None`` where it has no answer."""
     spec = study.instance.model.spec
     costates = [row.numbers.get(f"costate_initial.{name}") for name in spec.state_names]
     found = [row.numbers.get(Column.OBJECTIVE), row.numbers.get(Column.T_FINAL), *costates]

@@ -1,4 +1,4 @@
-"""What a worker does with a chunk of a study; it keeps what all chunks of a study share."""
+"""Computation of a chunk in a worker, which caches what all chunks of a study share."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.studies.rows import Cases, Failure, Row, Work
 
 
 def computed(packed: bytes, chunk: Chunk) -> list[Row]:
-    """The rows of a chunk, in their order in the study.
+    """Compute the rows of a chunk, in their order in the study.
 
     Parameters
     ----------
@@ -33,19 +33,19 @@ def computed(packed: bytes, chunk: Chunk) -> list[Row]:
 
 
 def pack(study: Study) -> bytes:
-    """What workers need to know of a study, as bytes that any of them can unpack."""
+    """Return what workers need of a study as bytes that any of them can unpack."""
     return pickle.dumps(study.task)
 
 
 @lru_cache(maxsize=4)
 def unpacked(packed: bytes) -> Task:
-    """A study from the bytes that :func:`pack` makes of it."""
+    """Return a study from the bytes that :func:`pack` makes."""
     found: Task = pickle.loads(packed)
     return found
 
 
 def _instance(task: Task, values: Sequence[float]) -> Instance | str:
-    """The instance of a row, or why there is none."""
+    """Return the instance of a row, or the reason why there is none."""
     try:
         return keys.at(task.instance, task.keys, tuple(values))
     except BadInput as error:
@@ -53,7 +53,7 @@ def _instance(task: Task, values: Sequence[float]) -> Instance | str:
 
 
 def begun(task: Task) -> Work:
-    """The work of a chunk from its beginning: the same whatever the worker has done before."""
+    """Return the function that computes a chunk, independent of what the worker computed before."""
     if task.command is Command.SOLVE:
         from satsym.studies.solving import solving
 
@@ -74,7 +74,7 @@ def _simulating(task: Task) -> Work:
 
 
 def _regulated(cases: Cases) -> list[Row]:
-    """All regulators at once, and one by one those that are not clear."""
+    """Design all regulators at once, and unclear cases one by one."""
     from satsym.analysis.regulator.many import regulators
 
     instances = [instance for _, instance in cases]
@@ -93,7 +93,7 @@ def _regulated(cases: Cases) -> list[Row]:
 
 
 def _designed(key: str, instance: Instance) -> Row:
-    """One regulator by itself."""
+    """Design the regulator of a single row."""
     from satsym.analysis.regulator.feedback import designed
 
     instance.require_numbers()

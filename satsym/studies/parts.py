@@ -1,8 +1,8 @@
-"""Chunks of a study that are done, in two files to which each is appended: rows as lines, trajectories as arrays.
+"""Saved chunks of a study, in two files that grow: rows as lines, trajectories as arrays.
 
-A line holds a chunk, the study that it is of and a digest of itself, and is written after the arrays of its chunk; both
-are flushed to the disk before the chunk counts. Whatever ends the process in between leaves a tail that nobody counts,
-which is cut off before more is appended.
+A line holds a chunk, a digest of its study and a digest of itself, and is written after the arrays of its chunk; both
+are flushed to the disk before the chunk counts. Whatever ends the process in between leaves an incomplete tail, which
+does not count and is cut off before more is appended.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from satsym.studies.rows import PASSING, Row
 from satsym.wording import printable
 
 LINES, ARRAYS = "parts.jsonl", "parts.npz"
-"""The two files, while a study is under way."""
+"""Names of the two files while a study is computed."""
 
 DIGEST = 16
-"""Letters of the digest that begins a line."""
+"""Number of letters of the digest that begins a line."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where the line of a chunk begins."""
+    """The place where the line of a chunk begins."""
 
     line: int
     size: int
@@ -42,7 +42,7 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A chunk, read back."""
+    """A chunk that was read back."""
 
     number: int
     start: int
@@ -50,7 +50,7 @@ class Part:
 
 
 class Parts:
-    """The files of a folder, opened by :func:`opened`.
+    """The two files of a folder; see :func:`opened`.
 
     Parameters
     ----------
@@ -75,9 +75,10 @@ class Parts:
         self.failures = self.rows = 0
 
     def recover(self) -> None:
-        """Find what counts, and cut off what was not written whole.
+        """Find the complete chunks, and cut off an incomplete tail.
 
-        Chunks with rows that lost their workers or ran out of time do not count: another day they may be answered.
+        Chunks with rows that lost their workers or ran out of time do not count, since they may be answered in another
+        run.
 
         Raises
         ------
@@ -105,7 +106,7 @@ class Parts:
             stream.seek(size)
 
     def append(self, number: int, start: int, rows: Sequence[Row]) -> None:
-        """Keep a chunk; it counts once this returns.
+        """Save a chunk; it counts once this returns.
 
         Raises
         ------
@@ -129,7 +130,7 @@ class Parts:
         self._count(entry["rows"])
 
     def read(self, number: int) -> Part:
-        """A chunk that counts."""
+        """Read a saved chunk."""
         self._lines.seek(self.done[number].line)
         found = _decoded(self._lines.readline())
         if found is None:
@@ -140,11 +141,11 @@ class Parts:
         return Part(found["chunk"], found["start"], rows)
 
     def size(self, number: int) -> int:
-        """Bytes of the trajectories of the chunk with this number."""
+        """Return the bytes of the trajectories of the chunk with this number."""
         return self.done[number].size
 
     def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
-        """Trajectories of a chunk by the place of their row in it, each as arrays by name."""
+        """Return the trajectories of a chunk by the place of their row in it, each as arrays by name."""
         self._lines.seek(self.done[number].line)
         found = _decoded(self._lines.readline())
         if found is None or not found["arrays"][1]:
@@ -164,7 +165,7 @@ class Parts:
 
 @contextmanager
 def opened(folder: Path, study: str) -> Iterator[Parts]:
-    """The parts in a folder, none at first; no other process can open them meanwhile.
+    """Open the saved chunks of a folder, none in a new one; no other process can open them meanwhile.
 
     Parameters
     ----------
@@ -184,13 +185,13 @@ def opened(folder: Path, study: str) -> Iterator[Parts]:
 
 
 def remove(folder: Path) -> None:
-    """Once all is merged: the arrays first, for lines say which there were."""
+    """Remove the files after all chunks are merged: the arrays first, since the lines state which there were."""
     for name in (ARRAYS, LINES):
         (folder / name).unlink(missing_ok=True)
 
 
 def _lock(stream: IO[bytes], folder: Path) -> None:
-    """Taken for as long as the file is open; without effect where the system has no such locks."""
+    """Lock a file for as long as it is open; without effect where the system has no such locks."""
     try:
         import fcntl
     except ImportError:
@@ -211,7 +212,7 @@ def _encoded(entry: Mapping[str, Any]) -> bytes:
 
 
 def _decoded(line: bytes) -> dict[str, Any] | None:
-    """What a line holds; ``None`` for one that is not whole."""
+    """Return the contents of a line; ``None`` for an incomplete one."""
     digest, _, text = line.rstrip(b"\n").partition(b" ")
     if not line.endswith(b"\n") or digest != _digest(text):
         return None

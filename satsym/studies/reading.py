@@ -1,4 +1,4 @@
-"""What a study varies: as a user writes it, for the command line or a ``[study]`` table, as a grid or a sample."""
+"""Reading of what a study varies, from the command line or a ``[study]`` table: a grid or a sample."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PAIR = {"normal": "MEAN,SD, such as 1.1,0.01", "uniform": "LOW,HIGH, such as 0.9
 
 
 def design(asked: StudyTable, instance: Instance) -> Design:
-    """What a study varies, checked against an instance.
+    """Return the grid or sample of a study, checked against an instance.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _sample(asked: StudyTable, distributions: tuple[Distribution, ...]) -> Sampl
 
 
 def _value(key: Key, text: str, instance: Instance) -> float:
-    """A value, which the instance can have while all else stays as it is."""
+    """Return a value that the instance can have with all other numbers unchanged."""
     value = key.value(_number(text, key), instance.model.spec)
     try:
         keys.at(instance, (key,), (value,))
@@ -110,7 +110,7 @@ def _value(key: Key, text: str, instance: Instance) -> float:
 
 
 def _number(text: str, key: Key) -> float | str:
-    """A finite number, or text with a unit."""
+    """Return a finite number, or a text with a unit."""
     try:
         number = float(text)
     except ValueError:
@@ -134,7 +134,7 @@ def _count(text: str, place: str) -> int:
 
 
 def read_pairs(entries: Sequence[str], option: str) -> dict[str, str]:
-    """``KEY=VALUE`` arguments of an option."""
+    """Read ``KEY=VALUE`` arguments of an option."""
     wanted = {"vary": RANGE, "set": "VALUE, such as initial.r=1.05", **PAIR}[option]
     found: dict[str, str] = {}
     for entry in entries:
@@ -148,7 +148,7 @@ def read_pairs(entries: Sequence[str], option: str) -> dict[str, str]:
 
 
 def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
-    """What ``--set KEY=VALUE`` gives, by key, in the model's units.
+    """Return the values of ``--set KEY=VALUE`` by key, in the model's units.
 
     Raises
     ------
@@ -165,12 +165,12 @@ def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
 
 
 ROUNDING = 1e-15
-"""Share of the largest value of a grid by which rounding moves another one."""
+"""Fraction of the largest value of a grid by which rounding may change another value."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of one key, evenly spaced, or so in their logarithms."""
+    """Values of one key, evenly spaced, linearly or in their logarithms."""
 
     key: Key
     low: float
@@ -180,7 +180,7 @@ class Axis:
 
     @cached_property
     def values(self) -> Array:
-        """Values of the number that varies, in order; the ends exactly."""
+        """Return the values in order, with both ends exact."""
         if self.logarithmic:
             found = np.exp(np.linspace(math.log(self.low), math.log(self.high), self.count))
         else:
@@ -198,32 +198,32 @@ def _decimal(value: float, size: float) -> float:
 
 @dataclass(frozen=True)
 class Grid:
-    """Every combination of the values of some axes, those of the last one varying first."""
+    """All combinations of the values of some axes; the last axis varies fastest."""
 
     axes: tuple[Axis, ...]
 
     @property
     def keys(self) -> tuple[Key, ...]:
-        """What varies."""
+        """Return the keys that vary."""
         return tuple(axis.key for axis in self.axes)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Numbers of values."""
+        """Return the number of values of each axis."""
         return tuple(axis.count for axis in self.axes)
 
     @property
     def count(self) -> int:
-        """Rows."""
+        """Return the number of rows."""
         return math.prod(self.shape)
 
     def rows(self, start: int, stop: int) -> Array:
-        """Values of some rows, shape (stop - start, keys)."""
+        """Return the values of some rows, shape (stop - start, keys)."""
         places = np.unravel_index(np.arange(start, stop), self.shape)
         return np.stack([axis.values[place] for axis, place in zip(self.axes, places, strict=True)], axis=-1)
 
     def stated(self) -> dict[str, str]:
-        """Values that vary, by key, as the command line has them."""
+        """Return the varied values by key, as the command line states them."""
         return {
             f"vary {axis.key.text}": f"{'log:' if axis.logarithmic else ''}{axis.low!r}:{axis.high!r}:{axis.count}"
             for axis in self.axes
@@ -237,11 +237,11 @@ class Distribution:
     key: Key
     first: float
     second: float
-    """Mean and standard deviation, or both ends."""
+    """Mean and standard deviation, or both ends of the interval."""
     normal: bool
 
     def quantiles(self, shares: Array) -> Array:
-        """Values below which lie these shares of it."""
+        """Return the quantiles of the distribution at some probabilities."""
         if not self.normal:
             return self.first + (self.second - self.first) * shares
         from scipy.special import ndtri
@@ -260,12 +260,12 @@ class Sample:
 
     @property
     def keys(self) -> tuple[Key, ...]:
-        """What varies."""
+        """Return the keys that vary."""
         return tuple(one.key for one in self.distributions)
 
     @cached_property
     def _shares(self) -> Array:
-        """Points of the unit cube, inside it."""
+        """Return points in the open unit cube."""
         dimension = len(self.distributions)
         if self.method is Sampling.RANDOM:
             points = np.random.default_rng(self.seed).random((self.count, dimension))
@@ -282,12 +282,12 @@ class Sample:
         return np.clip(points, 2.0**-53, 1.0 - 2.0**-53)
 
     def rows(self, start: int, stop: int) -> Array:
-        """Values of some rows, shape (stop - start, keys)."""
+        """Return the values of some rows, shape (stop - start, keys)."""
         shares = self._shares[start:stop]
         return np.stack([one.quantiles(shares[:, k]) for k, one in enumerate(self.distributions)], axis=-1)
 
     def stated(self) -> dict[str, str]:
-        """Values that vary, by key, as the command line has them."""
+        """Return the varied values by key, as the command line states them."""
         found = {
             f"{'normal' if one.normal else 'uniform'} {one.key.text}": f"{one.first!r},{one.second!r}"
             for one in self.distributions
@@ -299,13 +299,13 @@ Design: TypeAlias = Grid | Sample
 
 
 def scaled(values: Array) -> Array:
-    """Rows with each column scaled to its spread, so that distances between rows mean something."""
+    """Scale each column of rows by its spread, so that distances between rows are comparable."""
     spread = np.ptp(values, axis=0) if len(values) else np.ones(values.shape[1:])
     return values / np.where(spread > 0.0, spread, 1.0)
 
 
 def chain(values: Array) -> Sequence[int]:
-    """An order of rows in which each follows the nearest one before it that is left, from the first row on."""
+    """Return an order of rows in which each follows its nearest predecessor, starting from the first row."""
     left, places = list(range(len(values))), scaled(values)
     order = [left.pop(0)] if left else []
     while left:

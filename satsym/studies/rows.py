@@ -1,4 +1,4 @@
-"""What a table says of a row: how it ended, and numbers."""
+"""Rows of a study's table: how each row ended, and its numbers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Scalar = float | str | None
 
 
 class Column(str, Enum):
-    """Columns of the table that are spoken of elsewhere."""
+    """Names of table columns that other modules refer to."""
 
     ROW = "row"
     KEY = "key"
@@ -43,11 +43,11 @@ class Column(str, Enum):
 
 
 TEXTS = (Column.KEY, Column.STATUS, Column.MESSAGE, Column.VERDICT, Column.METHOD, Column.ORIGIN)
-"""Columns that hold words; all others hold numbers."""
+"""Columns that contain texts; all others contain numbers."""
 
 
 class Failure(str, Enum):
-    """How a row may end besides the statuses of solvers."""
+    """Ways in which a row may end besides the statuses of solvers."""
 
     BAD_INPUT = "bad input"
     UNFORESEEN = "unforeseen"
@@ -55,12 +55,12 @@ class Failure(str, Enum):
 
 
 PASSING = (Failure.WORKER_DIED.value, Status.TIME_LIMIT.value)
-"""Statuses of rows that another run may answer: what they ended by is no matter of theirs, or of the clock."""
+"""Statuses that do not depend on the row itself, so that another run may answer it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A row of the table.
+    """A row of a study's table.
 
     Attributes
     ----------
@@ -82,24 +82,24 @@ class Row:
 
     @property
     def answered(self) -> bool:
-        """Whether there is an answer."""
+        """Tell whether the row has an answer."""
         return self.status == Status.CONVERGED.value
 
 
 Cases: TypeAlias = "Sequence[tuple[str, Instance]]"
-"""Keys of rows, and their instances."""
+"""The keys and the instances of some rows."""
 
 Work: TypeAlias = Callable[[Cases], list[Row]]
-"""From rows of a chunk, in the order in which they are computed, to what the table says of them."""
+"""A function from rows of a chunk, in the order of computation, to their entries in the table."""
 
 
 def one_by_one(single: Callable[[str, Instance], Row]) -> Work:
-    """The work of rows that have nothing to do with each other."""
+    """Return the function that computes independent rows one by one."""
     return lambda cases: [tried(single, key, instance) for key, instance in cases]
 
 
 def tried(single: Callable[[str, Instance], Row], key: str, instance: Instance) -> Row:
-    """What comes of a row, whatever happens: one that fails must not take others with it."""
+    """Compute a row, and turn any failure into a failed row, so that other rows are not affected."""
     try:
         return single(key, instance)
     except BadInput as error:
@@ -109,7 +109,7 @@ def tried(single: Callable[[str, Instance], Row], key: str, instance: Instance) 
 
 
 def failed(key: str, failure: Failure, message: str) -> Row:
-    """A row without an answer."""
+    """Return a row without an answer."""
     return Row(key, failure.value, " ".join(message.split()))
 
 
@@ -139,10 +139,10 @@ def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What came of M rows."""
+    """The results of M rows that were computed together."""
 
     minimum: NDArray[np.bool_]
-    """Which are what was asked for; the others are for the single solver, shape (M,)."""
+    """Whether each row has the wanted minimum, shape (M,); the single solver computes the others."""
     method: str
     origins: Sequence[str]
     costs: Array
@@ -150,11 +150,11 @@ class Found:
     t_final: Array
     x_final: Array
     costates: Array
-    """At the end and at the start, shapes (n, M)."""
+    """Final states and initial costates, shapes (n, M)."""
     switches: Array
-    """How often controls switch, shape (M,)."""
+    """Number of switches of the controls, shape (M,)."""
     unreachable: Mapping[int, str] = field(default_factory=dict)
-    """Why some have no answer: their ends cannot be reached."""
+    """Reasons why rows have no answer, where their ends cannot be reached, by row."""
 
 
 def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:
@@ -216,14 +216,14 @@ def _kept(found: Solution | Simulation, lam: Array | None) -> dict[str, Array]:
 
 
 def _found(instance: Instance) -> Iterator[tuple[str, Scalar]]:
-    """What the instance left free besides its end, as it was found."""
+    """Return the values found for the numbers that the instance left free, except those at the end."""
     for unknown in instance.free:
         name = Column.T_INITIAL.value if unknown.place is Place.TIME else f"found.{unknown.name}"
         yield name, _plain(unknown.of(instance))
 
 
 def _interval(solution: Solution) -> Iterator[tuple[str, Scalar]]:
-    """What the best objective lies between, in the author's sense, where only that is known."""
+    """Return the interval of the best objective, in the author's sense, where only that is known."""
     if solution.interval is not None:
         spec, ends = solution.instance.model.spec, (solution.interval.lower, solution.interval.upper)
         yield from zip((Column.COST_LOWER, Column.COST_UPPER), sorted(map(spec.objective, ends)), strict=True)

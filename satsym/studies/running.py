@@ -1,4 +1,4 @@
-"""Computing the chunks of a study that are missing, by any executor, and keeping each as soon as it is there."""
+"""Computation of the missing chunks of a study by any executor; each is saved as soon as it arrives."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from satsym.studies.parts import Parts
 from satsym.studies.rows import Failure, Row
 
 MOST_DEATHS = 3
-"""Workers that may die of a chunk before its rows are computed one by one, and of a row before it is given up."""
+"""Number of workers that may die of a chunk before its rows are computed singly, and of a row before it is given up."""
 
 
 @dataclass(frozen=True)
 class Advance:
-    """How far a study is.
+    """The progress of a study.
 
     Attributes
     ----------
@@ -41,12 +41,12 @@ class Advance:
 
     @property
     def rate(self) -> float:
-        """Rows a second in this run; 0 where there are none yet."""
+        """Return rows a second in this run; 0 where none is computed yet."""
         return (self.done - self.begun) / self.seconds if self.seconds > 0.0 else 0.0
 
     @property
     def left(self) -> float:
-        """Seconds to go; infinite where that is not known yet."""
+        """Return the seconds that are left; infinite where that is not known yet."""
         return (self.total - self.done) / self.rate if self.rate > 0.0 else float("inf")
 
 
@@ -63,7 +63,7 @@ def run(
     work: Work = chunks.computed,
     log: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Compute what is missing.
+    """Compute the missing chunks of a study.
 
     A chunk that workers die of is computed row by row, so that only the row they die of is lost.
 
@@ -127,14 +127,14 @@ def run(
 
 
 PAUSE = 0.5
-"""Seconds after which it is said again how far a study is, though nothing is new."""
+"""Seconds between reports of progress while nothing is new."""
 
 DEADLY = "KilledWorker"
-"""What Dask calls a task of which so many workers died that it tries no other."""
+"""Name of the error of Dask for a task of which several workers died."""
 
 
 def _result(future: Future[list[Row]]) -> list[Row] | int:
-    """The rows of a chunk, or how many workers died of it. Anything else that a worker raises is raised here."""
+    """Return the rows of a chunk, or the number of workers that died of it; raise any other error of a worker."""
     error = future.exception()
     if error is None:
         return future.result()
@@ -146,13 +146,13 @@ def _result(future: Future[list[Row]]) -> list[Row] | int:
 
 
 def _joined(apart: dict[int, dict[int, Row]], chunk: Chunk, row: Row, count: int) -> list[Row]:
-    """The rows of a chunk that is computed row by row, once all of them are there; none before."""
+    """Return the rows of a chunk that is computed row by row, once all are there; ``None`` before."""
     found = apart.setdefault(chunk.number, {})
     found[chunk.start] = row
     return [row for _, row in sorted(apart.pop(chunk.number).items())] if len(found) == count else []
 
 
 def _lost() -> Row:
-    """A row that no worker survives."""
+    """Return the row that stands for one whose workers died."""
     message = f"{MOST_DEATHS} workers died while they computed this row; --resume tries it again"
     return rows.failed("", Failure.WORKER_DIED, message)

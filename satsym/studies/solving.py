@@ -1,4 +1,4 @@
-"""Solving the rows of a chunk one after the other, each from its neighbour's answer where that is possible."""
+"""Solution of the rows of a chunk one after the other, each from its neighbour's answer where that is possible."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from satsym.studies.rows import Cases, Row, Work
 from satsym.studies.together import plain, rows_together, together
 
 ROWS_PER_COMPARISON = 100
-"""Number of rows of which about one is compared with competitors, where only a sample of them is."""
+"""Number of rows of which about one is compared with competitors, if a sample is."""
 
 SINGLE_ORIGIN = "single solver"
-"""The origin of answers that were found without their neighbours."""
+"""The recorded origin of answers that were found without neighbours."""
 
 
 def solving(task: Task) -> Work:
-    """The work of a chunk of optima."""
+    """Return the function that computes a chunk of optima."""
     if task.checked is Checked.SAMPLE:
         return lambda cases: _sampled(task, cases)
     single = _single(task)
@@ -44,7 +44,7 @@ def solving(task: Task) -> Work:
 
 
 def _sampled(task: Task, cases: Cases) -> list[Row]:
-    """All but for competitors, and then some anew with these: which ones their keys tell."""
+    """Compute rows without competitors, and those that their keys select again with competitors."""
     done = solving(_less(task, Checked.LOCAL))(cases)
     drawn = [k for k, (key, _) in enumerate(cases) if drawn_for_competitors(task.checked, key)]
     again = solving(_less(task, Checked.FULL))([cases[k] for k in drawn])
@@ -54,29 +54,29 @@ def _sampled(task: Task, cases: Cases) -> list[Row]:
 
 
 def drawn_for_competitors(checked: Checked, key: str) -> bool:
-    """Whether a row is compared with competitors: all are, a sample of them, or none."""
+    """Tell whether a row is compared with competitors: all rows are, a sample of them, or none."""
     return checked is Checked.FULL or (checked is Checked.SAMPLE and int(key, 16) % ROWS_PER_COMPARISON == 0)
 
 
 @lru_cache(maxsize=8)
 def _less(task: Task, checked: Checked) -> Task:
-    """A study with another certificate; the same one each time, for what is kept of it."""
+    """Return a study with another certificate; the same object each time, because caches depend on it."""
     return replace(task, checked=checked)
 
 
 def _single(task: Task) -> Callable[[str, Instance], Row]:
-    """A row by itself."""
+    """Return the function that computes a single row."""
     return lambda key, instance: rows.of_solution(key, alone(instance, task.checked), SINGLE_ORIGIN, task.trajectories)
 
 
 def warm(task: Task) -> bool:
-    """Whether rows may start from their neighbours: what varies leaves scales and ends as they are."""
+    """Tell whether rows may start from neighbours: the varied numbers leave scales and ends unchanged."""
     fitting = task.instance.solver.method in (methods.AUTO, "collocation")
     return fitting and plain(task) and all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
 
 
 def alone(instance: Instance, checked: Checked) -> Solution:
-    """One optimum from a cold start."""
+    """Solve one instance from a cold start."""
     if checked is Checked.FULL:
         return solvers.solve(instance)
     found = solvers.solve(instance, examined=False)
@@ -87,7 +87,7 @@ def alone(instance: Instance, checked: Checked) -> Solution:
 
 
 def certified(solution: Solution) -> Solution:
-    """An answer with all of its certificate but competitors."""
+    """Return an answer with its certificate, without competitors."""
     from satsym.solvers.certificate import certify
 
     if not solution.status.answered or not methods.METHODS[solution.method].certified:
@@ -97,14 +97,14 @@ def certified(solution: Solution) -> Solution:
 
 @lru_cache(maxsize=1)
 def _repeated(task: Task) -> Repeated:
-    """The study's own instance, solved from a cold start."""
+    """Return the repeated solver of the study's own instance, solved from a cold start."""
     return Repeated(task.instance, task.compiled)
 
 
 def _from_neighbours(task: Task, repeated: Repeated, single: Callable[[str, Instance], Row], cases: Cases) -> list[Row]:
-    """Each from the last answer, the first of a chunk from that of the study's own instance.
+    """Solve each row from the last answer, the first one from that of the study's own instance.
 
-    What leads to no minimum is left to the single solver.
+    A row that does not lead to a minimum is left to the single solver.
     """
     from satsym.solvers.certificate import certify
 
@@ -128,7 +128,7 @@ def _from_neighbours(task: Task, repeated: Repeated, single: Callable[[str, Inst
 
 
 def _again(repeated: Repeated, instance: Instance) -> tuple[Solution, str] | None:
-    """The answer near the last one, and from where it was found."""
+    """Return the answer near the last one, and from which row it was found."""
     try:
         answer = repeated.solve(instance.initial, instance.parameters)
         if not answer.status.answered:

@@ -1,4 +1,4 @@
-"""Solving the rows of a chunk as columns of arrays; what does not end in a minimum is left to the single solver."""
+"""Solution of the rows of a chunk together, as columns of arrays; rows without a minimum go to the single solver."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
 
 NEIGHBOUR, LINE, CLOSED, REACHABLE = "nearest answer", Origin.STRAIGHT_LINE.value, "closed form", "reachable set"
 UNBOUNDED = "answer without bounds"
-"""The origin of answers: the nearest one, a line between the ends, a formula, what is reached in less time, or the same
+"""The recorded origins of answers: the nearest answer, a line between the ends, a formula, a faster motion, or the same
 row's answer without bounds."""
 
 WIDEST = 1e9
-"""In place of bounds that there are none."""
+"""The number that replaces infinite bounds."""
 
 SHOOTING, LINEAR, SWITCHING = "shooting", "linear", "bang-bang"
-"""The methods by which rows are solved together."""
+"""The names of the methods by which rows are solved together."""
 
 
 Together = Callable[[Task, Sequence[Instance]], Found]
 
 
 def together(task: Task) -> Together | None:
-    """How rows are solved as columns of arrays; ``None`` where they are not: never where trajectories are kept."""
+    """Return how rows are solved as columns of arrays; ``None`` where they are not, as with saved trajectories."""
     stays = all(key.table is not Table.TIME for key in task.keys)
     wanted = task.command is Command.SOLVE and task.checked is not Checked.FULL and not task.trajectories
     if not (wanted and stays):
@@ -50,7 +50,7 @@ def together(task: Task) -> Together | None:
 
 
 def rows_together(task: Task, solve: Together, single: Callable[[str, Instance], Row], cases: Cases) -> list[Row]:
-    """All at once, and one by one what does not end in a minimum beyond doubt."""
+    """Solve all rows at once, and one by one those that do not clearly end in a minimum."""
     if not cases:
         return []
     found = solve(task, [instance for _, instance in cases])
@@ -68,9 +68,10 @@ def rows_together(task: Task, solve: Together, single: Callable[[str, Instance],
 
 
 def _alone(single: Callable[[str, Instance], Row], cases: Cases, answered: Sequence[Instance]) -> list[Row]:
-    """Each by itself, those with the widest bounds first: an end that these do not reach others do not, either.
+    """Solve rows one by one, those with the widest bounds first.
 
-    What is answered within narrower bounds is known to be reached.
+    An end that these do not reach is not reached within narrower bounds. An end that is reached within narrower bounds
+    is known to be reachable.
     """
     found: dict[int, Row] = {}
     beyond: list[tuple[Instance, str]] = []
@@ -87,13 +88,13 @@ def _alone(single: Callable[[str, Instance], Row], cases: Cases, answered: Seque
 
 
 def _width(instance: Instance) -> float:
-    """A number that is no larger where bounds are narrower."""
+    """Return a number that is no larger where bounds are narrower."""
     ends = (instance.max_norm, *instance.upper, *(-low for low in instance.lower))
     return sum(min(end, WIDEST) for end in ends)
 
 
 def _narrower(instance: Instance, other: Instance) -> bool:
-    """Whether all controls of one are controls of the other, between the same ends."""
+    """Tell whether all controls of one instance are admissible in the other, between the same ends."""
     same = all(getattr(instance, name) == getattr(other, name) for name in ("initial", "final", "parameters"))
     lower, upper = zip(instance.lower, other.lower, strict=True), zip(instance.upper, other.upper, strict=True)
     within = all(own >= far for own, far in lower) and all(own <= far for own, far in upper)
@@ -101,20 +102,20 @@ def _narrower(instance: Instance, other: Instance) -> bool:
 
 
 def plain(task: Task) -> bool:
-    """Whether the problem is smooth, and nothing is asked of solvers besides."""
+    """Tell whether the problem is smooth, and without options that ask more of solvers."""
     spec = task.instance.model.spec
     smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.in_arcs)
     return smooth and _bare(task.instance) and redundant(task.instance) is None
 
 
 def _bare(instance: Instance) -> bool:
-    """Whether nothing is asked of solvers but a solution."""
+    """Tell whether the options ask solvers for nothing but a solution."""
     said = (instance.free, instance.continuation, instance.solver.free_angles, instance.guess, instance.end_limits)
     return not any(said)
 
 
 def _smooth_with_given_ends(task: Task) -> bool:
-    """Whether controls are smooth, and both ends and times given."""
+    """Tell whether controls are smooth, and both ends and times given."""
     instance = task.instance
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
     fitting = instance.solver.method in (methods.AUTO, SHOOTING, LINEAR) and instance.control_set.kind in (
@@ -125,7 +126,7 @@ def _smooth_with_given_ends(task: Task) -> bool:
 
 
 def _shot(task: Task, instances: Sequence[Instance]) -> Found:
-    """Extremals with smooth controls and given ends."""
+    """Return extremals with smooth controls and given ends, by shooting."""
     from satsym.solvers.batch import closed_form
     from satsym.solvers.batch.bounded import within_bounds
     from satsym.solvers.batch.many import Many
@@ -170,7 +171,7 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
 
 
 def _second_variation_positive(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
-    """Which are solved and minima by steps of low order, without what else makes a certificate."""
+    """Tell which rows are solved and minima by steps of low order, apart from other criteria."""
     from satsym.solvers.batch.newton import transitions
 
     found, solved = nodes.solved.copy(), np.flatnonzero(nodes.solved)
@@ -181,7 +182,7 @@ def _second_variation_positive(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
 
 
 def _confirmed(many: Many, nodes: Nodes) -> tuple[Nodes, NDArray[np.bool_]]:
-    """Which are minima beyond doubt, some of them once they are as accurate as rounding allows."""
+    """Tell which rows are clearly minima, some after refinement to the limit of rounding."""
     from satsym.solvers.batch.certificate import minima
     from satsym.solvers.batch.solving import to_rounding
 
@@ -193,7 +194,7 @@ def _confirmed(many: Many, nodes: Nodes) -> tuple[Nodes, NDArray[np.bool_]]:
 
 
 def _least_time(task: Task) -> bool:
-    """Whether the least time of a motion with switching controls to a given state is asked for."""
+    """Tell whether the problem is minimum time to a given state with switching controls."""
     from satsym.solvers.batch.switching.arrivals import applies
 
     fitting = task.instance.solver.method in (methods.AUTO, SWITCHING)
@@ -201,7 +202,7 @@ def _least_time(task: Task) -> bool:
 
 
 def _first_arrivals(task: Task, instances: Sequence[Instance]) -> Found:
-    """Solve instances of minimum time together, by exact arcs; nothing arrives earlier than these extremals."""
+    """Solve instances of minimum time together by exact arcs; no motion arrives earlier than these extremals."""
     from satsym.solvers.batch.switching.arrivals import first_arrivals
     from satsym.solvers.batch.switching.certificate import minima
 

@@ -1,6 +1,6 @@
-"""Processes that compute chunks, in the shape of ``concurrent.futures``: one that dies takes no other with it.
+"""Worker processes in the form of ``concurrent.futures``, of which one that dies does not affect the others.
 
-The workers of a Dask cluster that is there already have the same shape.
+The workers of an existing Dask cluster have the same form.
 """
 
 from __future__ import annotations
@@ -28,11 +28,10 @@ from satsym.wording import printable, shown
 
 LIBRARIES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 ONE_THREAD = dict.fromkeys(LIBRARIES, "1")
-"""Read by libraries when they are loaded: on matrices as small as ours, threads cost several times what they save."""
+"""Variables of the environment that limit libraries to one thread when they are loaded."""
 
 QUIETLY = {"PYTHONWARNINGS": "ignore:resource_tracker"}
-"""Environment of the process that outlives this one if it is killed: it removes the semaphores that are left, and would
-warn of them."""
+"""Environment of the resource tracker, which would otherwise warn of semaphores left by a killed process."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +98,7 @@ class Workers(Executor):
 
 
 def processes(wanted: int | None, chunks: int) -> int:
-    """How many processes compute so many chunks: by default one a processor that this one may use.
+    """Return the number of processes for so many chunks: by default one for each usable processor.
 
     Raises
     ------
@@ -116,7 +115,7 @@ def processes(wanted: int | None, chunks: int) -> int:
 
 
 def _begun() -> _Process:
-    """A pool whose process begins with its first call."""
+    """Return a pool whose process begins with its first call."""
     with _inherited(QUIETLY):
         ensure_running()
     context = get_context("spawn")
@@ -125,7 +124,7 @@ def _begun() -> _Process:
 
 
 def _tied(lifeline: Connection) -> None:
-    """End this process when the other end of a pipe is closed; leave it to that one to be interrupted."""
+    """End this process when the other end of a pipe is closed; only the parent reacts to interrupts."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
@@ -138,7 +137,7 @@ def _tied(lifeline: Connection) -> None:
 
 @contextmanager
 def _inherited(variables: Mapping[str, str]) -> Iterator[None]:
-    """Processes that are started in here have these variables in their environment."""
+    """Give processes that are started in this context some environment variables."""
     before = {name: os.environ.get(name) for name in variables}
     os.environ.update(variables)
     try:
@@ -153,7 +152,7 @@ def _inherited(variables: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def _main_hidden() -> Iterator[None]:
-    """Processes that are started in here do not run the user's script again, of which they need nothing."""
+    """Keep processes that are started in this context from running the user's script again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:
@@ -166,14 +165,14 @@ PATIENCE = 10.0
 """Seconds in which a scheduler has to answer."""
 
 AHEAD = 2
-"""Chunks for each thread of a worker, so that none waits for the next."""
+"""Number of chunks given to each thread of a worker, so that none waits for the next."""
 
 
 @contextmanager
 def cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    """An executor, and how many chunks to give it at a time.
+    """Return an executor on a cluster, and how many chunks to give it at a time.
 
-    Workers need satsym and share no disk: what is solved is sent to them, and rows come back.
+    Workers need satsym but share no disk: the study is sent to them, and rows come back.
 
     Parameters
     ----------
@@ -204,7 +203,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
 
 
 def _listens(address: str) -> bool:
-    """Whether anything listens there; of other protocols than TCP it is not known."""
+    """Tell whether a program listens at an address; unknown for protocols other than TCP."""
     try:
         parts = urlsplit(address if "://" in address else f"tcp://{address}")
         if parts.scheme in ("tcp", "tls"):
