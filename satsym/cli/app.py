@@ -1,4 +1,4 @@
-"""The program ``satsym``: its commands in the order in which one meets them, and what becomes of errors.
+"""The program ``satsym``: its commands in the order of their use, and the handling of errors.
 
 Commands load what they need when they run, so that ``--help`` loads nothing but click.
 """
@@ -74,7 +74,7 @@ ABOUT_THE_MACHINE = frozenset({"bench", "completion", "doctor"})
 
 
 class Commands(Mapping[str, click.Command]):
-    """A command is the function of its name in the module of its name, loaded when the command is looked up.
+    """The commands by name; each is loaded from the module of its name when it is looked up.
 
     What starts one command need not wait for all of them.
     """
@@ -99,7 +99,7 @@ def _loaded(name: str) -> click.Command:
 
 
 class Program(Explained, click.Group):
-    """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
+    """The group of commands; errors end it with an exit code or one line on stderr, never with a traceback."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options and the commands of the program."""
@@ -160,7 +160,7 @@ def _run(argv: Sequence[str] | None) -> int:
 
 
 def _failed(error: BaseException) -> int:
-    """Say in a line what ended a command; its exit code."""
+    """Report in one line the error that ended a command, and return its exit code."""
     if isinstance(error, Unheard):
         return _unheard(error)
     if isinstance(error, BadInput):
@@ -171,7 +171,7 @@ def _failed(error: BaseException) -> int:
 
 
 def _unheard(error: Unheard) -> int:
-    """What ends with whoever reads stdout: nothing more to say to a closed pipe, else one line."""
+    """Return the exit code where stdout cannot be written to, with a line unless a pipe was closed."""
     silence(sys.stdout)
     if isinstance(error.cause, BrokenPipeError):
         return CLOSED_PIPE

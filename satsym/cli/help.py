@@ -1,7 +1,7 @@
-"""The help of commands, in the language that was asked for.
+"""The help of commands, in the requested language.
 
-It is written in English where a command is. Each paragraph of it, each remark beside an example and what is said of
-each option is a text of its own, whose translation is in ``help.toml`` of that language.
+It is written in English where a command is defined. Each paragraph, each remark beside an example and the help of each
+option is a text of its own, whose translation is in ``help.toml`` of that language.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ import click
 from satsym.report.said import explained, language, message
 
 _AS_IT_IS = "\b\n"
-"""Begins paragraphs whose lines click leaves alone."""
+"""The mark of paragraphs whose lines click keeps."""
 _ENTRY = re.compile(r"(  \s*\S.*?)(?:(\s{2,})(\S.*))?")
-"""A line with an example, and what is said of it."""
+"""A line with an example and its description."""
 
 
 def texts(command: click.Command) -> Iterator[str]:
-    """All that the help of a command says, text by text."""
+    """Return all texts in the help of a command."""
     for whole in (command.help, command.epilog):
         for paragraph in _paragraphs(whole or ""):
             entries = [_ENTRY.fullmatch(line) for line in paragraph.splitlines()]
@@ -46,7 +46,7 @@ def _joined(paragraph: str) -> str:
 
 
 def translated(text: str) -> str:
-    """A docstring or an epilog, in the language asked for."""
+    """Return a docstring or an epilog in the requested language."""
     return cleandoc(text) if language() == "en" else "\n\n".join(map(_translated, _paragraphs(text)))
 
 
@@ -65,7 +65,7 @@ def _line(line: str) -> str:
 
 
 class Explained(click.Command):
-    """A command whose help is in the language asked for."""
+    """A command whose help is in the requested language."""
 
     def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write how the command is called."""
@@ -88,7 +88,7 @@ class Explained(click.Command):
                 formatter.write_dl(records)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Examples, and what else there is to know."""
+        """Write the examples and further remarks."""
         _write(formatter, self.epilog)
 
     def get_short_help_str(self, limit: int = 45) -> str:
@@ -107,12 +107,12 @@ def _write(formatter: click.HelpFormatter, text: str | None) -> None:
 
 
 def _laid_out(text: str, width: int) -> str:
-    """Paragraphs whose lines click leaves alone, as far as they fit; commands are never broken, for they are copied."""
+    """Lay out paragraphs whose lines click keeps, as far as they fit; commands are never broken, for copying."""
     return "\n\n".join(_fitting(paragraph, width) for paragraph in text.split("\n\n"))
 
 
 def _fitting(paragraph: str, width: int) -> str:
-    """What is said of entries over several lines beside them; or below them all, where they leave it little room."""
+    """Set descriptions over several lines beside their entries, or below them where there is little room."""
     lines = paragraph.splitlines()
     entries = [_ENTRY.fullmatch(line) for line in lines]
     if max(map(len, lines)) <= width:
@@ -133,12 +133,12 @@ def _fitting(paragraph: str, width: int) -> str:
 
 
 def command(epilog: str) -> Callable[[Callable[..., Any]], click.Command]:
-    """A command with such help; ``epilog`` has its examples."""
+    """Declare a command with such help; ``epilog`` has its examples."""
     return click.command(cls=Explained, epilog=epilog)
 
 
 def show_usage(error: click.ClickException) -> None:
-    """What is wrong with a command line, on stderr; the words of click are known again as those of other refusals."""
+    """Print a usage error on stderr, with click's wording translated."""
     if language() == "en":
         error.show()
         return
@@ -150,7 +150,7 @@ def show_usage(error: click.ClickException) -> None:
 
 
 def wanted_language(arguments: list[str], known: tuple[str, ...]) -> str | None:
-    """The language that a command line asks for, wherever in it: help may be asked for before that."""
+    """Return the language that a command line requests anywhere in it, since help may come before the option."""
     for before, after in pairwise([*arguments, ""]):
         name = after if before == "--lang" else before.removeprefix("--lang=")
         if name in known and name != before:

@@ -1,4 +1,4 @@
-"""Names that a shell completes, from lists of files alone; and the folder of the checkout."""
+"""Names for shell completion, from lists of files alone; and the folder of the checkout."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Completed = Callable[[click.Context, click.Parameter, str], list[CompletionItem]
 
 
 def completed(*kinds: Callable[[], Iterable[str]]) -> Completed:
-    """What completes an argument that names something of these kinds, or a file of the folder.
+    """Return the completion of an argument that names one of these kinds, or a file of the folder.
 
-    Where none fits, the shell looks for paths; names and paths together are more than bash takes.
+    Where no name fits, the shell looks for paths; bash cannot take names and paths together.
     """
 
     def complete(_context: click.Context, _argument: click.Parameter, begun: str) -> list[CompletionItem]:
@@ -32,34 +32,34 @@ def completed(*kinds: Callable[[], Iterable[str]]) -> Completed:
 
 
 def instances() -> Iterable[str]:
-    """Names of shipped instances."""
+    """Return the names of shipped instances."""
     from satsym.instance import files
 
     return files.shipped()
 
 
 def models() -> Iterable[str]:
-    """Names of shipped models."""
+    """Return the names of shipped models."""
     from satsym import source_files
 
     return source_files.models()
 
 
 def derivations() -> Iterable[str]:
-    """Names of derivation files that come with satsym."""
+    """Return the names of shipped derivation files."""
     from satsym import source_files
 
     return (path.stem for path in source_files.shipped())
 
 
 def documents() -> Iterable[str]:
-    """Names of the documents that are audited."""
+    """Return the names of the documents that are audited."""
     from satsym import source_files
 
     return (path.name for path in source_files.documents())
 
 
 def checkout() -> Path | None:
-    """The folder that holds derivations/ and generated/ as people edit them; ``None`` where satsym is installed."""
+    """Return the folder with derivations/ and generated/ of a checkout; ``None`` where satsym is installed."""
     home = Path(satsym.__file__).resolve().parent.parent
     return home if (home / "pyproject.toml").is_file() and (home / "derivations").is_dir() else None

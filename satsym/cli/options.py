@@ -1,4 +1,4 @@
-"""Arguments and options that several commands have."""
+"""Arguments and options that several commands share."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.status import BadInput
 
 
 class Place(click.Path):
-    """A path to write to or to read from; none is empty, which would be the current folder."""
+    """The type of an option for a path to write or read; the empty path, the current folder, is refused."""
 
     def __init__(self) -> None:
         super().__init__(path_type=Path)
@@ -37,17 +37,17 @@ class Place(click.Path):
 
 
 def place_option(*names: str, metavar: str, help: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """An option that takes a path."""
+    """Declare an option that takes a path."""
     return click.option(*names, metavar=metavar, type=Place(), help=help)
 
 
 class Language(click.ParamType):
-    """A language that there are texts in."""
+    """The type of an option for a language with texts."""
 
     name = "language"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The value itself.
+        """Return the value, if it is a language.
 
         Raises
         ------
@@ -100,7 +100,7 @@ _verbose = click.option(
 
 
 def shared_options(command: Any) -> Any:
-    """Options of every command."""
+    """Add the options that all commands have."""
     return _quiet(_verbose(language_option(command)))
 
 
@@ -127,7 +127,7 @@ set_option = click.option(
 
 
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Whether to draw and how, as ``look``, for a command, whose results go into a folder of its name."""
+    """Add the options of pictures, as ``look``, to a command with results in a folder of its name."""
     drawn = click.option(
         "--plot", is_flag=True, help=f"Draw pictures as well. Without --out, all files go into results/NAME/{command}."
     )
@@ -145,7 +145,7 @@ def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., A
 
 
 def look_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """How pictures look, as ``look``, for a command that does nothing but draw."""
+    """Add the options of how pictures look, as ``look``, to a command that only draws."""
 
     @functools.wraps(function)
     def called(*, formats: tuple[str, ...], size: str | None, untitled: bool, **arguments: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The one writer: data to stdout; complaints and live progress to stderr, the latter on a terminal only."""
+"""The only writer of output: data to stdout; complaints and live progress to stderr, progress only on a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.report import said
 
 
 class Voice(Enum):
-    """How much is said."""
+    """How much output the user wants."""
 
     QUIET = "quiet"
     NORMAL = "normal"
@@ -25,11 +25,11 @@ class Voice(Enum):
 
 
 VOICE: ContextVar[Voice] = ContextVar("voice", default=Voice.NORMAL)
-"""How much is printed in one run, as it was asked for."""
+"""How much is printed in the current run."""
 INTERVAL = 0.1
-"""Seconds between two states of the live line."""
+"""Seconds between two updates of the live line."""
 MOST_PROGRESS_LINES, SHORTEST_PROGRESS_INTERVAL, LONGEST_PROGRESS_INTERVAL = 10, 5.0, 60.0
-"""Progress where lines stay: how many there are, and the least and the most seconds between two."""
+"""Largest number of permanent progress lines, and the least and the largest number of seconds between two."""
 
 
 def emit(text: str) -> None:
@@ -44,7 +44,7 @@ def emit(text: str) -> None:
 
 
 def tell(text: str) -> None:
-    """Print a text for people, unless they want to hear nothing."""
+    """Print a text for people, unless output is to be quiet."""
     if VOICE.get() is not Voice.QUIET:
         emit(text)
 
@@ -57,7 +57,7 @@ def emit_json(value: Mapping[str, Any]) -> None:
 
 
 def answer(as_json: bool, value: Mapping[str, Any], text: Callable[[], str]) -> None:
-    """Write what a command found, for programs or for people, unless these want to hear nothing."""
+    """Write the result of a command, as JSON or as text for people, unless output is to be quiet."""
     if as_json:
         emit_json(value)
     elif VOICE.get() is not Voice.QUIET:  # nor need it be made
@@ -65,13 +65,13 @@ def answer(as_json: bool, value: Mapping[str, Any], text: Callable[[], str]) -> 
 
 
 def complain(message: str) -> None:
-    """One line on stderr, as far as it can be written to."""
+    """Write one line to stderr, as far as that is possible."""
     with unless_unwritable():
         _write(sys.stderr, f"satsym: {said.message(message.rstrip())}\n")
 
 
 class Unheard(Exception):
-    """Stdout cannot be written to; no OSError, of which libraries have notions of their own."""
+    """Stdout cannot be written to; not an OSError, since libraries handle those in their own ways."""
 
     def __init__(self, cause: OSError) -> None:
         super().__init__(str(cause))
@@ -80,7 +80,7 @@ class Unheard(Exception):
 
 @contextmanager
 def hearable() -> Iterator[None]:
-    """Raise :class:`Unheard` where stdout cannot be written to, whoever writes."""
+    """Raise :class:`Unheard` in this context where stdout cannot be written to, whoever writes."""
     before = sys.stdout
     if before is not None:
         sys.stdout = cast(TextIO, _Watched(before))
@@ -91,7 +91,7 @@ def hearable() -> Iterator[None]:
 
 
 class _Watched:
-    """A stream with another error for what it cannot write."""
+    """A stream that raises another error where it cannot be written to."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -114,7 +114,7 @@ class _Watched:
 
 @contextmanager
 def unless_unwritable() -> Iterator[None]:
-    """Write to stderr in here: that it cannot be written to is no reason for anything else to change."""
+    """Ignore errors of writing to stderr in this context."""
     try:
         yield
     except OSError:
@@ -122,26 +122,26 @@ def unless_unwritable() -> Iterator[None]:
 
 
 def silence(stream: TextIO) -> None:
-    """Forget what a stream has not written yet, so that nothing fails anew when the interpreter flushes it."""
+    """Discard what a stream has buffered, so that the interpreter's final flush does not fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def in_colour() -> bool:
-    """Whether stdout is a terminal whose user did not refuse colours (no-color.org)."""
+    """Tell whether stdout is a terminal whose user did not refuse colours (no-color.org)."""
     return _is_terminal(sys.stdout) and not os.environ.get("NO_COLOR")
 
 
 _PLAIN = ("ascii", "us-ascii", "ansi_x3.4-1968")
-"""Encodings of terminals that have no more than ASCII."""
+"""Encodings of terminals that have only ASCII characters."""
 _SPELT = str.maketrans({"\N{PLUS-MINUS SIGN}": "+-", "\N{HORIZONTAL ELLIPSIS}": "...", "\N{MINUS SIGN}": "-"})
-"""What is written there for signs of ours; what is in names of others is escaped."""
+"""ASCII replacements of satsym's own signs; those in other names are escaped."""
 
 
 class Live:
-    """One line on stderr that is written over and over; where stderr is no terminal nothing, but of long studies.
+    """A line on stderr that is overwritten; without a terminal only long studies report.
 
-    Who wants to hear everything has a line for each state, wherever stderr goes.
+    With verbose output each state has a line of its own, on a terminal or not.
     """
 
     def __init__(self) -> None:
@@ -155,7 +155,7 @@ class Live:
             self.replace(text)
 
     def report(self, text: str, share: float) -> None:
-        """Report a share of work that is done; where nobody sees a line change, print a line that stays now and then.
+        """Report a fraction of work done; without a terminal, print a permanent line now and then.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class Live:
                 _write(sys.stderr, f"{text}\n")
 
     def replace(self, text: str) -> None:
-        """Replace the line at once, for what is said now may stand for long."""
+        """Replace the line at once, for a state that may last."""
         if self._kept:
             self._due = time.monotonic() + INTERVAL
             with unless_unwritable():
@@ -192,7 +192,7 @@ class Live:
 
 @contextmanager
 def live() -> Iterator[Live]:
-    """A live line, which also says what takes long, and is gone at the end, whatever the end is."""
+    """Show a live line in this context, which reports slow operations and is removed at the end."""
     line = Live()
     try:
         with activity.heard(lambda what: line.replace(said.message(what))):

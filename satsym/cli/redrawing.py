@@ -1,6 +1,7 @@
-"""Pictures of what was analysed, designed or compared, found again from the instances that a result.json names.
+"""Pictures of analyses, regulators and comparisons, drawn again from the instances that a result.json names.
 
-Trajectories are read back; of these commands the numbers behind pictures are not saved, because they are soon had.
+Trajectories are read back; the numbers behind the pictures of these commands are not saved, because they are computed
+quickly.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class _File(msgspec.Struct):
 
 
 class _Of(msgspec.Struct):
-    """An instance that a result is of."""
+    """An instance that a result belongs to."""
 
     instance: str | None
     model: str | None
@@ -42,18 +43,18 @@ class _Of(msgspec.Struct):
 
 
 class _Written(_Of):
-    """What of result.json is read back."""
+    """The part of result.json that is read back."""
 
     settings: dict[str, float] = msgspec.field(name="set", default_factory=dict)
     instances: list[_Of] = []
 
 
 Drawn = tuple[dict[str, Any], str, dict[str, "Content"]]
-"""What an object about pictures begins with, a title, and the pictures."""
+"""The head of an object about pictures, a title, and the pictures."""
 
 
 def named_in(folder: Path) -> str | None:
-    """The instance or the model that the result in a folder is of, as a command takes it; ``None`` without a result.
+    """Return the instance or model of the result in a folder, as a command takes it; ``None`` without a result.
 
     Raises
     ------
@@ -68,7 +69,7 @@ def named_in(folder: Path) -> str | None:
 
 
 def redrawn(subject: str, found: Found, look: Look) -> Drawn:
-    """Pictures of a result of ``satsym analyse``, ``lqr`` or ``compare``.
+    """Draw the pictures of a result of ``satsym analyse``, ``lqr`` or ``compare`` again.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def _of_several(subject: str, written: _Written, found: Found, look: Look) -> Dr
 
 
 def _loaded(first: Instance, written: _Written) -> Iterator[Instance]:
-    """The instances by their files beside that of the first, or else by their names."""
+    """Load the instances from their files beside that of the first, or else by name."""
     for one in written.instances:
         beside = first.path.parent / (one.instance_file.name if one.instance_file else "")
         yield instance.load(str(beside) if beside.is_file() else one.instance or "")
@@ -144,7 +145,7 @@ def _loaded(first: Instance, written: _Written) -> Iterator[Instance]:
 def _require_same(
     written: _Of, given: Instance | None, model: str, found: Found, settings: dict[str, float] | None = None
 ) -> None:
-    """Refuse what is not of an instance as it stands, or not of a model."""
+    """Refuse a result of an instance that has changed since, or that is not of the model."""
     listing, own = found.folder / LIST, given.name if given else None
     more = "".join(f" --set {printable(name)}={value!r}" for name, value in (settings or {}).items())
     if (written.model, written.instance) != (model, own):

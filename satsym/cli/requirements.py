@@ -1,4 +1,4 @@
-"""What satsym says it needs, and whether the versions that are here will do."""
+"""The stated requirements of satsym, and whether the installed versions satisfy them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _CLAUSE = re.compile(r"(==|>=|<)\s*([0-9][0-9.]*)(\.\*)?")
 
 @dataclass(frozen=True)
 class Requirement:
-    """A distribution that is needed, always or for an extra, in certain versions."""
+    """A distribution that satsym requires, always or for an extra, with its versions."""
 
     name: str
     versions: str
@@ -22,7 +22,7 @@ class Requirement:
 
     @property
     def installed(self) -> str | None:
-        """The version that is here, if any."""
+        """Return the installed version, if any."""
         from importlib import metadata
 
         try:
@@ -31,7 +31,7 @@ class Requirement:
             return None
 
     def allows(self, version: str) -> bool:
-        """Whether a version will do; of the clauses only ``==``, ``>=`` and ``<`` are understood, others pass."""
+        """Tell whether a version is allowed; only the clauses ``==``, ``>=`` and ``<`` are checked."""
         return all(
             _allows(_numbers(version), operator, _numbers(limit), bool(series))
             for operator, limit, series in _CLAUSE.findall(self.versions)
@@ -44,7 +44,7 @@ def requirements() -> list[Requirement]:
 
 
 def refuse_other_versions() -> None:
-    """What is checked in was written with certain versions, as the extra `derive` states them.
+    """Refuse to write generated files with versions other than those of the extra `derive`.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _from_checkout() -> list[str]:
 
 
 def _numbers(version: str) -> tuple[int, ...]:
-    """``1.14.0`` as (1, 14); what follows the numbers, as in ``1.14rc1``, does not count."""
+    """Return ``1.14.0`` as (1, 14); what follows the numbers, as in ``1.14rc1``, is ignored."""
     numbers = [int(part) for part in re.match(r"[0-9.]*", version)[0].split(".") if part]  # type: ignore[index]
     while numbers and not numbers[-1]:
         numbers.pop()

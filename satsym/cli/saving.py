@@ -1,4 +1,4 @@
-"""Where results go: ``results/NAME/COMMAND``, or where the user says."""
+"""Folders of results: ``results/NAME/COMMAND``, or the folder that the user states."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 RESULTS = "results"
 READ = ("solve", "simulate")
-"""Commands whose trajectories can be drawn again; here once more, because ``--help`` loads no reader of them."""
+"""Commands whose saved trajectories can be drawn again, repeated here because ``--help`` loads no reader of them."""
 DRAWN = (*READ, "analyse", "lqr", "compare")
-"""Commands whose results can be drawn again; of the others what they show is found again."""
+"""Commands whose results can be drawn again; those of some are computed again."""
 
 
 def folder_for(name: str, command: str, out: Path | None, look: Look | None) -> Path | None:
-    """Where the results of a command go, ``None`` where nothing is to be written.
+    """Return the folder for the results of a command, ``None`` where nothing is written.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def folder_for(name: str, command: str, out: Path | None, look: Look | None) -> 
 
 
 def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:
-    """Replace what a folder holds of earlier results, if there is one to write to; the files that were written."""
+    """Replace earlier results in a folder, if one is to be written; return the files that were written."""
     if folder is None:
         return []
     from satsym.report.results import sets
@@ -50,7 +50,7 @@ def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Con
 
 
 def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Look | None) -> dict[str, Content]:
-    """Trajectory, problem and, where asked for, pictures: name -> content; none where nothing is to be written."""
+    """Return trajectory, problem and requested pictures by file name; none where nothing is written."""
     if folder is None:
         return {}
     from satsym.cli.output import live
@@ -64,13 +64,13 @@ def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Lo
 
 
 def split(subject: str) -> tuple[str, str | None]:
-    """An instance, and the command whose results are meant: from ``NAME`` or ``NAME/COMMAND``."""
+    """Split ``NAME`` or ``NAME/COMMAND`` into an instance and the command whose results are meant."""
     name, _, command = subject.rpartition("/")
     return (name, command) if name and command in DRAWN else (subject, None)
 
 
 def study_folder(subject: str, source: Path | None) -> Path | None:
-    """Where the study is that is meant, if one is: its folder itself, or ``NAME/study``."""
+    """Return the folder of the study that is meant, if one is: the folder itself, or ``NAME/study``."""
     from satsym.report.study import is_study
 
     places = [source] if source else [Path(subject), Path(RESULTS, subject)]
@@ -78,7 +78,7 @@ def study_folder(subject: str, source: Path | None) -> Path | None:
 
 
 def newest(name: str, command: str | None) -> Path | None:
-    """Where the results of an instance or a model are: of a command, or of the one that wrote last, if any are."""
+    """Return the folder of the newest results of an instance or model, of one command or of any."""
     from satsym.report.results.sets import written_at
 
     home = Path(RESULTS, name)

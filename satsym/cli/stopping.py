@@ -1,4 +1,4 @@
-"""Being stopped: SIGTERM ends a command as SIGINT does, so that it cleans up and says so."""
+"""Handling of stop signals: SIGTERM ends a command as SIGINT does, with clean-up and a message."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ TERMINATED = 143
 """Exit codes with which the shell reports programs that SIGINT or SIGTERM ended."""
 
 STOP_INTERVAL = 0.05
-"""Seconds after which a stop is repeated that nobody is answering."""
+"""Seconds after which an unanswered stop is repeated."""
 
 _NO_MORE = 0
-"""No signal has this number."""
+"""A number that no signal has."""
 
 _asked: list[int] = []
-"""Signals that have come to stop the command."""
+"""Signals that have arrived to stop the command."""
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM has come; whatever lets an interruption pass lets it pass, too."""
+    """SIGTERM has arrived; handled like a keyboard interrupt."""
 
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM raise :class:`Terminated`, unless whoever started the process had it ignored; lose no stop."""
+    """Let SIGTERM raise :class:`Terminated` in this context, unless it is ignored; no stop is lost."""
     _asked.clear()
     if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is signal.SIG_IGN:
         yield
@@ -54,12 +54,12 @@ def terminable() -> Iterator[None]:
         raise Terminated if sign == signal.SIGTERM else KeyboardInterrupt
 
     def unraisable(report: UnraisableHookArgs) -> None:
-        """Python ignores what is raised in a finaliser or a weak reference's callback, and says so."""
+        """Report a stop in a finaliser or a weak reference's callback, where Python ignores exceptions."""
         if not (_asked and issubclass(report.exc_type, KeyboardInterrupt)):
             hooks[0](report)
 
     def printed(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        """C code that loads a module may print what was raised meanwhile, and go on."""
+        """Report a stop that C code printed while it loaded a module, and then went on."""
         if not (_asked and issubclass(kind, KeyboardInterrupt)):
             hooks[1](kind, error, trace)
 
@@ -81,7 +81,7 @@ def terminable() -> Iterator[None]:
 
 
 def _insist(thread: int | None, heard: SimpleQueue[int], over: threading.Event) -> None:
-    """Repeat a stop that is lost: Python ignores some, and C code that looks for something may forget any error."""
+    """Repeat a stop that was lost, because Python or C code ignored the exception."""
     sign = heard.get()
     while not over.wait(STOP_INTERVAL):
         if not _answers(thread):
@@ -89,7 +89,7 @@ def _insist(thread: int | None, heard: SimpleQueue[int], over: threading.Event) 
 
 
 def _answers(thread: int | None) -> bool:
-    """Whether a thread is handling a stop, or what came of one: cleaning up may take its time."""
+    """Tell whether a thread is handling a stop or its consequences: cleaning up may take time."""
     found: object = sys._current_exceptions().get(thread or 0)
     error = found[1] if isinstance(found, tuple) else found  # Python 3.11 has the type and the traceback as well
     while isinstance(error, BaseException):
@@ -100,12 +100,12 @@ def _answers(thread: int | None) -> bool:
 
 
 def comes_of_a_stop(error: BaseException) -> bool:
-    """Whether an error is a stop, or comes after one: libraries that are broken off may raise anything."""
+    """Tell whether an error is a stop, or follows from one: interrupted libraries may raise anything."""
     return bool(_asked) or isinstance(error, KeyboardInterrupt)
 
 
 def stopped(error: BaseException) -> int:
-    """Say on stderr, as far as it can be written to, that the command was stopped, and its notes; its exit code."""
+    """Report on stderr that the command was stopped, with its notes; return the exit code."""
     terminated = isinstance(error, Terminated) or signal.SIGTERM in _asked
     complain("; ".join(["terminated" if terminated else "interrupted", *getattr(error, "__notes__", ())]))
     return TERMINATED if terminated else INTERRUPTED

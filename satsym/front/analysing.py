@@ -1,4 +1,4 @@
-"""Analyses and regulators as users meet them."""
+"""Analyses and regulators in Python."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation 
 
 
 class _Said(ABC):
-    """What has an object for JSON and a text for people."""
+    """A result with an object for JSON and a text for people."""
 
     @property
     @abstractmethod
     def _object(self) -> dict[str, Any]: ...
 
     def to_dict(self) -> dict[str, Any]:
-        """What the command line prints with ``--json``."""
+        """Return the object that the command line prints with ``--json``."""
         return dict(self._object)
 
     def to_json(self) -> str:
@@ -61,7 +61,9 @@ class _Said(ABC):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analysis(_Said):
-    """Stability, controllability and observability, and an orbit; ``analysis["stability"]`` is a part of it.
+    """The analysis of a model: stability, controllability and observability, and the orbit.
+
+    ``analysis["stability"]`` is a part of it.
 
     Attributes
     ----------
@@ -87,7 +89,7 @@ class Analysis(_Said):
 
     @cached_property
     def attitudes(self) -> Attitudes | None:
-        """All equilibria, if the model is the attitude of a satellite in orbit."""
+        """Return all equilibria, if the model is the attitude of a satellite in orbit."""
         from satsym.report.results.linear import attitudes
 
         return attitudes(self.given, self.derivation.derived if self.derivation else None)
@@ -118,12 +120,12 @@ class Regulator(_Said):
 
     @property
     def K(self) -> Array:
-        """The gain, a row for each active input."""
+        """Return the gain, a row for each active input."""
         return self.design.regulator.K
 
     @property
     def P(self) -> Array:
-        """The solution of the Riccati equation."""
+        """Return the solution of the Riccati equation."""
         return self.design.regulator.P
 
     @cached_property
@@ -180,7 +182,7 @@ def lqr(subject: Subject) -> Regulator:
 
 
 def _given(subject: Subject) -> tuple[Case | Kernels, Derivation | None]:
-    """What floors below take, and the derivation of a model that is given as such."""
+    """Return the subject for lower floors, and the derivation of a model that is given as such."""
     if isinstance(subject, Instance):
         subject.case.require_numbers()
         return subject.case, None

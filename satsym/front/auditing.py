@@ -1,4 +1,4 @@
-"""Audits, and checks of single formulas, as users meet them."""
+"""Audits of documents, and checks of single formulas, in Python."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from satsym.report.terminal.audit import checked_text
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Audit:
-    """Printed documents, judged row by row.
+    """The audit of printed documents, row by row.
 
     Attributes
     ----------
@@ -38,12 +38,12 @@ class Audit:
 
     @property
     def rows(self) -> list[Judged]:
-        """Judged rows of all documents."""
+        """Return the judged rows of all documents."""
         return list(chain.from_iterable(self.judged.values()))
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows have each verdict."""
+        """Return the number of rows with each verdict."""
         return review.counts(self.rows)
 
     def __iter__(self) -> Iterator[Judged]:
@@ -53,7 +53,7 @@ class Audit:
         return len(self.rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym audit --json`` prints."""
+        """Return the object that ``satsym audit --json`` prints."""
         return objects.audit_object(self.rows)
 
     def to_json(self) -> str:
@@ -61,13 +61,13 @@ class Audit:
         return to_json(self.to_dict())
 
     def latex(self, language: str = "en") -> str:
-        """A report for LaTeX."""
+        """Return the report as LaTeX."""
         from satsym.report.latex.audit import render
 
         return render(self.ledgers, self.judged, language)
 
     def html(self, language: str = "en") -> str:
-        """A report as a page of its own."""
+        """Return the report as a self-contained page."""
         from satsym.report.html.audit import render
 
         return render(self.ledgers, self.judged, language)
@@ -85,7 +85,7 @@ class Audit:
 @single_threaded()
 @in_one_line
 def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) -> Audit:
-    """Judge what documents print.
+    """Judge the rows of documents.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Checked:
-    """Whether a formula is right.
+    """The verdict on a formula.
 
     Attributes
     ----------
@@ -124,34 +124,34 @@ class Checked:
 
     @property
     def verdict(self) -> Verdict:
-        """``right``, ``wrong`` or ``undecided``; of several equations the worst."""
+        """Return ``right``, ``wrong`` or ``undecided``; for several equations, the worst."""
         return checking.worst(self.answers).verdict
 
     @property
     def address(self) -> str:
-        """The equation that it is, or is meant to be."""
+        """Return the address of the equation that the formula states, or is closest to."""
         return checking.worst(self.answers).address
 
     @property
     def diagnosis(self) -> str:
-        """What is wrong; empty where nothing is."""
+        """Return what is wrong; empty where nothing is."""
         return checking.worst(self.answers).diagnosis
 
     @property
     def correct(self) -> str:
-        """The right equation in the notation of the formula; empty where it is right, or none is known."""
+        """Return the right equation in the formula's notation; empty where it is right, or none is known."""
         return checking.worst(self.answers).correct
 
     @property
     def letters(self) -> Mapping[str, str]:
-        """Printed letter -> name of the model, where there was a doubt."""
+        """Map printed letters to names of the model, where there was a doubt."""
         return {printed: ours for answer in self.answers for printed, ours in answer.letters.items()}
 
     def __bool__(self) -> bool:
         return self.verdict == "right"
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym check --json`` prints."""
+        """Return the object that ``satsym check --json`` prints."""
         return checking.as_object(self.formula, self.answers)
 
     def __repr__(self) -> str:
@@ -163,7 +163,7 @@ class Checked:
 
 
 def _said(answer: Answer) -> str:
-    """The verdict in a formula."""
+    """Return the verdict on one equation of a formula."""
     said = "is right" if answer.verdict == "wrong" and answer.correct else answer.verdict
     return f"{said}: {answer.address}".replace("_", r"\_") if answer.address else said
 

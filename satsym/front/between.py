@@ -1,8 +1,8 @@
-"""Motions between their nodes: integrated from the nodes on both sides, so that they are as accurate as these.
+"""Trajectories between their nodes: integrated from the nodes on both sides, and so as accurate as the nodes.
 
 From each node the equations that the trajectory obeys are integrated by RK4, in as many steps as two runs need to
-agree; the two that meet between neighbouring nodes are blended, more of the nearer one. Where a control meets a bound
-or jumps between two nodes, each side keeps its own.
+agree; the two results between neighbouring nodes are blended, with more weight on the nearer node. Where a control
+meets a bound or jumps between two nodes, each side keeps its own.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
-"""Functions from times (M,) and values (k, M) there to rates (k, M); each column lies behind the node of its number."""
+"""A function from times (M,), values (k, M) and numbers of preceding nodes to rates (k, M)."""
 
 FRACTION = 0.1
-"""Share of the instance's tolerance that the integration between nodes may add to the error."""
+"""Fraction of the instance's tolerance that integration between nodes may add to the error."""
 MOST_STEPS = 64
-"""Steps between two nodes."""
+"""Largest number of steps between two nodes."""
 ROUNDING = 1e-13
 GAINED = 15.0
-"""The distance between two runs of RK4, one with half the steps, is so many times the error of the better one."""
+"""Ratio of the difference between two runs of RK4, one with half the steps, to the error of the better one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Values between nodes.
+    """A trajectory that can be evaluated between its nodes.
 
     Attributes
     ----------
@@ -54,12 +54,12 @@ class Motion:
     tolerance: float
 
     def behind(self, t: Array) -> NDArray[np.intp]:
-        """Numbers of the intervals in which times lie; of a time that occurs twice the later, of the last the last."""
+        """Return the intervals that contain some times; a time that occurs twice belongs to the later interval."""
         return np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
 
     @np.errstate(all="ignore")
     def __call__(self, t: Array) -> Array:
-        """Values at times (M,) within the nodes, shape (k, M)."""
+        """Return values at times (M,) within the nodes, shape (k, M)."""
         left = self.behind(t)
         a, b = self.times[left], self.times[left + 1]
         fraction = np.where(b > a, (t - a) / np.where(b > a, b - a, 1.0), 1.0)
@@ -72,7 +72,7 @@ class Motion:
         return np.where(weight == 0.0, first, np.where(weight == 1.0, second, both))
 
     def _from(self, node: NDArray[np.intp], interval: NDArray[np.intp], t: Array) -> Array:
-        """Values at times by integration from nodes, in more and more steps until two runs agree."""
+        """Return values at times by integration from nodes, in more and more steps until two runs agree."""
         steps, found, enough = 1, self._run(node, interval, t, 1), FRACTION * self.tolerance
         size = np.abs(self.values).max(axis=1, keepdims=True)
         before = np.inf
@@ -103,11 +103,11 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Controls between nodes, arc by arc: a time that occurs twice ends one arc and begins the next.
+    """Controls between nodes, arc by arc; a time that occurs twice separates two arcs.
 
-    Where they are constant they are exact. Else they are splines of degree five, which suits smooth arcs, or cubics
-    that do not overshoot (PCHIP), which suits jumps: what tells every second node better from the others. They keep
-    their bounds.
+    Constant controls are exact. Others are splines of degree five, which suit smooth arcs, or cubics that do not
+    overshoot (PCHIP), which suit jumps: the one that predicts every second node better from the others is taken.
+    Controls keep their bounds.
     """
 
     times: Array
@@ -117,11 +117,11 @@ class Pieces:
 
     @cached_property
     def edges(self) -> NDArray[np.intp]:
-        """The first node of each arc."""
+        """Return the first node of each arc."""
         return np.concatenate([[0], np.flatnonzero(np.diff(self.times) == 0.0) + 1])
 
     def __call__(self, t: Array, left: NDArray[np.intp]) -> Array:
-        """Controls at times (M,), in the intervals behind nodes of these numbers; shape (m, M)."""
+        """Return controls at times (M,), in the intervals after the nodes with these numbers; shape (m, M)."""
         found = np.empty((len(self.values), len(t)))
         arcs = np.searchsorted(self.edges, left, side="right") - 1
         for arc in distinct(arcs):
@@ -160,7 +160,7 @@ def _monotone(times: Array, values: Array) -> Callable[[Array], Array]:
 
 
 def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array) -> tuple[Motion, Pieces | None]:
-    """Motion of states and costates, (2n, N+1), under the control that minimises H."""
+    """Return the motion of states and costates, (2n, N+1), under the control that minimises H."""
     model, p, bounds, n = case.model, case.parameters, case.control_set.arguments, len(x)
 
     def rates(t: Array, z: Array, _: NDArray[np.intp]) -> Array:
@@ -172,7 +172,7 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
 def bounded(
     case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[tuple[int, ...]]
 ) -> tuple[Motion, Pieces | None]:
-    """Motion between nodes of an extremal whose arcs run on boundaries of constraints, which each arc has by number."""
+    """Return the motion of an extremal with arcs on boundaries of constraints, whose number each arc has."""
     from satsym.solvers.constrained.active import field
 
     edges = np.flatnonzero(np.diff(times) == 0.0) + 1
@@ -188,7 +188,7 @@ def bounded(
 
 
 def controlled(case: Instance, times: Array, x: Array, u: Array, lam: Array | None) -> tuple[Motion, Pieces]:
-    """Motion of states, and of costates where there are any, under controls as they are at the nodes."""
+    """Return the motion of states, and of costates if any, under controls interpolated from the nodes."""
     model, p, n = case.model, case.parameters, len(x)
     pieces = Pieces(times, u, case.control_set)
 

@@ -1,10 +1,9 @@
-"""What surrounds a call from Python: one line about bad input, and linear algebra on one thread.
+"""Wrappers of calls from Python: errors about bad input in one line, and linear algebra on one thread.
 
-The line that says what is wrong stands below the caller's own, without what lies between.
-
-On matrices as small as ours threads cost several times what they save, and on cores that others use as well they only
-wait for each other, until time is up before a certificate has compared all that it would. The command line says so to
-libraries before it loads them; a notebook has loaded some already.
+The traceback of an error about bad input ends at the caller's own line. On matrices as small as ours threads cost
+several times what they save, and on cores that others use as well they wait for each other, until time is up before a
+certificate has compared all competitors. The command line sets the number of threads before libraries are loaded; in a
+notebook some are loaded already.
 """
 
 from __future__ import annotations
@@ -23,7 +22,10 @@ Answer = TypeVar("Answer")
 
 
 def in_one_line(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
-    """The function, whose refusals have a traceback that ends at it; SATSYM_DEBUG=1 in the environment keeps all."""
+    """Return a function whose refusals have a traceback that ends at its caller.
+
+    SATSYM_DEBUG=1 in the environment keeps the whole traceback.
+    """
 
     @wraps(function)
     def asked(*args: Given.args, **options: Given.kwargs) -> Answer:
@@ -38,17 +40,17 @@ def in_one_line(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
 
 
 VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""Read by libraries when they are loaded, as SciPy's own is in the midst of a solution."""
+"""Variables of the environment that limit libraries to one thread when they are loaded."""
 
 _HELD = RLock()
-"""By the thread that holds libraries to one thread: what it sets it restores, and others compute as they find them."""
+"""Lock of the thread that limits libraries to one thread, because it also restores the setting."""
 
 
 @contextmanager
 def single_threaded() -> Iterator[None]:
-    """Hold all libraries of linear algebra to one thread; afterwards each has as many as before.
+    """Limit all libraries of linear algebra to one thread in this context.
 
-    One that was loaded in the meantime has as many as the others.
+    Afterwards each has as many threads as before; one that was loaded in the meantime has as many as the others.
     """
     from threadpoolctl import ThreadpoolController
 

@@ -1,4 +1,4 @@
-"""Quantities over time that are functions of any time, and still the arrays of their values at the nodes."""
+"""Quantities over time that can be evaluated at any time, and behave as arrays of their values at the nodes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 ROUNDING = 1e-12
-"""Share of the duration by which a time may lie outside of it and still be taken for its end."""
+"""Fraction of the duration by which a time may lie outside and still count as an end."""
 
 
 class Curve(np.lib.mixins.NDArrayOperatorsMixin):
     """One quantity, or several, over time.
 
-    ``x(t)`` is what it is at a time, or at an array of times; ``x[0, -1]`` and ``numpy.asarray(x)`` are values at the
+    ``x(t)`` is the value at a time, or at an array of times; ``x[0, -1]`` and ``numpy.asarray(x)`` are values at the
     nodes; ``x["r"]`` is the quantity of that name, again over time. Arithmetic gives plain arrays.
 
     Parameters
@@ -52,7 +52,7 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
         self.names, self._between = tuple(names), between
 
     def __call__(self, t: ArrayLike) -> Any:
-        """Values at a time, or at an array of times of any shape.
+        """Evaluate at a time, or at an array of times of any shape.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Derivations as users meet them: equations by address, kernels, LaTeX and HTML, all in memory unless saved."""
+"""Derivations in Python: equations by address, kernels, LaTeX and HTML, in memory unless saved."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from satsym.symbolic.model import Convention
 
 SHOWN = ("first_order", "hamiltonian", "control_law", "costate_equations")
-"""Steps of which a derivation consists for those who see it as one formula."""
+"""Steps of a derivation that notebooks show."""
 KEPT = 32
-"""Derivations that are kept: deriving takes a while."""
+"""Number of derivations that are cached."""
 
 
 @dataclass(frozen=True)
@@ -84,17 +84,17 @@ class Derivation:
 
     @property
     def name(self) -> str:
-        """Name of the problem, or of the model where there is no cost."""
+        """Return the name of the problem, or of the model where there is no cost."""
         return self.derived.name
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Return the title of the problem or model."""
         return self.derived.title
 
     @cached_property
     def kernels(self) -> Kernels:
-        """The generated functions, each compared with its expression; they are kept in memory only."""
+        """Return the generated functions, compared with their expressions and kept in memory only."""
         return self._generated[1]
 
     @cached_property
@@ -116,7 +116,7 @@ class Derivation:
         return Typesetter(self.derived)
 
     def __getitem__(self, address: str) -> Equation | sp.Expr | sp.Matrix | dict[str, Equation]:
-        """What an address names.
+        """Return the expression at an address.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class Derivation:
         return found.matrix if isinstance(found, addresses.Family) else found
 
     def __iter__(self) -> Any:
-        """Addresses of all equations."""
+        """Iterate over the addresses of all equations."""
         from satsym.symbolic.lookup import addresses
 
         return iter(addresses.addresses(self.derived))
@@ -155,7 +155,7 @@ class Derivation:
             return False
 
     def latex(self, lang: str = "en", *, fragment: bool = False) -> str:
-        """A LaTeX document of it, as ``satsym latex`` writes it.
+        """Return a LaTeX document of the derivation, as ``satsym latex`` writes it.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class Derivation:
         return document.render(self.derived, language=lang, standalone=not fragment)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write ``NAME.py``, ``NAME.tex`` and ``NAME.derivation.json``, as ``satsym derive --out`` does; their paths.
+        """Write ``NAME.py``, ``NAME.tex`` and ``NAME.derivation.json`` as ``satsym derive --out`` does; return paths.
 
         Raises
         ------
@@ -211,7 +211,7 @@ class Derivation:
         return "\n".join(parts)
 
     def _lines(self, name: str) -> list[str]:
-        """The equations of a step; matrices whose entries they are come first, in place of these."""
+        """Return the equations of a step, with matrices in place of their entries."""
         from satsym.symbolic.latex.typeset import matrices
 
         step, tex = self.derived.step(name), self._typeset.tex
@@ -271,7 +271,7 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
 
 
 _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
-"""By what was asked, in full: problems hold tables, which may have changed since."""
+"""Cached derivations by the complete statement, since tables in problems may have been changed."""
 
 
 def _kept(subject: Problem | Model, source: str, path: Path | None, stating: Mapping[Path, str]) -> Derivation:

@@ -1,4 +1,4 @@
-"""Small HTML for notebooks: no scripts, no styles from elsewhere, every text escaped."""
+"""Simple HTML for notebooks: no scripts, no external styles, every text escaped."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from satsym.report.terminal.table import figure
 
 
 def page(title: str, lines: Sequence[str], *tables: str) -> str:
-    """A title, paragraphs and tables; the title is no heading, for nobody knows what headings are above it."""
+    """Return a title, paragraphs and tables; the title is not a heading, since its level is unknown in a notebook."""
     paragraphs = [f"<p>{escape(line)}</p>" for line in lines if line]
     return "\n".join([f"<p><strong>{escape(title)}</strong></p>", *paragraphs, *filter(None, tables)])
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A table without its empty columns; numbers and units as reports have them. Empty without rows."""
+    """Return a table without its empty columns, with numbers and units as in reports; empty without rows."""
     shown = [[_shown(cell) for cell in row] for row in rows]
     kept = [k for k, column in enumerate(zip(*shown, strict=True)) if any(column)]
     body = []
@@ -29,13 +29,13 @@ def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def facts(values: Mapping[str, Any]) -> str:
-    """A table of names and values, without a header."""
+    """Return a table of names and values, without a header."""
     rows = (f'<tr><th scope="row">{escape(name)}</th>{_cell(_shown(value))}</tr>' for name, value in values.items())
     return "\n".join(["<table>", *rows, "</table>"]) if values else ""
 
 
 def _cell(text: str) -> str:
-    """An element with a text; a number stays in one line, which a browser would break after the sign of an exponent."""
+    """Return an element with a text; numbers are not broken across lines, as browsers do after an exponent's sign."""
     try:
         float(text)
     except ValueError:

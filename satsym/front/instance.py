@@ -1,4 +1,4 @@
-"""Instances made in Python: the same tables as in a file, checked by the same function, with the same messages."""
+"""Instances made in Python, from the tables of an instance file, with the same checks and messages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from satsym.symbolic import Model, Problem
 
 Table: TypeAlias = Mapping[Any, Any]
-"""Names, or symbols, and values: numbers, or texts such as ``"5 km"``, ``"reference"``, ``"free"``."""
+"""A table by names or symbols, with numbers, or texts such as ``"5 km"``, ``"reference"``, ``"free"``."""
 
 TIMES = ("tf", "t0", "tf_guess", "t0_guess")
 _NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
@@ -82,7 +82,7 @@ class Instance:
         name: str | None = None,
         **more: Any,
     ) -> Instance:
-        """An instance of a model.
+        """Make an instance of a model.
 
         Parameters
         ----------
@@ -146,27 +146,27 @@ class Instance:
 
     @property
     def name(self) -> str:
-        """Its name in results."""
+        """Return the name of the instance in results."""
         return self.case.name
 
     @property
     def title(self) -> str:
-        """One line for people; may be empty."""
+        """Return the title of the instance, which may be empty."""
         return self.case.title
 
     @property
     def model(self) -> str:
-        """Name of its model."""
+        """Return the name of the model."""
         return self.case.model.spec.name
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym instances --json`` says of it."""
+        """Return the object that ``satsym instances --json`` prints for the instance."""
         from satsym.report.results.objects import instance_object
 
         return instance_object(self.case)
 
     def to_toml(self) -> str:
-        """The text of an instance file for the same instance."""
+        """Return the text of an instance file for this instance."""
         return tables.toml(self.written.tree)
 
     def repeated(self, compiled: bool | None = None) -> Repeated:
@@ -186,7 +186,7 @@ class Instance:
 
 
 def as_case(given: Instance | str | Path) -> Instance:
-    """An instance as it is, or the one of a name or path."""
+    """Return an instance for solvers, from an instance or from a name or path."""
     if isinstance(given, Instance):
         return given
     if isinstance(given, str | Path):
@@ -197,12 +197,12 @@ def as_case(given: Instance | str | Path) -> Instance:
 
 
 def _called(model: Any) -> str:
-    """How tables name a model."""
+    """Return the name of a model in tables."""
     return str(model) if isinstance(model, str | Path) else model.name
 
 
 def _kernels(model: Any) -> Kernels | None:
-    """Kernels of what is not a name; ``None`` where they are to be looked for."""
+    """Return the kernels of a model that is not given by name; ``None`` where it is."""
     if isinstance(model, str | Path):
         return None
     from satsym.front.derivation import derive
@@ -214,7 +214,7 @@ def _kernels(model: Any) -> Kernels | None:
 
 
 def _checked(name: str) -> str:
-    """A name that files of results can have."""
+    """Return a name after a check that result files can have it."""
     if not isinstance(name, str) or not _NAME.match(name):
         raise BadInput(
             f"name: {shown(name)} is not a valid name of an instance; write letters, digits, hyphens and dots"

@@ -1,4 +1,4 @@
-"""Proofs as users meet them."""
+"""Proofs in Python."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from satsym.report.terminal.proof import proof_text
 
 
 class Proof(record.Proof):
-    """A proof, or where the attempt ended."""
+    """A proof, or the point where the attempt ended."""
 
     def to_json(self) -> str:
-        """What ``satsym prove --json`` prints of it, as text."""
+        """Return the JSON text that ``satsym prove --json`` prints."""
         return to_json(self.to_dict())
 
     def latex(self, lang: str = "en", *, fragment: bool = False) -> str:
-        """A LaTeX document of it, as ``satsym prove --latex`` writes it.
+        """Return a LaTeX document of the proof, as ``satsym prove --latex`` writes it.
 
         Parameters
         ----------
@@ -48,7 +48,7 @@ class Proof(record.Proof):
 
 
 def proved(case: Case, find: Callable[[], solution.Solution], digits: int) -> Proof:
-    """The proof of what is found of a case."""
+    """Prove the answer that a function finds for a case."""
     check_digits(digits)
     made = prove_found(case, find, digits)
     return Proof(**{f.name: getattr(made, f.name) for f in fields(made)})

@@ -1,4 +1,4 @@
-"""What solutions and simulated trajectories have in common; pictures are shown in notebooks and written to files."""
+"""Common parts of solutions and simulated trajectories; pictures are shown in notebooks and written to files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Pictures(Mapping[str, "Figure"]):
-    """Figures by name, the overview first; matplotlib is loaded when the first is looked at.
+    """Figures by name, the overview first; matplotlib is loaded when the first one is requested.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Pictures(Mapping[str, "Figure"]):
         return len(self._figures)
 
     def contents(self, formats: Sequence[str] = ("png",)) -> dict[str, Content]:
-        """Name -> content of each file.
+        """Map the name of each file to its content.
 
         Raises
         ------
@@ -72,7 +72,7 @@ class Pictures(Mapping[str, "Figure"]):
         return plots.pictures(self._found, Look.of(formats))
 
     def save(self, folder: str | Path, formats: Sequence[str] = ("png",)) -> list[Path]:
-        """Write them into a folder; their paths.
+        """Write the pictures into a folder; return their paths.
 
         Raises
         ------
@@ -110,11 +110,11 @@ Found = TypeVar("Found", Solution, Simulation)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(ABC, Generic[Found]):
-    """A trajectory, with the instance it is of.
+    """A trajectory with its instance.
 
     ``x`` and ``u`` are functions of time, ``x(t)``, and index like arrays of their values at the nodes, ``x[0, -1]``;
     ``x["r"]`` is the state of that name. Between nodes the equations of motion are integrated from the nodes on both
-    sides, to a tenth of the instance's tolerance, so that what is seen there is as accurate as the nodes are.
+    sides, to a tenth of the instance's tolerance, so that values there are as accurate as those at the nodes.
 
     Parameters
     ----------
@@ -134,32 +134,35 @@ class Result(ABC, Generic[Found]):
 
     @property
     def status(self) -> Status:
-        """How it ended."""
+        """Return how the run ended."""
         return self.found.status
 
     @property
     def message(self) -> str:
-        """One sentence for people, with advice where there is no answer."""
+        """Return one sentence for people, with advice where there is no answer."""
         return self.status.explain(self.found.message)
 
     @property
     def times(self) -> Array:
-        """Nodes (N+1,); a time at which a control jumps occurs twice."""
+        """Return the nodes (N+1,); a time at which a control jumps occurs twice."""
         return self.found.times
 
     @cached_property
     def x(self) -> Curve:
-        """States."""
+        """Return the states over time."""
         n = len(self.found.x)
         return self._curve("x", self.found.x, self._spec.state_names, lambda t: self._motion[0](t)[:n])
 
     @cached_property
     def u(self) -> Curve:
-        """Controls: the optimal ones for the states and costates at that time; at a jump, the values after it."""
+        """Return the controls over time; at a jump, the values after it.
+
+        Optimal controls are computed from states and costates at each time.
+        """
         return self._curve("u", self.found.u, self._spec.control_names, self._controls)
 
     def plot(self, folder: str | Path | None = None, formats: Sequence[str] = ("png",)) -> Pictures:
-        """Draw the pictures. Notebooks show them; if a folder is given, they are written into it.
+        """Draw the pictures, which notebooks show; if a folder is given, write them into it.
 
         Raises
         ------
@@ -172,7 +175,7 @@ class Result(ABC, Generic[Found]):
         return pictures
 
     def save(self, folder: str | Path, *, plot: bool = False) -> list[Path]:
-        """Write what the command line writes with ``--out`` (and ``--plot``), and the instance; the paths.
+        """Write the files of ``--out`` (and ``--plot``) and the instance into a folder; return their paths.
 
         A result that the folder holds already is replaced, whole or not at all.
 
@@ -187,7 +190,7 @@ class Result(ABC, Generic[Found]):
     @classmethod
     @in_one_line
     def load(cls, folder: str | Path, instance: Instance | str | Path | None = None) -> Self:
-        """Load what was saved in a folder, by :meth:`save` or by the command line.
+        """Load a result that :meth:`save` or the command line wrote into a folder.
 
         Parameters
         ----------
@@ -209,7 +212,7 @@ class Result(ABC, Generic[Found]):
 
     @abstractmethod
     def to_dict(self) -> dict[str, Any]:
-        """What the command line prints with ``--json``."""
+        """Return the object that the command line prints with ``--json``."""
 
     def to_json(self) -> str:
         """Return the result as JSON text."""

@@ -1,4 +1,4 @@
-"""Results in folders: the files that the command line writes, and what they belong to, so that both come back."""
+"""Results in folders: writing and reading the files of the command line with the instance they belong to."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ASKED = (
     *("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm", "norms"),
     *("lqr", "classical", "limits", "deadband"),
 )
-"""What of an instance decides its results; options of solvers do not."""
+"""Fields of an instance that decide its results; options of solvers do not."""
 
 
 def save(
@@ -32,10 +32,10 @@ def save(
     folder: Path,
     pictures: Mapping[str, Content],
 ) -> list[Path]:
-    """Replace the result in a folder by this one, whole or not at all; the files that were written.
+    """Replace the result in a folder by this one, whole or not at all; return the files that were written.
 
-    Beside those of ``satsym solve --out`` that is NAME.toml, the instance, and for a model that is not a shipped one
-    its generated module.
+    They are those of ``satsym solve --out``, the instance as NAME.toml, and for a model that is not a shipped one its
+    generated module.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def save(
 
 
 def origin(instance: Instance) -> dict[str, Content]:
-    """The files from which the instance can be read again."""
+    """Return the files from which the instance can be read again."""
     model, tree, place = instance.case.model, dict(instance.written.tree), f"{instance.name}.toml"
     if not may_hold(place):
         return {}
@@ -59,7 +59,7 @@ def origin(instance: Instance) -> dict[str, Content]:
 
 
 def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Simulation]:
-    """What was saved in a folder, and its instance: the one given, the one saved with it, or the shipped one.
+    """Return a saved result and its instance: the one given, the one saved with it, or the shipped one.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
 
 
 def _with(case: Instance, settings: Mapping[str, float]) -> Instance:
-    """An instance with the numbers that were given beside it; a continuation that changes one of them ends there."""
+    """Return an instance with the numbers that were set on the command line; a continuation of one ends there."""
     changes: dict[str, dict[str, Any]] = {}
     for name, value in settings.items():
         key = find(name, case.case)

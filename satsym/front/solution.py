@@ -1,4 +1,4 @@
-"""Solutions as users meet them."""
+"""Solutions in Python."""
 
 from __future__ import annotations
 
@@ -33,47 +33,47 @@ class Solution(Result[solution.Solution]):
 
     @property
     def objective(self) -> float:
-        """The objective J as the model states it: the cost, or what is maximised; NaN without a solution."""
+        """Return the objective J as the model states it: the cost, or what is maximised; NaN without a solution."""
         return float(self._spec.objective(self.found.objective))
 
     @property
     def method(self) -> str:
-        """Name of the method that solved the instance."""
+        """Return the name of the method that solved the instance."""
         return self.found.method
 
     @property
     def certificate(self) -> Certificate | None:
-        """The certificate of the solution, if there is one."""
+        """Return the certificate of the solution, if there is one."""
         return self.found.certificate
 
     @property
     def switching_times(self) -> dict[str, tuple[float, ...]]:
-        """For each control, the times at which it meets or leaves a bound."""
+        """Return, for each control, the times at which it meets or leaves a bound."""
         return dict(zip(self._spec.control_names, self.found.switching_times, strict=True))
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Entries, exits and touch points of path constraints, and points on the way, in order of time."""
+        """Return entries, exits and touch points of path constraints, and points on the way, in order of time."""
         return self.found.events
 
     @property
     def iterations(self) -> int:
-        """Number of iterations of the method."""
+        """Return the number of iterations of the method."""
         return self.found.iterations
 
     @property
     def wall_s(self) -> float:
-        """Seconds of solving."""
+        """Return the seconds that solving took."""
         return self.found.wall_s
 
     @cached_property
     def lam(self) -> Curve:
-        """Costates over time, by the names of their states."""
+        """Return the costates over time, by the names of their states."""
         n = len(self.found.x)
         return self._curve("lam", self.found.lam, self._spec.state_names, lambda t: self._motion[0](t)[n:])
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym solve --json`` prints."""
+        """Return the object that ``satsym solve --json`` prints."""
         return solution_object(self.found)
 
     def prove(self, digits: int = 20) -> Proof:

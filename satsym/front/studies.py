@@ -1,4 +1,4 @@
-"""Studies as users meet them: one instance for many values of some of its numbers."""
+"""Studies in Python: one instance for many values of some of its numbers."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Said = Mapping[str, str | Sequence[float]]
-"""Keys such as ``"initial.r"``, and a text as on the command line or its numbers: ``(0.9, 1.1, 50)``."""
+"""Keys such as ``"initial.r"`` with a text as on the command line or with numbers: ``(0.9, 1.1, 50)``."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study:
-    """A study that was carried out.
+    """A study that was carried out, with its table.
 
     Parameters
     ----------
@@ -48,18 +48,18 @@ class Study:
 
     @cached_property
     def columns(self) -> dict[str, NDArray[Any]]:
-        """The table by the names of its columns, units left out: numbers (NaN where there is none), or texts."""
+        """Return the table by column name, without units: numbers (NaN where there is none), or texts."""
         return columns(path_of(self.folder))
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
 
     def plot(self, formats: str | Sequence[str] = "png", titled: bool = True) -> list[Path]:
-        """Draw the pictures into its folder, and return them."""
+        """Draw the pictures into the study's folder, and return them."""
         return draw(self.folder, Look.of(formats, titled))[1]
 
     def to_json(self) -> str:
-        """The summary as text."""
+        """Return the summary as JSON text."""
         return to_json(self.summary)
 
     def __repr__(self) -> str:
@@ -141,7 +141,7 @@ def study(
 
 
 def _said(given: Any, between: str) -> Any:
-    """As the command line has it; what is not of that kind as it is, to be refused."""
+    """Convert a value to the command line's form; a value of another kind is left to be refused."""
     if isinstance(given, Mapping):
         return {name_of(key): _said(value, between) for key, value in given.items()}
     if isinstance(found := plain(given), list):

@@ -1,4 +1,4 @@
-"""The tables of an instance from Python values, merged, and as the text of a file."""
+"""Tables of an instance from Python values: conversion, merging, and writing as TOML."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from datetime import datetime
 from typing import Any
 
 DEEPEST = 6
-"""Levels of lists and tables in which anything is looked at: no instance has more."""
+"""Largest depth of lists and tables that is examined; no instance has more."""
 
 
 def plain(value: Any, levels: int = DEEPEST) -> Any:
-    """A value as TOML would have it: numbers of any library, arrays, tuples, tables whose keys are symbols.
+    """Convert a value to TOML's types: numbers of any library, arrays, tuples, tables whose keys are symbols.
 
-    Whatever is none of that stays as it is, to be refused with the key where it stands.
+    Any other value is kept, to be refused with its key.
     """
     if value is None or isinstance(value, bool | str | bytes | datetime) or not levels:
         return value
@@ -34,7 +34,7 @@ def plain(value: Any, levels: int = DEEPEST) -> Any:
 
 
 def merged(tree: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """A tree with changes: tables are merged, other values replaced, and ``None`` takes a key away."""
+    """Return a tree with changes: tables are merged, other values replaced, and ``None`` removes a key."""
     found = dict(tree)
     for key, value in changes.items():
         name = name_of(key)
@@ -49,7 +49,7 @@ def merged(tree: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
 
 def toml(tree: Mapping[str, Any], table: str = "") -> str:
-    """The text of an instance file that holds these tables.
+    """Return the text of an instance file with these tables.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def toml(tree: Mapping[str, Any], table: str = "") -> str:
 
 
 def name_of(key: Any) -> str:
-    """A key as text: that of a symbol or a variable is its name."""
+    """Return a key as text; a symbol or a variable is represented by its name."""
     for attribute in ("symbol", "name"):
         if isinstance(found := getattr(key, attribute, None), str):
             return found

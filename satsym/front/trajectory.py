@@ -1,4 +1,4 @@
-"""Simulated motions as users meet them, and motions for other programs."""
+"""Simulated motions in Python, and their export to other programs."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ class Trajectory(Result[Simulation]):
 
     @property
     def feedback(self) -> str:
-        """Name of the control law."""
+        """Return the name of the control law."""
         return self.found.feedback
 
     @property
     def invariants(self) -> dict[str, Invariant]:
-        """Conserved quantities, by name: their initial values and their drift."""
+        """Return the conserved quantities by name: their initial values and their drift."""
         return self.found.invariants
 
     @property
     def metrics(self) -> dict[str, float]:
-        """Numbers that describe the motion, by name."""
+        """Return the numbers that describe the motion, by name."""
         return self.found.metrics
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``satsym simulate --json`` prints."""
+        """Return the object that ``satsym simulate --json`` prints."""
         return simulation_object(self.found)
 
     def __repr__(self) -> str:

@@ -80,7 +80,7 @@ def _announcing(line: Live) -> Callable[[str], None]:
 
 
 def _checked_in(paths: Sequence[Path]) -> Path:
-    """The checkout's generated/, if that is where the results of all these files belong."""
+    """Return the checkout's generated/, if the results of all these files belong there."""
     home = checkout()
     if home is None:
         raise click.UsageError("--out DIR is needed, because this satsym is not a checkout.")
@@ -109,7 +109,7 @@ def _holds(path: Path, text: str) -> bool:
 
 
 def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
-    """Remove what satsym once wrote and would not write now; a line for each file that no derivation leads to."""
+    """Remove files that satsym wrote earlier and no derivation leads to any more; return a line for each."""
     from satsym.report.artefacts import KEPT, SIGNATURE, SUFFIXES
 
     lines = []

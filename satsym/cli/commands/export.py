@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from satsym.solution import Simulation, Solution
 
 KINDS = ("oem", "czml", "stk", "csv")
-"""Formats; here once more, because ``--help`` loads no writer of them."""
+"""The formats, repeated here because ``--help`` loads no writer of them."""
 
 EXAMPLES = """\b
 Examples:
@@ -69,7 +69,7 @@ def export(subject: str, kind: str, out: Path | None, source: Path | None, value
 
 
 def _found(case: Instance) -> Solution | Simulation:
-    """The optimum, or the motion without control where nothing is to be minimised."""
+    """Return the optimum, or the motion without control where no cost is to be minimised."""
     from satsym import solvers
     from satsym.analysis.regulator.feedback import simulate
     from satsym.report.terminal.solution import progress_line

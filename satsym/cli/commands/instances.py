@@ -44,7 +44,7 @@ def instances(name: str | None, keys: bool, schema: bool, whole: bool, as_json: 
 
 
 def _said(as_schema: bool) -> None:
-    """What an instance file may say."""
+    """Print the keys that an instance file may have."""
     if as_schema:
         from satsym.instance.keys import json_schema
 
@@ -56,7 +56,7 @@ def _said(as_schema: bool) -> None:
 
 
 def _shown(name: str, as_json: bool) -> None:
-    """The file of one instance."""
+    """Print the file of one instance."""
     from satsym import instance
     from satsym.instance.files import locate, text
     from satsym.report.results.objects import instance_object
@@ -73,7 +73,7 @@ def _shown(name: str, as_json: bool) -> None:
 
 
 def _listed(as_json: bool, whole: bool) -> None:
-    """All that come with satsym."""
+    """Print all shipped instances."""
     from satsym import instance
     from satsym.report.results.objects import instance_object
     from satsym.report.terminal.listing import instances_text

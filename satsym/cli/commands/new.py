@@ -59,7 +59,7 @@ def new(name: str, original: str | None, out: Path | None) -> ExitCode:
 
 
 def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[str]]:
-    """Path -> text and what it is, and the commands that one may go on with."""
+    """Return the files of a new model by path, with descriptions, and the commands to continue with."""
     import keyword
     import sys
 

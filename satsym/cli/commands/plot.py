@@ -83,7 +83,7 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
 
 
 def _redrawn(name: str, command: str | None, home: Path, out: Path | None, look: Look, as_json: bool) -> ExitCode:
-    """Draw what was analysed, designed or compared."""
+    """Draw the pictures of an analysis, a regulator or a comparison again."""
     from satsym.cli.redrawing import redrawn
     from satsym.report.results import sets
     from satsym.report.results.files import check_writable
@@ -104,7 +104,7 @@ def _require(command: str | None, found: Found) -> None:
 
 
 def _save(folder: Path, found: Found, begins: Mapping[str, Any], pictures: Mapping[str, Content]) -> list[Path]:
-    """Add pictures to the set they are of; or make them a set of their own, which replaces none but of pictures."""
+    """Add pictures to the set they belong to, or save them as a set of their own."""
     from satsym.report.results import sets
 
     if folder.resolve() == found.folder.resolve():

@@ -51,7 +51,7 @@ def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_
 
 
 def _text_before(ledger: Path) -> str:
-    """The text of a ledger, if it is there.
+    """Return the text of an existing ledger, if there is one.
 
     Raises
     ------

@@ -92,7 +92,7 @@ def report(
 
 
 def _proof(case: Instance, solution: Solution, show: Callable[[str], None]) -> Proof:
-    """What is proved of an answer."""
+    """Prove an answer."""
     from satsym.proof.proving import prove
 
     show(say("proving ..."))
@@ -100,9 +100,9 @@ def _proof(case: Instance, solution: Solution, show: Callable[[str], None]) -> P
 
 
 def _derivation(case: Instance, stated: Path | None, show: Callable[[str], None]) -> Derivation | None:
-    """The derivation of an instance's model: the shipped one of that model, or the one of a file that is named.
+    """Return the derivation of an instance's model: the shipped one, or that of a named file.
 
-    No other file is looked for: an instance is data, and derivation files are executed.
+    No other file is used: an instance is data, and derivation files are executed.
     """
     from satsym import kernels
     from satsym.symbolic import derive, loader

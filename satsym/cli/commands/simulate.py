@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from satsym.report.look import Look
 
 FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
-"""Control laws to simulate with; here once more, because ``--help`` loads no solver."""
+"""The control laws of simulations, repeated here because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
 Examples:

@@ -113,7 +113,7 @@ def solve(
 
 
 def _continued(tree: Mapping[str, Any], varied: Sequence[str]) -> Mapping[str, Any]:
-    """The tables of an instance with the continuation that the command line gave."""
+    """Return the tables of an instance with the continuation from the command line."""
     found: dict[str, list[float | str]] = {}
     for text in varied:
         key, equals, values = text.partition("=")
@@ -126,7 +126,7 @@ def _continued(tree: Mapping[str, Any], varied: Sequence[str]) -> Mapping[str, A
 
 
 def _number(text: str) -> float | str:
-    """A number, or a quantity with its unit."""
+    """Return a number, or a quantity with its unit."""
     try:
         return float(text)
     except ValueError:
@@ -134,7 +134,7 @@ def _number(text: str) -> float | str:
 
 
 def _set(case: Instance, values: Sequence[str]) -> dict[str, float]:
-    """What ``--set`` gives, by key; studies, which read it, are loaded for that only."""
+    """Return the values of ``--set`` by key; the module of studies, which reads them, is loaded only for that."""
     if not values:
         return {}
     from satsym.studies.reading import settings
@@ -143,7 +143,7 @@ def _set(case: Instance, values: Sequence[str]) -> dict[str, float]:
 
 
 def _changed(case: Instance, **options: Any) -> Instance:
-    """The instance with the solver options that the command line gave."""
+    """Return the instance with the solver options from the command line."""
     given = {name: value for name, value in options.items() if value is not None}
     if not given:
         return case

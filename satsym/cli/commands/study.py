@@ -133,7 +133,7 @@ def study(
 
 @contextmanager
 def _computing(scheduler: str | None, count: int) -> Iterator[tuple[Callable[[], Executor], int]]:
-    """What computes chunks, and how many at a time: processes of this machine, or a cluster."""
+    """Return the executor of chunks, and how many it takes at a time: local processes, or a cluster."""
     if scheduler is None:
         from satsym.studies.workers import Workers
 

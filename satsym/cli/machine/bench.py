@@ -23,7 +23,7 @@ QUICK_SECONDS, THOROUGH_SECONDS = 0.5, 5.0
 """Seconds for which each kind of step is measured."""
 
 BACKENDS = {"numpy": "NumPy", "numba": "numba"}
-"""What computes, as it calls itself."""
+"""Names of the backends for people."""
 
 EXAMPLES = """\b
 Examples:
@@ -65,7 +65,7 @@ def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
 
 
 def _text(found: Mapping[str, Any]) -> str:
-    """Summary of what ``satsym bench`` measured, from its object."""
+    """Return the summary of what ``satsym bench`` measured, from its object."""
     from satsym.report.terminal.table import figure, table, wrapped
 
     machine, steps, solve = found["machine"], found["steps"], found["solve"]
@@ -93,7 +93,7 @@ def _text(found: Mapping[str, Any]) -> str:
 
 
 def _object(given: Instance | Kernels, speeds: Sequence[Speed], solved: Solved | None) -> dict[str, Any]:
-    """The machine, steps a second by each means, and the times of one solution; ``solve`` is ``None`` without one."""
+    """Return the object of the results: the machine, steps a second by backend, and times of one solution."""
     import platform
 
     import numpy as np

@@ -63,7 +63,7 @@ def doctor(as_json: bool) -> ExitCode:
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was examined.
+    """The result of one check of the installation.
 
     Attributes
     ----------
@@ -83,12 +83,12 @@ class Finding:
 
     @property
     def broken(self) -> bool:
-        """Whether satsym cannot work like this."""
+        """Tell whether satsym cannot work because of this finding."""
         return self.required and not self.fine
 
     @property
     def mark(self) -> str:
-        """One word for people."""
+        """Return one word about the finding for people."""
         return "ok" if self.fine else "BROKEN" if self.required else "absent"
 
     def as_object(self) -> dict[str, str | bool]:
@@ -103,7 +103,7 @@ class Finding:
 
 
 def _examine(announce: Callable[[str], None]) -> list[Finding]:
-    """Examine everything in the order of the report; `announce` is called with the name of what comes next."""
+    """Run all checks in the order of the report; `announce` is called with the name of each next one."""
     import platform
 
     home = checkout()
@@ -126,7 +126,7 @@ def _examine(announce: Callable[[str], None]) -> list[Finding]:
 
 
 def _dependency(requirement: Requirement) -> Finding:
-    """A package that must be here, in a version that will do, and that can be imported."""
+    """Check that a package is installed, in a suitable version, and can be imported."""
     import importlib
 
     version = requirement.installed
@@ -142,7 +142,7 @@ def _dependency(requirement: Requirement) -> Finding:
 
 
 def _module_of(package: str) -> str:
-    """The module of an installed package; python-flint has one that is called flint."""
+    """Return the module of an installed package; that of python-flint is flint."""
     from importlib import metadata
 
     own = sorted(module for module, packages in metadata.packages_distributions().items() if package in packages)
@@ -165,7 +165,7 @@ def _program(name: str, commands: tuple[str, ...], purpose: str) -> Finding:
 
 
 def _shipped() -> Iterator[Finding]:
-    """Derivations, the models that were generated from them, and instances, all of which must load."""
+    """Check that derivations, generated models and instances load."""
     try:
         from satsym import instance, kernels
         from satsym.symbolic import loader
@@ -185,7 +185,7 @@ def _shipped() -> Iterator[Finding]:
 
 
 def _trial() -> Finding:
-    """A small problem, solved."""
+    """Solve a small problem as a check."""
     name = f"solve {TRIAL}"
     try:
         from satsym import instance, solvers
